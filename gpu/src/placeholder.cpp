@@ -1,0 +1,1 @@
+#include "innersphere/query.hpp"

@@ -1,0 +1,66 @@
+// An inner-sphere packing: the result of packing/ and the input of gpu/.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "innersphere/geometry.hpp"
+
+namespace innersphere {
+
+/// Radii that make the first `count` spheres stand for the whole volume of the solid. A sphere's share is the volume of
+/// the solid that is nearer to its surface than to any other sphere's; its volume-true radius is that of a ball with the
+/// volume of its share. Shares of a prefix sum to the solid, so neighbouring volume-true spheres overlap a little.
+struct VolumeTrueRadii {
+  std::uint32_t count = 0;       ///< length of the prefix
+  std::vector<float> radii;      ///< [m], `count` of them, in the order of the spheres
+  double sampling_error = 0;     ///< standard error of one share relative to the mean share, 0 to 1
+};
+
+/// What the packer guarantees about the fill.
+struct Certificate {
+  /// Each sphere had at least 1/(1+delta) of the largest radius that was possible when it was placed. 0 means that
+  /// nothing is certified (an imported packing).
+  double delta = 0;
+  /// No sphere larger than this fits any more [m].
+  double largest_missing_radius = 0;
+};
+
+/// How well the packing fills its solid.
+struct Quality {
+  double density = 0;   ///< volume of the spheres over volume of the solid, 0 to 1
+  double gap_mean = 0;  ///< distance from the surface to the nearest sphere [m]: mean over the surface
+  double gap_p95 = 0;   ///< 95th percentile [m]
+  double gap_max = 0;   ///< largest sampled distance [m]: the covering radius, what a contact is late by
+};
+
+/// Where a packing comes from, so that a file can be traced and made again.
+struct Provenance {
+  std::string source;       ///< path of the mesh or name of the solid
+  std::string source_hash;  ///< hash of the geometry, hexadecimal
+  std::string options;      ///< the options that change the result, as a command line
+  std::string version;      ///< version of InnerSphere that wrote it
+};
+
+/// Spheres inside a solid that do not overlap each other, sorted by falling radius: the first n of them are a valid,
+/// coarser packing. Immutable by convention once made; share it with std::shared_ptr<const Packing>.
+struct Packing {
+  std::vector<Sphere> spheres;
+  std::vector<VolumeTrueRadii> volume_true;  ///< by rising count: 64, 128, 256, ..., spheres.size(); may be empty
+  MassProperties solid;                      ///< exact, of the solid, not of the spheres
+  Surface surface;                           ///< of the solid; may be empty
+  Certificate certificate;
+  Quality quality;
+  Provenance provenance;
+};
+
+/// The stored volume-true radii of the longest prefix that is not longer than `count`, or null if there is none.
+const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count);
+
+/// Throws Error if a caller could not use the packing: no spheres, non-finite numbers, radii that are not positive or
+/// not sorted, volume-true radii of the wrong length. Does not look for overlaps; see check.hpp for that.
+void validate(const Packing& packing);
+
+}  // namespace innersphere

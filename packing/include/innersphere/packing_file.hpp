@@ -1,0 +1,18 @@
+// Packings on disk: .json (readable), .cbor (the same schema, binary), .ply and .xyzr (spheres only).
+#pragma once
+
+#include <string>
+
+#include "innersphere/packing.hpp"
+
+namespace innersphere {
+
+/// Reads a packing; the format follows from the ending (.json, .cbor, .xyzr). Survives any bytes. Throws Error:
+/// file_not_found, bad_format, unsupported_version, empty_input, not_finite.
+Packing readPacking(const std::string& path);
+
+/// Writes a packing; the format follows from the ending (.json, .cbor, .ply, .xyzr). The file appears under its name
+/// only when it is complete. Throws Error: bad_argument (unknown ending), file_exists, write_failed.
+void writePacking(const Packing& packing, const std::string& path, bool overwrite = false);
+
+}  // namespace innersphere

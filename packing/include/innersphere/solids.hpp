@@ -1,0 +1,33 @@
+// The project's own solids, so that demos and tests need no mesh files.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "innersphere/solid.hpp"
+
+namespace innersphere {
+
+// Solids with an exact distance. Centred at the origin; lengths in metres; Error bad_argument where a length is not > 0.
+std::unique_ptr<Solid> makeBall(double radius);
+std::unique_ptr<Solid> makeBox(const Vec3d& size);                                ///< full edge lengths
+std::unique_ptr<Solid> makeTorus(double ring_radius, double tube_radius);         ///< about the z axis
+std::unique_ptr<Solid> makeCylinder(double radius, double height);                ///< about the z axis
+
+/// A user's own solid from a signed distance, negative inside and exact there. Mass properties and the surface are found by
+/// sampling the box `bounds` at `resolution` cells along its longest side.
+std::unique_ptr<Solid> makeDistanceSolid(const std::string& name, std::function<double(const Vec3d&)> signed_distance,
+                                         const Bounds& bounds, int resolution = 128);
+
+/// What is in `a` and not in `b`. Distances from the inside are exact: the nearest point of either surface is on the
+/// boundary of the difference.
+std::unique_ptr<Solid> makeDifference(std::shared_ptr<const Solid> a, std::shared_ptr<const Solid> b);
+
+/// A named solid of the project with sizes that suit a scene about 1 m wide: ball, box, torus, link, bowl, gear, lbracket,
+/// nut, bolt, chazelle, tray, ... Throws Error bad_argument for an unknown name; the message lists the known ones.
+std::unique_ptr<Solid> makeNamedSolid(const std::string& name);
+std::vector<std::string> namedSolids();
+
+}  // namespace innersphere

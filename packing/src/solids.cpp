@@ -1,0 +1,1 @@
+#include "innersphere/solids.hpp"

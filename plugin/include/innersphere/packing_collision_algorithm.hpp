@@ -1,0 +1,21 @@
+// The narrow phase for packings: one line to add to a Bullet program.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+
+#include "innersphere/bullet_precision.hpp"
+#include "innersphere/contact_options.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Makes a dispatcher collide PackingShape with every other shape.
+struct PackingCollisionAlgorithm {
+  /// Registers for contact and closest-point queries against every shape type but compound and soft body, which Bullet
+  /// itself walks down to their children. Call it after btGImpactCollisionAlgorithm::registerAlgorithm, which overwrites
+  /// every row of its own. Calling it again replaces the options. Throws Error: bad_argument, no_device.
+  static void registerAlgorithm(btCollisionDispatcher* dispatcher, const ContactOptions& options = {});
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

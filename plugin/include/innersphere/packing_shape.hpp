@@ -1,0 +1,54 @@
+// The Bullet collision shape of a packed solid.
+#pragma once
+
+#include <memory>
+
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <LinearMath/btTransform.h>
+
+#include "innersphere/bullet_precision.hpp"
+#include "innersphere/collision_model.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// A moving non-convex solid. Its frame is the solid's principal frame: origin at the centre of mass, axes along the
+/// principal axes of inertia, as Bullet's rigid bodies need it. principalTransform() places the packing, and so the
+/// user's graphics, in that frame. Register PackingCollisionAlgorithm with the dispatcher, or bodies fall through.
+class PackingShape : public btConcaveShape {
+ public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
+
+  /// Bodies of the same solid can share one shape, and shapes can share one model. Throws Error if `model` is null.
+  explicit PackingShape(std::shared_ptr<const CollisionModel> model);
+  ~PackingShape() override;
+
+  const CollisionModel& model() const;
+
+  /// From the packing's frame to the shape's: graphics are drawn at bodyTransform * principalTransform() * x.
+  const btTransform& principalTransform() const;
+
+  /// The shape behind a btCollisionShape, or null if it is none of ours (btSdfCollisionShape shares the type number).
+  static const PackingShape* from(const btCollisionShape* shape);
+
+  // btCollisionShape
+  void getAabb(const btTransform& t, btVector3& min, btVector3& max) const override;
+  void getBoundingSphere(btVector3& centre, btScalar& radius) const override;
+  btScalar getAngularMotionDisc() const override;
+  btScalar getContactBreakingThreshold(btScalar factor) const override;
+  /// Uniform and positive only: throws Error bad_argument otherwise.
+  void setLocalScaling(const btVector3& scaling) override;
+  const btVector3& getLocalScaling() const override;
+  /// Exact moments of the solid for a homogeneous body of this mass [kg m^2].
+  void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
+  const char* getName() const override;
+  // btConcaveShape: triangles of the solid's surface, for rays, sweeps, debug drawing and soft bodies
+  void processAllTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,1 @@
+#include "innersphere/packing_collision_algorithm.hpp"

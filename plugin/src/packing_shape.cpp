@@ -1,0 +1,1 @@
+#include "innersphere/packing_shape.hpp"
