@@ -1,0 +1,60 @@
+// The smallest program: a packed solid drops onto a plane in an otherwise ordinary Bullet world.
+//   innersphere pack torus --spheres 1000 -o torus.cbor && hello_bullet torus.cbor
+#include <cstdio>
+#include <memory>
+
+#include <btBulletDynamicsCommon.h>
+
+#include "innersphere/error.hpp"
+#include "innersphere/packing_collision_algorithm.hpp"
+#include "innersphere/packing_file.hpp"
+#include "innersphere/packing_shape.hpp"
+
+int main(int argc, char** argv) try {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s PACKING\n", argv[0]);
+    return 2;
+  }
+  const char* file = argv[1];
+
+  // An existing Bullet program has this already.
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  btRigidBody floor(0, nullptr, &plane);
+  world.setGravity(btVector3(0, 0, -9.81f));
+  world.addRigidBody(&floor);
+
+  // [README]
+  innersphere::PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);  // the one line
+
+  auto packing = std::make_shared<innersphere::Packing>(innersphere::readPacking(file));
+  auto model = std::make_shared<innersphere::CollisionModel>(packing);
+  innersphere::PackingShape shape(model);  // bodies of the same solid share it
+
+  btScalar mass = 1;  // [kg]
+  btVector3 inertia;
+  shape.calculateLocalInertia(mass, inertia);
+  btRigidBody body(mass, nullptr, &shape, inertia);
+  body.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 2)));
+  world.addRigidBody(&body);
+  // [README]
+
+  for (int step = 0; step < 5 * 240; ++step) world.stepSimulation(btScalar(1) / 240, 0);
+
+  btVector3 low, high;
+  shape.getAabb(body.getWorldTransform(), low, high);
+  std::printf("after 5 s: centre at %.4f m, lowest point at %.4f m, speed %.4f m/s\n",
+              double(body.getWorldTransform().getOrigin().z()), double(low.z()),
+              double(body.getLinearVelocity().length()));
+  const bool rests = body.getLinearVelocity().length() < 0.05 && low.z() > -0.05;
+  world.removeRigidBody(&body);
+  world.removeRigidBody(&floor);
+  return rests ? 0 : 1;
+} catch (const innersphere::Error& error) {
+  std::fprintf(stderr, "%s: %s\n", toString(error.code()), error.what());
+  return 3;
+}

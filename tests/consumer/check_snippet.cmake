@@ -1,0 +1,10 @@
+# The text between the [README] marks of SOURCE must stand in README, line by line, without its indentation.
+file(READ "${SOURCE}" source)
+file(READ "${README}" readme)
+string(REGEX MATCH "// \\[README\\]\n(.*)  // \\[README\\]" whole "${source}")
+string(REPLACE "\n  " "\n" snippet "\n${CMAKE_MATCH_1}")
+string(STRIP "${snippet}" snippet)
+string(FIND "${readme}" "${snippet}" at)
+if(snippet STREQUAL "" OR at EQUAL -1)
+  message(FATAL_ERROR "The README does not show the snippet of ${SOURCE}:\n${snippet}")
+endif()

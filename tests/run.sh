@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Builds and runs every test.
+#
+#   ./tests/run.sh          tests that need a CUDA device are skipped; the last lines say how many
+#   ./tests/run.sh --gpu    they run, and a missing device is a failure
+#   ./tests/run.sh -R NAME  other options go to ctest
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. examples/setup.sh
+
+cuda=AUTO
+if [ "${1:-}" = --gpu ]; then
+  shift
+  cuda=ON
+  export INNERSPHERE_REQUIRE_GPU=1
+fi
+# shellcheck disable=SC2086  # a list of names
+need_packages $build_packages libgtest-dev librapidcheck-dev
+build release -DINNERSPHERE_TESTS=ON -DINNERSPHERE_CUDA=$cuda
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+status=0
+ctest --test-dir build --output-on-failure --no-tests=error -j "$(nproc)" "$@" | tee "$log" || status=$?
+skipped=$(grep -c '\*\*\*Skipped' "$log" || true)
+if [ "$skipped" -gt 0 ]; then
+  echo "$skipped tests were skipped because they need a CUDA device; ./tests/run.sh --gpu runs them."
+fi
+exit $status
