@@ -1,0 +1,24 @@
+// Making one vertex of what is one point.
+#pragma once
+
+#include <cstddef>
+
+#include "innersphere/mesh.hpp"
+
+namespace innersphere {
+
+/// Merges vertices at equal positions and drops unused ones; the order of first use stays.
+void weldEqual(Mesh& mesh);
+
+/// Merges each vertex into the first earlier one within `tolerance` [m]. Returns how many went.
+std::size_t weldClose(Mesh& mesh, double tolerance);
+
+/// Removes triangles with two equal corners. Returns how many.
+std::size_t dropCollapsed(Mesh& mesh);
+
+/// Removes triangles with three different corners and no area. Returns how many.
+std::size_t dropFlat(Mesh& mesh);
+
+void flip(std::array<std::uint32_t, 3>& triangle);
+
+}  // namespace innersphere

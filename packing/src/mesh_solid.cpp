@@ -1,0 +1,60 @@
+#include "mesh_solid.hpp"
+
+#include "hash.hpp"
+#include "mass_properties.hpp"
+#include "vec3.hpp"
+
+namespace innersphere {
+namespace {
+
+// Cells along the longest side when a repaired mesh is searched for points that it winds around more than
+// once.
+constexpr int kRepairCells = 64;
+
+}  // namespace
+
+MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once)
+    : mesh_(std::move(closed)), name_(name), bounds_(emptyBounds()), tree_(mesh_), winding_(mesh_) {
+  for (const Vec3d& v : mesh_.vertices) extend(bounds_, v);
+  Moments moments = momentsOf(mesh_);
+  if (count_once) {
+    // The divergence theorem integrates the winding number; the solid counts as 1 where that exceeds 1/2.
+    moments.add(sampledMoments(bounds_, kRepairCells, [&](const Vec3d& p) {
+      const double winding = std::round(winding_.windingNumber(p));
+      return (winding > 0.5 ? 1 : 0) - winding;
+    }));
+  }
+  mass_ = moments.massProperties();
+}
+
+ClosestPoint MeshSolid::closestPoint(const Vec3d& p, double cutoff) const {
+  return tree_.closest(p, cutoff);
+}
+
+bool MeshSolid::contains(const Vec3d& p) const {
+  return holds(bounds_, p) && winding_.windingNumber(p) > 0.5;
+}
+
+Surface MeshSolid::surface() const {
+  Surface surface;
+  surface.triangles = mesh_.triangles;
+  surface.vertices.reserve(mesh_.vertices.size());
+  for (const Vec3d& v : mesh_.vertices) {
+    surface.vertices.push_back(
+        {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])});
+  }
+  return surface;
+}
+
+std::string MeshSolid::hash() const {
+  Hash hash;
+  for (const Vec3d& v : mesh_.vertices) {
+    for (double x : v) hash.add(x);
+  }
+  for (const auto& t : mesh_.triangles) {
+    for (std::uint32_t v : t) hash.add(std::uint64_t{v});
+  }
+  return hash.text();
+}
+
+}  // namespace innersphere

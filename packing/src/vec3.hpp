@@ -1,0 +1,64 @@
+// Arithmetic on Vec3d, the only linear algebra that meshes and solids need.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "innersphere/geometry.hpp"
+
+namespace innersphere {
+
+inline Vec3d operator+(const Vec3d& a, const Vec3d& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Vec3d operator-(const Vec3d& a, const Vec3d& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Vec3d operator-(const Vec3d& a) {
+  return {-a[0], -a[1], -a[2]};
+}
+inline Vec3d operator*(double s, const Vec3d& a) {
+  return {s * a[0], s * a[1], s * a[2]};
+}
+inline double dot(const Vec3d& a, const Vec3d& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline double norm(const Vec3d& a) {
+  return std::sqrt(dot(a, a));
+}
+inline Vec3d cross(const Vec3d& a, const Vec3d& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline bool isFinite(const Vec3d& a) {
+  return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
+}
+
+/// A box that holds nothing and grows by extend().
+inline Bounds emptyBounds() {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  return {{inf, inf, inf}, {-inf, -inf, -inf}};
+}
+inline void extend(Bounds& box, const Vec3d& p) {
+  for (int k = 0; k < 3; ++k) {
+    box.min[k] = std::min(box.min[k], p[k]);
+    box.max[k] = std::max(box.max[k], p[k]);
+  }
+}
+inline Vec3d centre(const Bounds& box) {
+  return 0.5 * (box.min + box.max);
+}
+inline double diagonal(const Bounds& box) {
+  return norm(box.max - box.min);
+}
+inline bool holds(const Bounds& box, const Vec3d& p) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(p[k] >= box.min[k] && p[k] <= box.max[k])) return false;
+  }
+  return true;
+}
+inline bool holds(const Bounds& outer, const Bounds& inner) {
+  return holds(outer, inner.min) && holds(outer, inner.max);
+}
+
+}  // namespace innersphere
