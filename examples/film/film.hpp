@@ -1,0 +1,63 @@
+// Things to show and where they are over time: what scenes record, and what the picture and the replay draw.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "innersphere/geometry.hpp"
+
+namespace innersphere::demo {
+
+/// Where an actor is: a rotation as a unit quaternion (x, y, z, w), then a translation [m].
+struct Pose {
+  std::array<float, 3> position{0, 0, 0};
+  std::array<float, 4> rotation{0, 0, 0, 1};
+};
+
+/// sRGB, each component 0 to 1.
+struct Colour {
+  float r = 0.7f;
+  float g = 0.7f;
+  float b = 0.7f;
+};
+
+/// What actors look like. A shape without spheres is drawn by its surface, and the other way round.
+struct Shape {
+  std::string name;
+  Surface surface;
+  std::vector<Sphere> spheres;  ///< by falling radius
+};
+
+/// A shape with a colour of its own.
+struct Actor {
+  std::uint32_t shape = 0;
+  Colour colour;
+};
+
+/// How actors are drawn.
+enum class View {
+  surface,
+  spheres,
+  split  ///< surfaces on the left of the picture, spheres on the right
+};
+
+/// A recording. The z axis points up.
+struct Film {
+  std::string title;
+  std::string caption;  ///< one line below the title
+  std::vector<Shape> shapes;
+  std::vector<Actor> actors;
+  std::vector<Pose> poses;        ///< of all actors in the first frame, then in the second, ...
+  double frame_rate = 60;         ///< [1/s]
+  bool has_ground = true;         ///< draw a floor at height `ground`
+  float ground = 0;               ///< [m]
+  bool colour_by_radius = false;  ///< spheres show their radius instead of their actor's colour
+
+  std::size_t frames() const { return actors.empty() ? 0 : poses.size() / actors.size(); }
+  const Pose* frame(std::size_t index) const { return poses.data() + index * actors.size(); }
+};
+
+}  // namespace innersphere::demo

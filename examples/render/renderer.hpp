@@ -1,0 +1,23 @@
+// Draws a frame of a film on the CPU.
+#pragma once
+
+#include "camera.hpp"
+#include "film/film.hpp"
+#include "image.hpp"
+#include "innersphere/progress.hpp"
+
+namespace innersphere::demo {
+
+struct RenderOptions {
+  int width = 1280;  ///< [pixels]
+  int height = 720;  ///< [pixels]
+  int samples = 48;  ///< rays through each pixel: more is smoother and slower
+  View view = View::split;
+};
+
+/// A picture with soft shadows and one bounce of indirect light. The same bytes for any number of threads.
+/// Throws Error cancelled.
+Image render(const Film& film, std::size_t frame, const Viewpoint& viewpoint, const RenderOptions& options,
+             const Progress& progress = {});
+
+}  // namespace innersphere::demo

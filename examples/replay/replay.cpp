@@ -1,0 +1,107 @@
+#include "replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base64.hpp"
+#include "embedded_files.hpp"
+#include "film/creases.hpp"
+#include "film/palette.hpp"
+
+namespace innersphere::demo {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kAspect = 16.0 / 9.0;  // of the view that the camera is set up for
+constexpr int kRampSteps = 16;          // colours for radii: one draw call each
+
+std::string cssColour(const Colour& colour) {
+  char text[8];
+  const auto byte = [](float v) {
+    return static_cast<unsigned>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255));
+  };
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", byte(colour.r), byte(colour.g), byte(colour.b));
+  return text;
+}
+
+std::string rampIndices(const std::vector<Sphere>& spheres) {
+  const float largest = std::log(spheres.front().radius);
+  const float range = std::max(largest - std::log(spheres.back().radius), 1e-6f);
+  std::vector<std::uint8_t> indices;
+  for (const Sphere& s : spheres) {
+    const float value = 1 - (largest - std::log(s.radius)) / range;
+    indices.push_back(static_cast<std::uint8_t>(std::lround(value * (kRampSteps - 1))));
+  }
+  return base64(indices);
+}
+
+json shapeJson(const Shape& shape, bool colour_by_radius) {
+  json result = {{"name", shape.name}};
+  if (!shape.surface.triangles.empty()) {
+    const ShadedSurface shaded = splitCreases(shape.surface);
+    result["vertices"] = base64(shaded.vertices);
+    result["triangles"] = base64(shaded.triangles);
+  }
+  if (!shape.spheres.empty()) {
+    result["spheres"] = base64(shape.spheres);
+    if (colour_by_radius) result["sphere_colours"] = rampIndices(shape.spheres);
+  }
+  return result;
+}
+
+json cameraJson(const Film& film, const Viewpoint& viewpoint) {
+  const Camera camera = frameCamera(film, film.frames() - 1, viewpoint, kAspect);
+  const Eigen::Vector3f target = camera.eye + camera.distance * camera.forward;
+  const Eigen::Vector3f eye = target - 1.2f * camera.distance * camera.forward;
+  constexpr double kDegrees = 57.29577951308232;
+  return {{"eye", {eye.x(), eye.y(), eye.z()}},
+          {"target", {target.x(), target.y(), target.z()}},
+          {"field_of_view", viewpoint.field_of_view * kDegrees},
+          {"aspect", kAspect}};
+}
+
+std::string filmJson(const Film& film, const Viewpoint& viewpoint) {
+  json result = {{"title", film.title},
+                 {"caption", film.caption},
+                 {"frame_rate", film.frame_rate},
+                 {"ground", film.has_ground ? json(film.ground) : json(nullptr)},
+                 {"camera", cameraJson(film, viewpoint)}};
+  for (int i = 0; i < kRampSteps; ++i) {
+    result["ramp"].push_back(cssColour(rampColour(static_cast<float>(i) / (kRampSteps - 1))));
+  }
+  for (const Shape& shape : film.shapes) result["shapes"].push_back(shapeJson(shape, film.colour_by_radius));
+  for (const Actor& actor : film.actors) {
+    result["actors"].push_back({{"shape", actor.shape}, {"colour", cssColour(actor.colour)}});
+  }
+  static_assert(sizeof(Pose) == 7 * sizeof(float), "the page reads poses as seven numbers");
+  result["poses"] = base64(film.poses);
+
+  // Names come from users' files: no text of theirs may end the script element it stands in.
+  std::string text = result.dump(-1, ' ', true, json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  return text;
+}
+
+}  // namespace
+
+std::string replayPage(const Film& film, const Viewpoint& viewpoint) {
+  const std::string data = filmJson(film, viewpoint);
+  const std::pair<std::string_view, std::string_view> parts[] = {{"{{css}}", kPageCss},
+                                                                 {"{{three}}", kThreeJs},
+                                                                 {"{{controls}}", kOrbitControlsJs},
+                                                                 {"{{film}}", data},
+                                                                 {"{{page}}", kPageJs}};
+  std::string page;
+  std::string_view rest = kPageHtml;
+  for (const auto& [name, text] : parts) {
+    const std::size_t at = rest.find(name);
+    page.append(rest.substr(0, at)).append(text);
+    rest.remove_prefix(at + name.size());
+  }
+  return page.append(rest);
+}
+
+}  // namespace innersphere::demo
