@@ -13,6 +13,17 @@ constexpr int kRepairCells = 64;
 
 }  // namespace
 
+Surface surfaceOf(const Mesh& mesh) {
+  Surface surface;
+  surface.triangles = mesh.triangles;
+  surface.vertices.reserve(mesh.vertices.size());
+  for (const Vec3d& v : mesh.vertices) {
+    surface.vertices.push_back(
+        {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])});
+  }
+  return surface;
+}
+
 MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once)
     : mesh_(std::move(closed)), name_(name), bounds_(emptyBounds()), tree_(mesh_), winding_(mesh_) {
   for (const Vec3d& v : mesh_.vertices) extend(bounds_, v);
@@ -33,17 +44,6 @@ ClosestPoint MeshSolid::closestPoint(const Vec3d& p, double cutoff) const {
 
 bool MeshSolid::contains(const Vec3d& p) const {
   return holds(bounds_, p) && winding_.windingNumber(p) > 0.5;
-}
-
-Surface MeshSolid::surface() const {
-  Surface surface;
-  surface.triangles = mesh_.triangles;
-  surface.vertices.reserve(mesh_.vertices.size());
-  for (const Vec3d& v : mesh_.vertices) {
-    surface.vertices.push_back(
-        {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])});
-  }
-  return surface;
 }
 
 std::string MeshSolid::hash() const {

@@ -8,6 +8,9 @@
 
 namespace innersphere {
 
+/// The mesh in single precision.
+Surface surfaceOf(const Mesh& mesh);
+
 class MeshSolid : public Solid {
  public:
   /// `closed`: each edge is used as often in one direction as in the other. If the mesh may wind around
@@ -18,7 +21,7 @@ class MeshSolid : public Solid {
   bool contains(const Vec3d& p) const override;
   Bounds bounds() const override { return bounds_; }
   MassProperties massProperties() const override { return mass_; }
-  Surface surface() const override;
+  Surface surface() const override { return surfaceOf(mesh_); }
   std::string name() const override { return name_; }
   std::string hash() const override;
 

@@ -1,0 +1,18 @@
+// The meshes of the named solids: closed, wound outwards, free of self-intersections.
+#pragma once
+
+#include "innersphere/mesh.hpp"
+
+namespace innersphere {
+
+Mesh linkMesh();
+Mesh bowlMesh();
+Mesh gearMesh();
+Mesh lbracketMesh();
+Mesh trayMesh();
+Mesh knotMesh();
+Mesh nutMesh();
+Mesh boltMesh();
+Mesh chazelleMesh();
+
+}  // namespace innersphere
