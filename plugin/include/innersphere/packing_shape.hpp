@@ -28,7 +28,7 @@ class PackingShape : public btConcaveShape {
   /// From the packing's frame to the shape's: graphics are drawn at bodyTransform * principalTransform() * x.
   const btTransform& principalTransform() const;
 
-  /// The shape behind a btCollisionShape, or null if it is none of ours (btSdfCollisionShape shares the type number).
+  /// The shape behind a btCollisionShape, or null if it is none of ours, whatever its type number.
   static const PackingShape* from(const btCollisionShape* shape);
 
   // btCollisionShape
@@ -36,17 +36,21 @@ class PackingShape : public btConcaveShape {
   void getBoundingSphere(btVector3& centre, btScalar& radius) const override;
   btScalar getAngularMotionDisc() const override;
   btScalar getContactBreakingThreshold(btScalar factor) const override;
-  /// Uniform and positive only: throws Error bad_argument otherwise.
+  /// About the centre of mass; replaces the scaling before. Uniform and positive only: throws Error bad_argument otherwise.
   void setLocalScaling(const btVector3& scaling) override;
   const btVector3& getLocalScaling() const override;
   /// Exact moments of the solid for a homogeneous body of this mass [kg m^2].
   void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
   const char* getName() const override;
-  // btConcaveShape: triangles of the solid's surface, for rays, sweeps, debug drawing and soft bodies
+  // btConcaveShape
+  /// Triangles of the solid's surface near a box, for rays, sweeps, debug drawing and soft bodies. None if the packing has
+  /// no surface: such a body collides, but rays pass through it.
   void processAllTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const override;
 
+  struct Impl;  ///< private to the plug-in
+  const Impl& impl() const { return *impl_; }
+
  private:
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

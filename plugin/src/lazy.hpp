@@ -1,0 +1,28 @@
+// A value that is made when it is first asked for.
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include "innersphere/bullet_precision.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Safe to ask from several threads at once.
+template <typename T>
+class Lazy {
+ public:
+  template <typename Make>
+  const T& get(const Make& make) const {
+    std::call_once(once_, [&] { value_ = make(); });
+    return *value_;
+  }
+
+ private:
+  mutable std::once_flag once_;
+  mutable std::unique_ptr<T> value_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

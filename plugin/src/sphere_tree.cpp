@@ -1,0 +1,17 @@
+#include "sphere_tree.hpp"
+
+#include "vec.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+SphereTree::SphereTree(const std::vector<Sphere>& spheres) {
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    btDbvtNode* leaf = tree_.insert(btDbvtVolume::FromCR(centre(spheres[i]), btScalar(spheres[i].radius)), nullptr);
+    leaf->dataAsInt = static_cast<int>(i);
+  }
+  tree_.optimizeTopDown();
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,58 @@
+#include "surface_tree.hpp"
+
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
+#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Quantised nodes keep the triangle's number in 21 bits.
+constexpr std::size_t kMaxQuantizedTriangles = std::size_t(1) << 21;
+
+struct NearestHit : btTriangleRaycastCallback {
+  NearestHit(const btVector3& from, const btVector3& to)
+      : btTriangleRaycastCallback(from, to, kF_KeepUnflippedNormal) {}
+  btScalar reportHit(const btVector3& normal, btScalar fraction, int, int) override {
+    found = true;
+    nearest_normal = normal;
+    return fraction;
+  }
+  bool found = false;
+  btVector3 nearest_normal{0, 0, 0};
+};
+
+}  // namespace
+
+SurfaceTree::SurfaceTree(const Surface& surface) : triangles_(std::make_unique<btTriangleIndexVertexArray>()) {
+  btIndexedMesh mesh;
+  mesh.m_numTriangles = static_cast<int>(surface.triangles.size());
+  mesh.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(surface.triangles.data());
+  mesh.m_triangleIndexStride = sizeof(surface.triangles[0]);
+  mesh.m_numVertices = static_cast<int>(surface.vertices.size());
+  mesh.m_vertexBase = reinterpret_cast<const unsigned char*>(surface.vertices.data());
+  mesh.m_vertexStride = sizeof(surface.vertices[0]);
+  mesh.m_vertexType = PHY_FLOAT;
+  triangles_->addIndexedMesh(mesh, PHY_INTEGER);
+  tree_ = std::make_unique<btBvhTriangleMeshShape>(triangles_.get(),
+                                                   surface.triangles.size() < kMaxQuantizedTriangles);
+}
+
+SurfaceTree::~SurfaceTree() = default;
+
+void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const {
+  tree_->processAllTriangles(callback, min, max);
+}
+
+bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScalar length, Hit& hit) const {
+  NearestHit nearest(from, from + direction * length);
+  tree_->performRaycast(&nearest, nearest.m_from, nearest.m_to);
+  if (!nearest.found) return false;
+  hit.distance = nearest.m_hitFraction * length;
+  hit.normal = nearest.nearest_normal.normalized();
+  return true;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

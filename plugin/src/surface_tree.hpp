@@ -1,0 +1,41 @@
+// Triangles of a solid's surface in a bounding volume tree.
+#pragma once
+
+#include <memory>
+
+#include <LinearMath/btVector3.h>
+
+#include "innersphere/bullet_precision.hpp"
+#include "innersphere/geometry.hpp"
+
+class btBvhTriangleMeshShape;
+class btTriangleCallback;
+class btTriangleIndexVertexArray;
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Bullet's own quantised tree over a Surface, in the surface's frame. Refers to the surface's arrays: they must stay.
+/// Const members are safe to call from several threads at once.
+class SurfaceTree {
+ public:
+  explicit SurfaceTree(const Surface& surface);
+  ~SurfaceTree();
+
+  void processTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const;
+
+  /// Where a ray meets the surface first.
+  struct Hit {
+    btScalar distance;  ///< [m] along the ray
+    btVector3 normal;   ///< unit, out of the solid
+  };
+  /// `direction` is a unit vector. False if nothing is met within `length`.
+  bool cast(const btVector3& from, const btVector3& direction, btScalar length, Hit& hit) const;
+
+ private:
+  std::unique_ptr<btTriangleIndexVertexArray> triangles_;
+  std::unique_ptr<btBvhTriangleMeshShape> tree_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,37 @@
+// Shapes with one nearest point: convex ones, planes and distance fields.
+#pragma once
+
+#include "surfaces/other_surface.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+class DistanceSurface : public OtherSurface {
+ public:
+  void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) final;
+
+ protected:
+  struct Nearest {
+    btScalar distance;  ///< [m], negative inside
+    btVector3 normal;   ///< unit, outwards
+  };
+  /// In the frame of the shape. False where the distance is unknown; the point is then taken as far away.
+  virtual bool nearest(const btVector3& p, Nearest& nearest) const = 0;
+  /// At most the distance of p, and cheaper; only its comparison with a radius matters.
+  virtual btScalar lowerBound(const btVector3& p) const;
+  /// Distance of p from the bounding box of a shape.
+  static btScalar boxDistance(const btCollisionShape& shape, const btVector3& p);
+};
+
+// One maker a kind; each in its own file.
+std::unique_ptr<OtherSurface> makePlaneSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeSphereSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeBoxSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeCapsuleSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeConvexSurface(const btCollisionShape& shape);
+/// Null if the shape is no btSdfCollisionShape.
+std::unique_ptr<OtherSurface> makeSdfSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeTriangleSurface(const btCollisionShape& shape);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

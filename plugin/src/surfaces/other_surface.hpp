@@ -1,0 +1,33 @@
+// The surface of a shape that is not a packing, as the spheres of a packing see it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "packing_body.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// A sphere near the other solid. A sphere in a concave corner has several.
+struct Touch {
+  std::uint32_t sphere = 0;
+  btScalar distance = 0;      ///< of its centre from the other surface [m], negative inside the other solid
+  btVector3 normal{0, 0, 0};  ///< unit, out of the other solid at the nearest point; axes of the world
+};
+
+/// One implementation for each kind of shape. An object belongs to one pair of bodies and may remember things of it.
+class OtherSurface {
+ public:
+  virtual ~OtherSurface() = default;
+
+  /// Appends the spheres of `body` whose centre is closer than their reach (body.reach) to this shape placed at `world`.
+  virtual void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) = 0;
+};
+
+/// The surface of `shape`, or null for a shape without one (fluids, invalid types). The shape must outlive it.
+std::unique_ptr<OtherSurface> makeOtherSurface(const btCollisionShape& shape);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

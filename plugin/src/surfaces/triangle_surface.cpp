@@ -1,0 +1,185 @@
+// Triangle meshes, heightfields and every other shape that answers processAllTriangles.
+//
+// A sphere can touch several triangles at once (floor and wall), so every local minimum of the distance counts: a nearest
+// point in the interior of a triangle, or on an edge that two triangles agree on; other edge points belong to a triangle
+// whose neighbour is nearer. Meshes are two-sided, as everywhere in Bullet: which side is outside is decided by where the
+// body's spheres are when they first touch, and kept while the pair lives, so that small spheres which have gone through
+// are pushed back the right way.
+#include <algorithm>
+
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
+#include <LinearMath/btAabbUtil2.h>
+
+#include "surfaces/distance_surface.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Directions of contact of one sphere closer than this are one contact.
+constexpr btScalar kSameDirection = btScalar(0.866);  // cos 30 degrees
+
+/// Nearest point of one triangle to the centre of one sphere, lengths in the packing's frame.
+struct Candidate {
+  std::uint32_t sphere;
+  bool interior;        ///< not on an edge or corner
+  btScalar distance;
+  btScalar height;      ///< signed distance from the triangle's plane
+  btVector3 direction;  ///< unit, from the nearest point to the centre; the triangle's normal if they coincide
+  btVector3 point;
+};
+
+class Collector : public btTriangleCallback {
+ public:
+  Collector(const PackingBody& body, const btTransform& to_packing, std::vector<Candidate>& candidates)
+      : body_(body), to_packing_(to_packing), candidates_(candidates) {}
+
+  void processTriangle(btVector3* triangle, int, int) override {
+    btVector3 v[3];
+    for (int i = 0; i < 3; ++i) v[i] = to_packing_(triangle[i]) / body_.scale();
+    btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
+    const btScalar length = normal.length();
+    if (!(length > 0)) return;
+    normal /= length;
+
+    btVector3 min = v[0], max = v[0];
+    for (int i = 1; i < 3; ++i) {
+      min.setMin(v[i]);
+      max.setMax(v[i]);
+    }
+    const btScalar excess = body_.largestExcess() / body_.scale();
+    min -= btVector3(excess, excess, excess);
+    max += btVector3(excess, excess, excess);
+    const auto near = [&](const btVector3& low, const btVector3& high) {
+      return TestAabbAgainstAabb2(low, high, min, max);
+    };
+    body_.shape().sphereTree().forEach(near, [&](std::size_t i) { test(i, v, normal); });
+  }
+
+ private:
+  void test(std::size_t i, const btVector3* v, const btVector3& normal) {
+    const btVector3 c = centre(body_.shape().packing().spheres[i]);
+    btSubSimplexClosestResult result;
+    result.reset();
+    solver_.closestPtPointTriangle(c, v[0], v[1], v[2], result);
+    const btVector3 offset = c - result.m_closestPointOnSimplex;
+    const btScalar distance = offset.length();
+    const btScalar reach = body_.reach(i) / body_.scale();
+    if (!(distance < reach)) return;
+    const btUsageBitfield& used = result.m_usedVertices;
+    const bool interior = used.usedVertexA && used.usedVertexB && used.usedVertexC;
+    Candidate candidate{static_cast<std::uint32_t>(i), interior, distance, normal.dot(c - v[0]), normal,
+                        result.m_closestPointOnSimplex};
+    if (distance > SIMD_EPSILON * reach) {
+      candidate.direction = offset / distance;
+    } else {
+      candidate.height = SIMD_EPSILON * reach;  // a centre on the surface counts as in front of it
+    }
+    candidates_.push_back(candidate);
+  }
+
+  const PackingBody& body_;
+  const btTransform& to_packing_;
+  std::vector<Candidate>& candidates_;
+  btVoronoiSimplexSolver solver_;
+};
+
+class TriangleSurface : public OtherSurface {
+ public:
+  explicit TriangleSurface(const btConcaveShape& mesh) : mesh_(mesh) {}
+
+  void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override {
+    static thread_local std::vector<Candidate> candidates;
+    candidates.clear();
+    collect(body, world, candidates);
+    if (candidates.empty()) return;
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+      return a.sphere != b.sphere ? a.sphere < b.sphere : a.distance < b.distance;
+    });
+    if (side_ == 0) side_ = sideOf(body, candidates);
+
+    for (auto first = candidates.begin(); first != candidates.end();) {
+      auto last = std::find_if(first, candidates.end(), [&](const Candidate& c) { return c.sphere != first->sphere; });
+      resolve(body, &*first, &*first + (last - first), touches);
+      first = last;
+    }
+  }
+
+ private:
+  void collect(const PackingBody& body, const btTransform& world, std::vector<Candidate>& candidates) const {
+    const btVector3 slack(body.largestExcess(), body.largestExcess(), body.largestExcess());
+    const btTransform shape_to_packing = body.shape().frame.from_packing;
+    // The shape's box in the mesh's frame, through the packing's placement.
+    const btTransform packing_to_mesh = world.inverseTimes(body.world);
+    btVector3 min, max;
+    btTransformAabb(body.shape().box_min, body.shape().box_max, 0, shape_to_packing.inverse(), min, max);
+    btTransformAabb(min * body.scale() - slack, max * body.scale() + slack, 0, packing_to_mesh, min, max);
+    const btTransform mesh_to_packing = packing_to_mesh.inverse();
+    Collector collector(body, mesh_to_packing, candidates);
+    mesh_.processAllTriangles(&collector, min, max);
+  }
+
+  /// +1 if the body is on the side that the triangles' winding calls outside, -1 on the other. Large spheres decide.
+  static int sideOf(const PackingBody& body, const std::vector<Candidate>& candidates) {
+    double sum = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (i > 0 && candidates[i].sphere == candidates[i - 1].sphere) continue;  // nearest triangle only
+      const double r = body.ownRadius(candidates[i].sphere);
+      sum += (candidates[i].height >= 0 ? 1 : -1) * r * r * r;
+    }
+    return sum >= 0 ? 1 : -1;
+  }
+
+  /// Candidates of one sphere, nearest first, to its contacts.
+  void resolve(const PackingBody& body, const Candidate* first, const Candidate* last,
+               std::vector<Touch>& touches) const {
+    const std::size_t start = touches.size();
+    const auto known = [&](const btVector3& normal) {
+      return std::any_of(touches.begin() + static_cast<std::ptrdiff_t>(start), touches.end(), [&](const Touch& t) {
+        return btFabs(t.normal.dot(normal)) > kSameDirection;
+      });
+    };
+    for (const Candidate* c = first; c != last; ++c) {
+      const btVector3 direction = body.world.getBasis() * c->direction;
+      if (known(direction)) continue;
+      const Corner corner = cornerAt(c, first, last, btScalar(1e-4) * body.shape().median_radius);
+      const bool rim = !c->interior && corner.triangles == 1;
+      if (rim && c != first) continue;
+      // Nothing lies behind the rim of an open mesh.
+      const bool inside = corner.height * side_ < 0 && !rim;
+      const btScalar distance = c->distance * body.scale();
+      touches.push_back({c->sphere, inside ? -distance : distance, inside ? -direction : direction});
+    }
+  }
+
+  struct Corner {
+    int triangles;
+    btScalar height;
+  };
+  /// The triangles that share the nearest point of `c`. Of their heights, the largest in size tells inside from outside.
+  static Corner cornerAt(const Candidate* c, const Candidate* first, const Candidate* last, btScalar tolerance) {
+    Corner corner{1, c->height};
+    const auto join = [&](const Candidate& other) {
+      if (other.point.distance2(c->point) > tolerance * tolerance) return;
+      ++corner.triangles;
+      if (btFabs(other.height) > btFabs(corner.height)) corner.height = other.height;
+    };
+    for (const Candidate* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o) join(*(o - 1));
+    for (const Candidate* o = c + 1; o != last && o->distance - c->distance <= tolerance; ++o) join(*o);
+    return corner;
+  }
+
+  const btConcaveShape& mesh_;
+  int side_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<OtherSurface> makeTriangleSurface(const btCollisionShape& shape) {
+  return std::make_unique<TriangleSurface>(static_cast<const btConcaveShape&>(shape));
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
