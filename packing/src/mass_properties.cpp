@@ -23,13 +23,15 @@ MassProperties Moments::massProperties() const {
   return mass;
 }
 
-void Moments::addPoint(const Vec3d& p, double weight) {
-  const Vec3d x = p - origin;
-  volume += weight;
-  first = first + weight * x;
+void Moments::addBox(const Bounds& box, double density) {
+  const Vec3d size = box.max - box.min;
+  const Vec3d x = innersphere::centre(box) - origin;
+  const double mass = density * size[0] * size[1] * size[2];
+  volume += mass;
+  first = first + mass * x;
   for (int k = 0; k < 3; ++k) {
-    second[k] += weight * x[k] * x[k];
-    second[3 + k] += weight * x[k] * x[(k + 1) % 3];
+    second[k] += mass * (x[k] * x[k] + size[k] * size[k] / 12);
+    second[3 + k] += mass * x[k] * x[(k + 1) % 3];
   }
 }
 
@@ -66,26 +68,34 @@ Moments momentsOf(const Mesh& mesh) {
   return sum;
 }
 
-Moments sampledMoments(const Bounds& box, int resolution, const std::function<double(const Vec3d&)>& weight) {
-  const Vec3d size = box.max - box.min;
-  const double cell = std::max({size[0], size[1], size[2]}) / resolution;
-  Vec3d step{};
-  std::array<int, 3> count{};
-  for (int k = 0; k < 3; ++k) {
-    count[k] = std::max(1, static_cast<int>(std::ceil(size[k] / cell - 1e-9)));
-    step[k] = size[k] / count[k];
-  }
+Moments integrate(const Bounds& box, int resolution,
+                  const std::function<Probe(const Vec3d& middle, double reach, double side)>& probe) {
+  const auto longest = [](const Vec3d& size) { return std::max({size[0], size[1], size[2]}); };
+  const double smallest = longest(box.max - box.min) / resolution;
   Moments sum;
   sum.origin = centre(box);
-  const double volume = step[0] * step[1] * step[2];
-  for (int z = 0; z < count[2]; ++z) {
-    for (int y = 0; y < count[1]; ++y) {
-      for (int x = 0; x < count[0]; ++x) {
-        const Vec3d p = box.min + Vec3d{(x + 0.5) * step[0], (y + 0.5) * step[1], (z + 0.5) * step[2]};
-        const double w = weight(p);
-        if (w != 0) sum.addPoint(p, w * volume);
+  std::vector<Bounds> open{box};
+  while (!open.empty()) {
+    const Bounds cell = open.back();
+    open.pop_back();
+    const Vec3d size = cell.max - cell.min;
+    const Vec3d middle = centre(cell);
+    const double reach = 0.5 * norm(size);
+    const Probe here = probe(middle, reach, longest(size));
+    if (here.constant_within >= reach || longest(size) <= smallest) {
+      if (here.value != 0) sum.addBox(cell, here.value);
+      continue;
+    }
+    // Only what is still too long is halved, so that flat boxes end in cubes.
+    std::vector<Bounds> parts{cell};
+    for (int k = 0; k < 3; ++k) {
+      if (size[k] <= smallest) continue;
+      for (std::size_t i = 0, n = parts.size(); i < n; ++i) {
+        parts.push_back(parts[i]);
+        parts[i].max[k] = parts.back().min[k] = middle[k];
       }
     }
+    open.insert(open.end(), parts.begin(), parts.end());
   }
   return sum;
 }

@@ -15,7 +15,7 @@ struct Moments {
   Vec3d first{};                   ///< integral of x
   std::array<double, 6> second{};  ///< integrals of xx, yy, zz, xy, yz, zx
 
-  void addPoint(const Vec3d& p, double volume);
+  void addBox(const Bounds& box, double density);
   void add(const Moments& other);  ///< about the same origin
   MassProperties massProperties() const;
 };
@@ -24,8 +24,16 @@ struct Moments {
 /// far from the origin. Of a mesh that is not closed the result means nothing.
 Moments momentsOf(const Mesh& mesh);
 
-/// Midpoint rule over the cells of `box`, `resolution` of them along its longest
-/// side, each weighted with weight(middle).
-Moments sampledMoments(const Bounds& box, int resolution, const std::function<double(const Vec3d&)>& weight);
+/// What a function is at a point, and how far around it keeps that value.
+struct Probe {
+  double value = 0;
+  double constant_within = 0;  ///< [m]
+};
+
+/// Integrates a piecewise constant function over `box`: cells are halved until the function is constant in
+/// them or they are 1 / resolution of the box's longest side (rounded down to a power of two), where the
+/// middle decides. `probe` gets the middle of a cell, its half diagonal and its longest side.
+Moments integrate(const Bounds& box, int resolution,
+                  const std::function<Probe(const Vec3d& middle, double reach, double side)>& probe);
 
 }  // namespace innersphere

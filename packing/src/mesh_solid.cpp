@@ -9,7 +9,7 @@ namespace {
 
 // Cells along the longest side when a repaired mesh is searched for points that it winds around more than
 // once.
-constexpr int kRepairCells = 64;
+constexpr int kRepairCells = 128;
 
 }  // namespace
 
@@ -30,9 +30,10 @@ MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once)
   Moments moments = momentsOf(mesh_);
   if (count_once) {
     // The divergence theorem integrates the winding number; the solid counts as 1 where that exceeds 1/2.
-    moments.add(sampledMoments(bounds_, kRepairCells, [&](const Vec3d& p) {
+    moments.add(integrate(bounds_, kRepairCells, [&](const Vec3d& p, double reach, double) {
+      const double distance = tree_.closest(p, reach).distance;
       const double winding = std::round(winding_.windingNumber(p));
-      return (winding > 0.5 ? 1 : 0) - winding;
+      return Probe{(winding > 0.5 ? 1 : 0) - winding, distance};
     }));
   }
   mass_ = moments.massProperties();
