@@ -1,0 +1,69 @@
+// The octree's leaves, kept by the largest sphere they could hold.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "packer/ball.hpp"
+
+namespace innersphere {
+
+/// A cube of the octree over the unit cube in which a sphere may still be centred.
+struct Cell {
+  std::array<std::uint32_t, 3> at{};  ///< integer position: the cube spans at * side to (at + 1) * side
+  float upper = 1;                    ///< no larger sphere is centred in it
+  float surface = 0;  ///< distance from the centre to the surface, at least; negative outside, 0: unknown
+  std::uint8_t level = 0;  ///< side 2^-level
+
+  static constexpr int kDeepest = 30;
+
+  double side() const { return std::ldexp(1.0, -level); }
+  Point centre() const { return Point(at[0] + 0.5, at[1] + 0.5, at[2] + 0.5) * side(); }
+
+  /// One of the eight halves, with the bounds that it inherits.
+  Cell child(int octant) const;
+};
+
+/// Position along the Z-order curve of the cell's ancestor at `level`, or of its first descendant there.
+std::uint64_t mortonCode(const Cell& cell, int level);
+
+/// The rounds' fixed radii: a falling geometric sequence, in single precision so that bounds compare exactly.
+class Ladder {
+ public:
+  Ladder(double first, double last, double ratio);
+  float operator[](std::size_t rung) const { return rungs_[std::min(rung, rungs_.size() - 1)]; }
+  std::size_t size() const { return rungs_.size(); }
+
+  /// The rung with (*this)[rung + 1] < radius <= (*this)[rung].
+  std::size_t below(float radius) const;
+
+ private:
+  std::vector<float> rungs_;
+};
+
+/// All live cells, in one bucket for each rung of the ladder, so that the largest are found without sorting.
+class CellQueue {
+ public:
+  explicit CellQueue(const Ladder& ladder) : ladder_(ladder), buckets_(ladder.size()) {}
+
+  /// Cells that can only hold spheres smaller than the last rung are forgotten.
+  void push(const Cell& cell);
+
+  bool empty() const { return live_ == 0; }
+  std::size_t live() const { return live_; }
+
+  /// The first rung that has cells; the ladder's size if none has.
+  std::size_t top() const;
+
+  /// Removes and returns all cells that may hold a sphere larger than rung `until`.
+  std::vector<Cell> takeAbove(std::size_t until);
+
+ private:
+  const Ladder& ladder_;
+  std::vector<std::vector<Cell>> buckets_;
+  std::size_t live_ = 0;
+};
+
+}  // namespace innersphere
