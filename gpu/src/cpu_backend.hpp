@@ -1,0 +1,33 @@
+// The walk on the CPU, spread over threads by clusters of spheres.
+#pragma once
+
+#include <tbb/spin_mutex.h>
+
+#include <array>
+#include <atomic>
+
+#include "backend.hpp"
+#include "workers.hpp"
+
+namespace innersphere {
+
+class CpuBackend : public WalkBackend {
+ public:
+  explicit CpuBackend(Workers& workers) : workers_(workers) {}
+  void run(const std::vector<PreparedQuery>& queries, Want want, std::vector<core::Sums>& sums,
+           Hits& hits) override;
+
+ private:
+  class HitWriter;
+  void walkRange(const std::vector<PreparedQuery>& queries, std::size_t begin, std::size_t end, Want want,
+                 std::vector<core::Sums>& sums, Hits& hits);
+  void walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin, std::size_t end,
+                 Want want, core::Sums& total, HitWriter& writer);
+
+  Workers& workers_;
+  std::vector<std::size_t> first_;         ///< clusters of all queries before each
+  std::array<tbb::spin_mutex, 64> locks_;  ///< of the sums, by query modulo their number
+  std::atomic<std::size_t> cursor_{0};     ///< where the next hits go
+};
+
+}  // namespace innersphere

@@ -1,1 +1,0 @@
-#include "innersphere/query.hpp"

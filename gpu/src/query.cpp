@@ -1,0 +1,91 @@
+#include "innersphere/query.hpp"
+
+#include <string>
+
+#include "cpu_backend.hpp"
+#include "cuda_backend.hpp"
+#include "finish.hpp"
+#include "innersphere/error.hpp"
+#include "prepare.hpp"
+
+namespace innersphere {
+
+namespace {
+
+/// Clusters of 32 spheres in a batch above which a launch on the device pays.
+constexpr std::size_t kDeviceClusters = 4096;
+
+}  // namespace
+
+struct QueryContext::Impl {
+  explicit Impl(const QueryContextOptions& o) : options(o), workers(o.threads), cpu(workers) {
+    if (options.backend == Backend::cuda) cuda = makeCudaBackend();
+    device = options.backend != Backend::cpu && cudaDeviceAnswers();
+  }
+
+  WalkBackend& choose() {
+    std::size_t clusters = 0;
+    for (const PreparedQuery& query : prepared) clusters += query.clusters();
+    const bool on_device = options.backend == Backend::cuda || (device && clusters >= kDeviceClusters);
+    last = on_device ? Backend::cuda : Backend::cpu;
+    if (!on_device) return cpu;
+    if (!cuda) cuda = makeCudaBackend();
+    return *cuda;
+  }
+
+  QueryContextOptions options;
+  Workers workers;
+  CpuBackend cpu;
+  std::unique_ptr<WalkBackend> cuda;
+  bool device = false;
+  Backend last = Backend::cpu;
+
+  // Scratch, kept from run to run.
+  std::vector<PreparedQuery> prepared;
+  std::vector<core::Sums> sums;
+  Hits hits;
+  HitSorter sorter;
+  QueryResult single;
+};
+
+bool cudaAvailable() {
+  return cudaDeviceAnswers();
+}
+
+QueryContext::QueryContext(const QueryContextOptions& options) {
+  if (options.threads < 0) {
+    throw Error(ErrorCode::bad_argument,
+                "threads is " + std::to_string(options.threads) + "; it must be 0 (all cores) or more");
+  }
+  impl_ = std::make_unique<Impl>(options);
+}
+QueryContext::~QueryContext() = default;
+QueryContext::QueryContext(QueryContext&&) noexcept = default;
+QueryContext& QueryContext::operator=(QueryContext&&) noexcept = default;
+
+void QueryContext::run(const PairQuery* queries, std::size_t count, const QueryOptions& options,
+                       QueryResult& result) {
+  Impl& impl = *impl_;
+  if (count > 0 && !queries) throw Error(ErrorCode::bad_argument, "the queries are a null pointer");
+  if (count >> 32) throw Error(ErrorCode::bad_argument, "a batch has at most 2^32 - 1 queries; split it");
+  impl.prepared.clear();
+  for (std::size_t i = 0; i < count; ++i) impl.prepared.push_back(prepare(queries[i], i, options.estimator));
+  impl.choose().run(impl.prepared, options.want, impl.sums, impl.hits);
+  impl.sorter.run(impl.prepared, impl.sums, impl.hits, options.want, impl.workers, result);
+  result.overlaps.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    result.overlaps[i] = toOverlap(impl.sums[i], impl.prepared[i].setup);
+}
+
+Overlap QueryContext::overlap(const PairQuery& query, const QueryOptions& options) {
+  QueryOptions sums_only = options;
+  if (wantsHits(options.want)) sums_only.want = Want::wrench;
+  run(&query, 1, sums_only, impl_->single);
+  return impl_->single.overlaps[0];
+}
+
+Backend QueryContext::lastBackend() const {
+  return impl_->last;
+}
+
+}  // namespace innersphere

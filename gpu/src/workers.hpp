@@ -1,0 +1,36 @@
+// Threads of one context.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cstddef>
+
+namespace innersphere {
+
+/// An arena of its own: while a thread waits here it never takes up foreign tasks, which could use the same
+/// context.
+class Workers {
+ public:
+  /// threads = 0: all cores.
+  explicit Workers(int threads)
+      : serial_(threads == 1), arena_(threads > 0 ? threads : static_cast<int>(tbb::task_arena::automatic)) {}
+
+  /// Calls f(begin, end) for ranges that cover [0, n), of about `grain` items. One range is run right here.
+  template <typename F>
+  void forRanges(std::size_t n, std::size_t grain, const F& f) {
+    if (n == 0) return;
+    if (serial_ || n <= grain) return f(std::size_t{0}, n);
+    arena_.execute([&] {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                        [&](const tbb::blocked_range<std::size_t>& range) { f(range.begin(), range.end()); });
+    });
+  }
+
+ private:
+  bool serial_;
+  tbb::task_arena arena_;
+};
+
+}  // namespace innersphere

@@ -1,0 +1,64 @@
+// The suite that every backend must pass.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "innersphere/query.hpp"
+#include "oracle.hpp"
+#include "sphere_sets.hpp"
+
+namespace innersphere::test {
+
+/// Each test runs once for each backend. Without a device the CUDA ones are skipped, and say so, unless the
+/// environment has INNERSPHERE_REQUIRE_GPU=1: then they fail.
+class Conformance : public testing::TestWithParam<Backend> {
+ protected:
+  void SetUp() override {
+    if (GetParam() != Backend::cuda || cudaAvailable()) return;
+    const char* required = std::getenv("INNERSPHERE_REQUIRE_GPU");
+    if (required && std::string(required) == "1")
+      FAIL() << "INNERSPHERE_REQUIRE_GPU=1, but no CUDA device answers";
+    GTEST_SKIP() << "no CUDA device answers";
+  }
+
+  QueryContext makeContext(int threads = 0) const { return QueryContext({GetParam(), threads}); }
+};
+
+#define INNERSPHERE_FOR_EACH_BACKEND(Suite)                                          \
+  INSTANTIATE_TEST_SUITE_P(Cpu, Suite, testing::Values(innersphere::Backend::cpu),   \
+                           [](const auto&) { return std::string("cpu"); });          \
+  INSTANTIATE_TEST_SUITE_P(Cuda, Suite, testing::Values(innersphere::Backend::cuda), \
+                           [](const auto&) { return std::string("cuda"); })
+
+/// Two models that live as long as the query.
+struct Scene {
+  std::shared_ptr<CollisionModel> a, b;
+  PairQuery query;
+
+  Scene(std::shared_ptr<CollisionModel> model_a, std::shared_ptr<CollisionModel> model_b)
+      : a(model_a), b(model_b) {
+    query.a = a.get();
+    query.b = b.get();
+  }
+};
+
+/// Runs pairs and wrench and compares all with the oracle.
+inline void expectOracle(QueryContext& context, const PairQuery& query, Estimator estimator = Estimator::raw,
+                         double tolerance = 1e-9) {
+  const Oracle oracle = bruteForce(query, estimator);
+  QueryResult result;
+  context.run(&query, 1, {Want::pairs, estimator}, result);
+  EXPECT_EQ(differenceInPairs(oracle, result.pairs.items.data(), result.pairs.items.size()), "");
+  EXPECT_EQ(differenceInSums(oracle, result.overlaps[0], tolerance), "");
+}
+
+inline bool sameBits(const Overlap& a, const Overlap& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+}  // namespace innersphere::test

@@ -1,0 +1,72 @@
+// The contacts of each sphere against brute force.
+#include <cmath>
+
+#include "conformance.hpp"
+
+namespace innersphere::test {
+namespace {
+
+class ContactsConformance : public Conformance {};
+
+void expectContacts(const std::vector<OracleContact>& expected,
+                    const QueryResult::Ranges<SphereContact>& contacts) {
+  std::size_t k = contacts.first[0];
+  for (std::uint32_t i = 0; i < expected.size(); ++i) {
+    if (expected[i].volume == 0) continue;
+    ASSERT_LT(k, contacts.first[1]);
+    const SphereContact& contact = contacts.items[k++];
+    const double volume = static_cast<double>(expected[i].volume);
+    EXPECT_EQ(contact.sphere, i);
+    EXPECT_NEAR(contact.volume, volume, 1e-6 * volume);
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(contact.centroid[axis], static_cast<double>(expected[i].moment[axis] / expected[i].volume),
+                  1e-6);
+      EXPECT_NEAR(contact.area[axis], static_cast<double>(expected[i].area[axis]),
+                  1e-6 * static_cast<double>(expected[i].area_size));
+    }
+  }
+  EXPECT_EQ(k, contacts.first[1]);
+}
+
+TEST_P(ContactsConformance, EqualBruteForce) {
+  QueryContext context = makeContext();
+  const auto a = makeModel(randomSpheres(300, 0.3, 20, 1), true),
+             b = makeModel(randomSpheres(200, 0.3, 20, 2), true);
+  Random random(5);
+  for (int pose = 0; pose < 10; ++pose) {
+    Scene scene(a, b);
+    scene.query.placement_a = randomPlacement(random, 0.3);
+    scene.query.placement_b = randomPlacement(random, 0.5, 0.8);
+    scene.query.margin = pose % 2 ? 0.01 : 0;
+    const Oracle oracle = bruteForce(scene.query, Estimator::volume_true);
+    QueryResult result;
+    context.run(&scene.query, 1, {Want::contacts, Estimator::volume_true}, result);
+    EXPECT_EQ(differenceInSums(oracle, result.overlaps[0]), "");
+    expectContacts(oracle.contacts_a, result.contacts_a);
+    expectContacts(oracle.contacts_b, result.contacts_b);
+    EXPECT_TRUE(result.pairs.items.empty());
+  }
+}
+
+TEST_P(ContactsConformance, RangesFollowTheBatch) {
+  QueryContext context = makeContext();
+  const auto model = makeModel({{0, 0, 0, 1}, {3, 0, 0, 0.5}});
+  std::vector<PairQuery> queries(4);
+  const double distance[4] = {0.1, 100, 3.2, 1.9};
+  for (std::size_t i = 0; i < 4; ++i) {
+    queries[i].a = queries[i].b = model.get();
+    queries[i].placement_b = at({distance[i], 0, 0});
+  }
+  QueryResult result;
+  context.run(queries.data(), 4, {Want::contacts, Estimator::raw}, result);
+  EXPECT_EQ(result.contacts_a.first,
+            (std::vector<std::size_t>{0, 2, 2, 3, 5}));  // of both, none, the small one, both
+  EXPECT_EQ(result.contacts_b.first, (std::vector<std::size_t>{0, 2, 2, 3, 4}));
+  EXPECT_EQ(result.contacts_a.items[2].sphere, 1u);
+  EXPECT_EQ(result.contacts_b.items[2].sphere, 0u);
+}
+
+INNERSPHERE_FOR_EACH_BACKEND(ContactsConformance);
+
+}  // namespace
+}  // namespace innersphere::test
