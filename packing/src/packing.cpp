@@ -15,29 +15,81 @@ const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count
   return best;
 }
 
-void validate(const Packing& packing) {
-  if (packing.spheres.empty()) throw Error(ErrorCode::empty_input, "the packing has no spheres");
-  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
-    const Sphere& s = packing.spheres[i];
+namespace {
+
+[[noreturn]] void notFinite(const std::string& what) {
+  throw Error(ErrorCode::not_finite, what + " is not finite");
+}
+
+void validateSpheres(const std::vector<Sphere>& spheres) {
+  if (spheres.empty()) throw Error(ErrorCode::empty_input, "the packing has no spheres");
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const Sphere& s = spheres[i];
     const auto where = [i] { return "sphere " + std::to_string(i); };
     if (!std::isfinite(s.x) || !std::isfinite(s.y) || !std::isfinite(s.z) || !std::isfinite(s.radius)) {
-      throw Error(ErrorCode::not_finite, where() + " is not finite");
+      notFinite(where());
     }
     if (!(s.radius > 0)) throw Error(ErrorCode::bad_argument, where() + " has a radius that is not positive");
-    if (i > 0 && s.radius > packing.spheres[i - 1].radius) {
-      throw Error(ErrorCode::bad_argument, where() + " is larger than the one before it; spheres must be sorted by falling radius");
+    if (i > 0 && s.radius > spheres[i - 1].radius) {
+      throw Error(ErrorCode::bad_argument,
+                  where() + " is larger than the one before it; spheres must be sorted by falling radius");
     }
   }
-  for (const VolumeTrueRadii& radii : packing.volume_true) {
-    if (radii.count == 0 || radii.count > packing.spheres.size() || radii.radii.size() != radii.count) {
-      throw Error(ErrorCode::bad_argument, "the volume-true radii of prefix " + std::to_string(radii.count) + " have the wrong length");
+}
+
+void validateRadii(const std::vector<VolumeTrueRadii>& prefixes, std::size_t spheres) {
+  for (const VolumeTrueRadii& prefix : prefixes) {
+    const auto where = [&] { return "the volume-true radii of prefix " + std::to_string(prefix.count); };
+    if (prefix.count == 0 || prefix.count > spheres || prefix.radii.size() != prefix.count) {
+      throw Error(ErrorCode::bad_argument, where() + " have the wrong length");
     }
-    for (float r : radii.radii) {
+    for (float r : prefix.radii) {
       if (!std::isfinite(r) || !(r > 0)) {
-        throw Error(ErrorCode::bad_argument, "a volume-true radius of prefix " + std::to_string(radii.count) + " is not positive and finite");
+        throw Error(ErrorCode::bad_argument, where() + " are not all positive and finite");
       }
     }
   }
+}
+
+void validateSurface(const Surface& surface) {
+  for (const auto& v : surface.vertices) {
+    for (float x : v) {
+      if (!std::isfinite(x)) notFinite("a vertex of the surface");
+    }
+  }
+  for (const auto& t : surface.triangles) {
+    for (std::uint32_t v : t) {
+      if (v >= surface.vertices.size()) {
+        throw Error(ErrorCode::bad_argument, "a triangle of the surface names vertex " + std::to_string(v) +
+                                                 " of " + std::to_string(surface.vertices.size()));
+      }
+    }
+  }
+}
+
+void validateNumbers(const Packing& packing) {
+  const MassProperties& mass = packing.solid;
+  for (double x : mass.centre_of_mass) {
+    if (!std::isfinite(x)) notFinite("the centre of mass of the solid");
+  }
+  for (double x : mass.inertia) {
+    if (!std::isfinite(x)) notFinite("the inertia of the solid");
+  }
+  if (!std::isfinite(mass.volume)) notFinite("the volume of the solid");
+  const Quality& q = packing.quality;
+  const Certificate& c = packing.certificate;
+  for (double x : {q.density, q.gap_mean, q.gap_p95, q.gap_max, c.delta, c.largest_missing_radius}) {
+    if (!std::isfinite(x)) notFinite("a number of the quality or the certificate");
+  }
+}
+
+}  // namespace
+
+void validate(const Packing& packing) {
+  validateSpheres(packing.spheres);
+  validateRadii(packing.volume_true, packing.spheres.size());
+  validateSurface(packing.surface);
+  validateNumbers(packing);
 }
 
 }  // namespace innersphere

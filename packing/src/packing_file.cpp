@@ -1,6 +1,51 @@
 #include "innersphere/packing_file.hpp"
-#include <stdexcept>
+
+#include "file_io.hpp"
+#include "innersphere/error.hpp"
+#include "packing_json.hpp"
+#include "packing_text.hpp"
+
 namespace innersphere {
-Packing readPacking(const std::string&) { throw std::logic_error("unfinished"); }
-void writePacking(const Packing&, const std::string&, bool) { throw std::logic_error("unfinished"); }
+namespace {
+
+[[noreturn]] void rethrowNaming(const std::string& path, const Error& error) {
+  // A packing that fails validate() was no bad argument of the caller: the file says so.
+  const ErrorCode code = error.code() == ErrorCode::bad_argument ? ErrorCode::bad_format : error.code();
+  throw Error(code, path + ": " + error.what());
 }
+
+}  // namespace
+
+Packing readPacking(const std::string& path) {
+  const std::string bytes = readFile(path);
+  const std::string ending = endingOf(path);
+  try {
+    Packing packing;
+    if (ending == "json") {
+      packing = fromJson(bytes);
+    } else if (ending == "cbor") {
+      packing = fromCbor(bytes);
+    } else if (ending == "xyzr") {
+      packing = fromXyzr(bytes);
+      packing.provenance.source = path;
+    } else {
+      throw Error(ErrorCode::bad_format, "a packing is read from .json, .cbor or .xyzr, not from ." + ending);
+    }
+    validate(packing);
+    return packing;
+  } catch (const Error& error) {
+    rethrowNaming(path, error);
+  }
+}
+
+void writePacking(const Packing& packing, const std::string& path, bool overwrite) {
+  validate(packing);
+  const std::string ending = endingOf(path);
+  if (ending == "json") return writeFile(path, toJson(packing), overwrite);
+  if (ending == "cbor") return writeFile(path, toCbor(packing), overwrite);
+  if (ending == "ply") return writeFile(path, toPly(packing), overwrite);
+  if (ending == "xyzr") return writeFile(path, toXyzr(packing), overwrite);
+  throw Error(ErrorCode::bad_argument, "a packing is written to .json, .cbor, .ply or .xyzr, not to " + path);
+}
+
+}  // namespace innersphere

@@ -19,33 +19,42 @@ struct Mesh {
 };
 
 struct MeshOptions {
-  double scale = 1;     ///< multiplies all coordinates: 0.001 for a file in millimetres
-  bool repair = false;  ///< pack a mesh that does not bound a volume anyway: inside is where the winding number exceeds 1/2
+  /// readMesh() multiplies all coordinates with it: 0.001 for a file in millimetres. Over 0. makeSolid() ignores it.
+  double scale = 1;
+  /// makeSolid() accepts a mesh that does not bound a volume: its holes are closed with flat fans, and inside is where the
+  /// winding number exceeds 1/2. Distances near a hole are to its fan, so the fill is only as good as that guess; mass
+  /// properties are corrected by sampling where triangles cut each other. Costs up to some seconds.
+  bool repair = false;
 };
 
 /// What was found in a mesh.
 struct MeshReport {
   std::size_t vertices = 0;             ///< after welding equal positions
   std::size_t triangles = 0;            ///< after removing degenerate ones
-  std::size_t degenerate = 0;           ///< removed: two equal corners or no area
+  std::size_t degenerate = 0;           ///< removed: two equal corners
   std::size_t open_edges = 0;           ///< used by one triangle only
-  std::size_t open_loops = 0;           ///< closed chains of open edges
-  Vec3d open_at{};                      ///< somewhere on the longest of them
+  std::size_t open_loops = 0;           ///< connected chains of open edges
+  Vec3d open_at{};                      ///< a corner of the longest of them [m]
   std::size_t non_manifold_edges = 0;   ///< used by more than two triangles
   std::size_t flipped_edges = 0;        ///< whose two triangles wind in opposite senses
-  std::size_t components = 0;
+  std::size_t components = 0;           ///< connected over edges
   bool inside_out = false;              ///< negative volume: all triangles were flipped
-  Bounds bounds;
+  Bounds bounds;                        ///< [m]
   std::vector<std::string> notes;       ///< one sentence for each thing that was mended or looks suspicious
 };
 
 /// Reads a mesh through assimp (OBJ, STL, PLY, OFF, glTF, ...), with node transforms applied in double and equal positions
-/// welded. Throws Error: file_not_found, bad_format, empty_input, not_finite.
+/// welded. assimp keeps coordinates in single precision. Throws Error: file_not_found, bad_format, empty_input, not_finite,
+/// bad_argument (the scale).
 Mesh readMesh(const std::string& path, const MeshOptions& options = {});
 
-/// Judges a mesh, mends what is safe (welds, drops degenerate triangles, turns an inside-out mesh), and makes it a solid
-/// with exact distances. Throws Error not_a_solid if it does not bound a volume and repair was not asked for; the message
-/// names the defect, its place and the way out. `report` may be null.
+/// Judges a mesh and makes it a solid with exact distances. Mends what is safe and notes it: welds equal positions, and those
+/// within 1e-7 of the diagonal if the mesh is open without that; drops degenerate triangles; winds triangles like their
+/// neighbours; turns shells that are inside-out; drops shells inside solid material that face outwards. A shell inside
+/// another that faces inwards stays: a cavity. Triangles that cut each other are not looked for.
+/// Throws Error: not_a_solid if the mesh does not bound a volume and repair was not asked for, with the defect, its place and the
+/// way out; empty_input, not_finite, bad_argument (a triangle names a vertex that is not there). `report` may be null; it
+/// is filled in also when not_a_solid is thrown.
 std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshOptions& options = {},
                                  MeshReport* report = nullptr);
 

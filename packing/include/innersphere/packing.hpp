@@ -60,7 +60,8 @@ struct Packing {
 const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count);
 
 /// Throws Error if a caller could not use the packing: no spheres, non-finite numbers, radii that are not positive or
-/// not sorted, volume-true radii of the wrong length. Does not look for overlaps; see check.hpp for that.
+/// not sorted, volume-true radii of the wrong length, surface triangles without their vertices. Does not look for overlaps; see
+/// check.hpp for that.
 void validate(const Packing& packing);
 
 }  // namespace innersphere

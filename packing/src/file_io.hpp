@@ -1,0 +1,18 @@
+// Whole files, read with a limit and written all or nothing.
+#pragma once
+
+#include <string>
+
+namespace innersphere {
+
+/// The ending of a path in lower case, without the dot.
+std::string endingOf(const std::string& path);
+
+/// Throws Error: file_not_found, bad_format (over 2 GiB, or not readable).
+std::string readFile(const std::string& path);
+
+/// Writes to a temporary name in the same folder and renames that, so that nobody ever sees half a file.
+/// Throws Error: file_exists, write_failed; then the folder is as it was.
+void writeFile(const std::string& path, const std::string& bytes, bool overwrite);
+
+}  // namespace innersphere

@@ -1,0 +1,21 @@
+// The schema of packing files, the same for JSON and CBOR.
+#pragma once
+
+#include <string>
+
+#include "innersphere/packing.hpp"
+
+namespace innersphere {
+
+/// Text with a line for each top-level entry.
+std::string toJson(const Packing& packing);
+
+/// Arrays of floats and indices are byte strings of little-endian 32-bit numbers.
+std::string toCbor(const Packing& packing);
+
+/// Any bytes are safe: memory is bounded by a small multiple of their number. Throws Error: bad_format,
+/// unsupported_version.
+Packing fromJson(const std::string& text);
+Packing fromCbor(const std::string& bytes);
+
+}  // namespace innersphere

@@ -1,0 +1,188 @@
+// Files in, meshes out.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <sstream>
+
+#include "file_scratch.hpp"
+#include "innersphere/error.hpp"
+#include "innersphere/mesh.hpp"
+#include "mesh_oracles.hpp"
+#include "mesh_shapes.hpp"
+
+namespace innersphere::test {
+namespace {
+
+std::string objOf(const Mesh& mesh) {
+  std::ostringstream out;
+  for (const Vec3d& v : mesh.vertices) out << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
+  for (const auto& t : mesh.triangles) out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+  return out.str();
+}
+
+// With a normal for each facet, as STL files have, so that no two facets share a vertex.
+std::string stlOf(const Mesh& mesh) {
+  std::ostringstream out;
+  out << "solid box\n";
+  for (const auto& t : mesh.triangles) {
+    out << "facet normal 0 0 1\nouter loop\n";
+    for (std::uint32_t i : t) {
+      const Vec3d& v = mesh.vertices[i];
+      out << "vertex " << v[0] << " " << v[1] << " " << v[2] << "\n";
+    }
+    out << "endloop\nendfacet\n";
+  }
+  out << "endsolid box\n";
+  return out.str();
+}
+
+std::string offOf(const Mesh& mesh) {
+  std::ostringstream out;
+  out << "OFF\n" << mesh.vertices.size() << " " << mesh.triangles.size() << " 0\n";
+  for (const Vec3d& v : mesh.vertices) out << v[0] << " " << v[1] << " " << v[2] << "\n";
+  for (const auto& t : mesh.triangles) out << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+  return out.str();
+}
+
+std::string plyOf(const Mesh& mesh) {
+  std::ostringstream out;
+  out << "ply\nformat ascii 1.0\nelement vertex " << mesh.vertices.size()
+      << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << mesh.triangles.size()
+      << "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vec3d& v : mesh.vertices) out << v[0] << " " << v[1] << " " << v[2] << "\n";
+  for (const auto& t : mesh.triangles) out << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+  return out.str();
+}
+
+std::string base64(const std::string& bytes) {
+  const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned x = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      x = x << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    }
+    for (int k = 3; k >= 0; --k) out += digits[x >> (6 * k) & 63];
+  }
+  for (std::size_t k = 0; k < (3 - bytes.size() % 3) % 3; ++k) out[out.size() - 1 - k] = '=';
+  return out;
+}
+
+// A unit box under the given nodes; the first node is the root.
+std::string gltfOf(const Mesh& mesh, const std::string& nodes) {
+  std::string buffer;
+  const auto put = [&](const auto& x) { buffer.append(reinterpret_cast<const char*>(&x), sizeof x); };
+  for (const auto& t : mesh.triangles) {
+    for (std::uint32_t v : t) put(static_cast<std::uint16_t>(v));
+  }
+  const std::size_t indices = buffer.size();
+  for (const Vec3d& v : mesh.vertices) {
+    for (double x : v) put(static_cast<float>(x));
+  }
+  std::ostringstream out;
+  out << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" << nodes
+      << R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0}]}],"buffers":[{"byteLength":)"
+      << buffer.size() << R"(,"uri":"data:application/octet-stream;base64,)" << base64(buffer)
+      << R"("}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":)" << indices
+      << R"(},{"buffer":0,"byteOffset":)" << indices << R"(,"byteLength":)" << buffer.size() - indices
+      << R"(}],"accessors":[{"bufferView":0,"componentType":5123,"count":)" << 3 * mesh.triangles.size()
+      << R"(,"type":"SCALAR"},{"bufferView":1,"componentType":5126,"count":)" << mesh.vertices.size()
+      << R"(,"type":"VEC3","min":[-0.5,-0.5,-0.5],"max":[0.5,0.5,0.5]}]})";
+  return out.str();
+}
+
+void expectError(const std::string& path, ErrorCode code, const std::string& hint,
+                 const MeshOptions& options = {}) {
+  try {
+    readMesh(path, options);
+    ADD_FAILURE() << "no error for " << path;
+  } catch (const Error& error) {
+    EXPECT_STREQ(toString(error.code()), toString(code)) << error.what();
+    EXPECT_NE(std::string(error.what()).find(hint), std::string::npos) << error.what();
+  }
+}
+
+TEST(MeshImport, EveryFormatGivesTheSameClosedBox) {
+  const Scratch scratch;
+  const Mesh box = boxMesh({1, 2, 3}, {2, 4, 6});
+  const std::vector<std::pair<std::string, std::string>> files{
+      {"box.obj", objOf(box)}, {"box.stl", stlOf(box)}, {"box.off", offOf(box)}, {"box.ply", plyOf(box)}};
+  for (const auto& [name, bytes] : files) {
+    const Mesh mesh = readMesh(scratch.write(name, bytes));
+    EXPECT_EQ(mesh.vertices.size(), 8u) << name;
+    EXPECT_TRUE(isClosedManifold(mesh)) << name;
+    EXPECT_NEAR(volumeOf(mesh), 6, 1e-12) << name;
+  }
+}
+
+TEST(MeshImport, PolygonsAreTriangulated) {
+  const Scratch scratch;
+  const std::string quads =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+      "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  const Mesh mesh = readMesh(scratch.write("quads.obj", quads));
+  EXPECT_EQ(mesh.triangles.size(), 12u);
+  EXPECT_TRUE(isClosedManifold(mesh));
+  EXPECT_NEAR(volumeOf(mesh), 1, 1e-12);
+}
+
+TEST(MeshImport, ScaleMultipliesCoordinates) {
+  const Scratch scratch;
+  MeshOptions options;
+  options.scale = 0.001;
+  const std::string path = scratch.write("box.obj", objOf(boxMesh({0, 0, 0}, {100, 200, 300})));
+  EXPECT_NEAR(volumeOf(readMesh(path, options)), 0.006, 1e-12);
+  for (const double scale : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
+    options.scale = scale;
+    expectError(path, ErrorCode::bad_argument, "scale", options);
+  }
+}
+
+// Two instances: one moved, scaled and turned by its parents, one mirrored, which has to be wound anew.
+TEST(MeshImport, NodeTransformsAndMirrorsApply) {
+  const Scratch scratch;
+  const std::string nodes = R"([{"children":[1,3],"translation":[10,0,0]},)"
+                            R"({"children":[2],"rotation":[0,0,0.70710678,0.70710678]},)"
+                            R"({"mesh":0,"translation":[5,0,0],"scale":[2,1,1]},)"
+                            R"({"mesh":0,"scale":[-1,1,3]}])";
+  const Mesh mesh = readMesh(scratch.write("two.gltf", gltfOf(boxMesh(), nodes)));
+  EXPECT_EQ(mesh.vertices.size(), 16u);
+  EXPECT_TRUE(isClosedManifold(mesh));
+  EXPECT_NEAR(volumeOf(mesh), 2 + 3, 1e-5);
+  Vec3d low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+  for (const Vec3d& v : mesh.vertices) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], v[k]);
+      high[k] = std::max(high[k], v[k]);
+    }
+  }
+  const Vec3d expected_low{9.5, -0.5, -1.5}, expected_high{10.5, 6, 1.5};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(low[k], expected_low[k], 1e-5);
+    EXPECT_NEAR(high[k], expected_high[k], 1e-5);
+  }
+  MeshReport report;
+  makeSolid(mesh, "two", {}, &report);
+  EXPECT_EQ(report.components, 2u);
+  EXPECT_TRUE(report.notes.empty());
+}
+
+TEST(MeshImport, SaysWhatIsWrongWithAFile) {
+  const Scratch scratch;
+  expectError(scratch.path("none.obj"), ErrorCode::file_not_found, "none.obj");
+  expectError(scratch.folder().string(), ErrorCode::file_not_found, "folder");
+  expectError(scratch.write("empty.obj", ""), ErrorCode::empty_input, "empty.obj");
+  expectError(scratch.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), ErrorCode::empty_input,
+              "no triangles");
+  expectError(scratch.write("text.stl", "this is not a mesh"), ErrorCode::bad_format, "text.stl");
+  expectError(scratch.write("box.unknown", "this is not a mesh"), ErrorCode::bad_format, "OBJ");
+  expectError(scratch.write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), ErrorCode::bad_format,
+              "range");
+  expectError(scratch.write("nan.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n"), ErrorCode::not_finite,
+              "vertex 1");
+  expectError(scratch.write("inf.obj", "v 0 0 0\nv 1 1e60 0\nv 0 1 0\nf 1 2 3\n"), ErrorCode::not_finite,
+              "vertex 1");
+}
+
+}  // namespace
+}  // namespace innersphere::test

@@ -1,0 +1,260 @@
+// What is wrong with a mesh: found, named, mended where that is safe, refused where not.
+#include <gtest/gtest.h>
+
+#include "innersphere/error.hpp"
+#include "innersphere/mesh.hpp"
+#include "mesh_oracles.hpp"
+#include "mesh_shapes.hpp"
+
+namespace innersphere::test {
+namespace {
+
+std::string joined(const MeshReport& report) {
+  std::string all;
+  for (const std::string& note : report.notes) all += note + "\n";
+  return all;
+}
+
+void expectRefused(const Mesh& mesh, const std::string& hint, MeshReport* report = nullptr) {
+  try {
+    makeSolid(mesh, "thing", {}, report);
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::not_a_solid);
+    EXPECT_NE(std::string(error.what()).find(hint), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("thing"), std::string::npos) << error.what();
+  }
+}
+
+std::unique_ptr<Solid> repaired(const Mesh& mesh, MeshReport* report = nullptr) {
+  MeshOptions options;
+  options.repair = true;
+  return makeSolid(mesh, "thing", options, report);
+}
+
+TEST(MeshJudge, OpenEdgesAreCountedAndPlaced) {
+  Mesh mesh = boxMesh({-1, -1, -1}, {1, 1, 1});
+  mesh.triangles.erase(mesh.triangles.begin() + 2, mesh.triangles.begin() + 4);  // the top, 8 m around
+  append(mesh, boxMesh({3, 0, 0}, {4, 1, 1}));
+  mesh.triangles.pop_back();  // a smaller hole
+  MeshReport report;
+  expectRefused(mesh, "7 open edges in 2 loops", &report);
+  EXPECT_EQ(report.open_edges, 7u);
+  EXPECT_EQ(report.open_loops, 2u);
+  EXPECT_EQ(report.components, 2u);
+  EXPECT_EQ(report.open_at[2], 1);
+  EXPECT_EQ(std::abs(report.open_at[0]), 1);
+}
+
+TEST(MeshJudge, RepairClosesTheHole) {
+  Mesh mesh = boxMesh({-1, -1, -1}, {1, 1, 1});
+  mesh.triangles.erase(mesh.triangles.begin() + 2, mesh.triangles.begin() + 4);
+  MeshReport report;
+  const auto solid = repaired(mesh, &report);
+  EXPECT_NE(joined(report).find("1 hole"), std::string::npos) << joined(report);
+  EXPECT_NEAR(solid->massProperties().volume, 8, 1e-12);
+  EXPECT_TRUE(solid->contains({0, 0, 0.99}));
+  EXPECT_FALSE(solid->contains({0, 0, 1.01}));
+  EXPECT_NEAR(solid->closestPoint({0.3, 0.2, 0.9}).distance, 0.1, 1e-15);
+}
+
+// Three boxes that share no vertex and cut each other: after repair a point counts once however often it is
+// enclosed.
+TEST(MeshJudge, RepairCountsOverlapsOnce) {
+  Mesh mesh = boxMesh({0, 0, 0}, {2, 1, 1});
+  append(mesh, boxMesh({1, 0.25, 0.25}, {3, 0.75, 0.75}));
+  append(mesh, boxMesh({0.5, 0.5, 0.5}, {1, 1.5, 1.5}));
+  mesh.triangles.pop_back();
+  const auto solid = repaired(mesh);
+  EXPECT_NEAR(solid->massProperties().volume, 2 + 0.25 + 0.5 * (1 - 0.25), 0.02);
+  std::mt19937 random(31);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Vec3d p = randomPoint(random, {-0.2, -0.2, -0.2}, {3.2, 1.7, 1.7});
+    const auto in = [&](const Vec3d& low, const Vec3d& high) {
+      for (int k = 0; k < 3; ++k) {
+        if (p[k] <= low[k] || p[k] >= high[k]) return false;
+      }
+      return true;
+    };
+    EXPECT_EQ(solid->contains(p), in({0, 0, 0}, {2, 1, 1}) || in({1, 0.25, 0.25}, {3, 0.75, 0.75}) ||
+                                      in({0.5, 0.5, 0.5}, {1, 1.5, 1.5}));
+  }
+}
+
+TEST(MeshJudge, InsideOutIsTurned) {
+  MeshReport report;
+  const auto solid = makeSolid(inverted(torusMesh(1, 0.4, 24, 12)), "torus", {}, &report);
+  EXPECT_TRUE(report.inside_out);
+  EXPECT_NE(joined(report).find("inside-out"), std::string::npos);
+  EXPECT_GT(solid->massProperties().volume, 0);
+  EXPECT_TRUE(solid->contains({1, 0, 0}));
+  EXPECT_FALSE(solid->contains({0, 0, 0}));
+}
+
+TEST(MeshJudge, FlippedTrianglesAreTurned) {
+  Mesh mesh = torusMesh(1, 0.4, 24, 12);
+  const double volume = volumeOf(mesh);
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 5) {
+    std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+  }
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "torus", {}, &report);
+  EXPECT_GT(report.flipped_edges, 100u);
+  EXPECT_FALSE(report.inside_out);
+  EXPECT_NEAR(solid->massProperties().volume, volume, 1e-12);
+}
+
+TEST(MeshJudge, MoebiusAndKleinAreRefused) {
+  // A Klein bottle: a torus grid whose last column is joined to the first upside down.
+  constexpr int n = 12, m = 8;
+  Mesh mesh;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < m; ++j) {
+      const double u = 2 * std::numbers::pi * i / n, v = 2 * std::numbers::pi * j / m;
+      mesh.vertices.push_back(
+          {std::cos(u) * (2 + std::cos(v)), std::sin(u) * (2 + std::cos(v)), std::sin(v) + 0.1 * u});
+    }
+  }
+  const auto at = [&](int i, int j) {
+    return static_cast<std::uint32_t>(i < n ? i * m + j % m : (2 * m - j) % m);
+  };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < m; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  expectRefused(mesh, "one side");
+}
+
+TEST(MeshJudge, CavityStaysHollow) {
+  Mesh mesh = boxMesh({-2, -2, -2}, {2, 2, 2});
+  append(mesh, inverted(boxMesh({-1, -1, -1}, {1, 1, 1})));
+  append(mesh, boxMesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));  // a loose part in the cavity
+  for (const bool turn_all : {false, true}) {
+    MeshReport report;
+    const auto solid = makeSolid(turn_all ? inverted(mesh) : mesh, "hollow", {}, &report);
+    EXPECT_EQ(report.components, 3u);
+    EXPECT_EQ(report.inside_out, turn_all);
+    EXPECT_NE(joined(report).find("hollow"), std::string::npos) << joined(report);
+    EXPECT_NEAR(solid->massProperties().volume, 64 - 8 + 1, 1e-12);
+    EXPECT_TRUE(solid->contains({0, 0, 0}));
+    EXPECT_FALSE(solid->contains({0.75, 0, 0}));
+    EXPECT_TRUE(solid->contains({1.5, 0, 0}));
+    EXPECT_NEAR(solid->closestPoint({1.4, 0, 0}).distance, 0.4, 1e-15);
+  }
+}
+
+TEST(MeshJudge, OneShellInsideOutAmongSeveral) {
+  Mesh mesh = boxMesh({0, 0, 0}, {1, 1, 1});
+  append(mesh, inverted(boxMesh({2, 0, 0}, {3, 1, 1})));
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "pair", {}, &report);
+  EXPECT_FALSE(report.inside_out);
+  EXPECT_NE(joined(report).find("1 shell of 2"), std::string::npos) << joined(report);
+  EXPECT_NEAR(solid->massProperties().volume, 2, 1e-12);
+  EXPECT_TRUE(solid->contains({2.5, 0.5, 0.5}));
+}
+
+TEST(MeshJudge, ShellInsideMaterialIsDropped) {
+  Mesh mesh = boxMesh({-2, -2, -2}, {2, 2, 2});
+  append(mesh, boxMesh({-1, -1, -1}, {1, 1, 1}));
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "nested", {}, &report);
+  EXPECT_NE(joined(report).find("removed"), std::string::npos) << joined(report);
+  EXPECT_NEAR(solid->massProperties().volume, 64, 1e-12);
+  EXPECT_NEAR(solid->closestPoint({0, 0, 0}).distance, 2, 1e-15);
+}
+
+TEST(MeshJudge, DegenerateTrianglesGo) {
+  Mesh mesh = boxMesh();
+  mesh.triangles.push_back({0, 0, 1});
+  mesh.vertices.push_back(mesh.vertices[3]);
+  mesh.triangles.push_back({3, 8, 1});  // collapses once equal positions are welded
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "box", {}, &report);
+  EXPECT_EQ(report.degenerate, 2u);
+  EXPECT_EQ(report.triangles, 12u);
+  EXPECT_EQ(report.vertices, 8u);
+  EXPECT_NEAR(solid->massProperties().volume, 1, 1e-14);
+}
+
+// Corners that differ in the last digits are welded only because the mesh is open otherwise.
+TEST(MeshJudge, NearlyEqualCornersAreWeldedIfOpen) {
+  Mesh split;
+  const Mesh box = boxMesh();
+  std::mt19937 random(32);
+  for (const auto& t : box.triangles) {
+    for (std::uint32_t v : t) {
+      Vec3d p = box.vertices[v];
+      for (double& x : p) x += std::uniform_real_distribution<double>(-1e-8, 1e-8)(random);
+      split.vertices.push_back(p);
+    }
+    const auto n = static_cast<std::uint32_t>(split.vertices.size());
+    split.triangles.push_back({n - 3, n - 2, n - 1});
+  }
+  MeshReport report;
+  const auto solid = makeSolid(split, "box", {}, &report);
+  EXPECT_EQ(report.vertices, 8u);
+  EXPECT_NE(joined(report).find("merged"), std::string::npos) << joined(report);
+  EXPECT_NEAR(solid->massProperties().volume, 1, 1e-6);
+}
+
+TEST(MeshJudge, TouchingSolidsAreNamedNotRefused) {
+  Mesh mesh = boxMesh({0, 0, 0}, {1, 1, 1});
+  append(mesh, boxMesh({1, 1, 0}, {2, 2, 1}));  // they share an edge
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "steps", {}, &report);
+  EXPECT_EQ(report.non_manifold_edges, 1u);
+  EXPECT_NEAR(solid->massProperties().volume, 2, 1e-12);
+  EXPECT_TRUE(solid->contains({1.001, 1.001, 0.5}));
+  EXPECT_FALSE(solid->contains({1.001, 0.999, 0.5}));
+}
+
+TEST(MeshJudge, FinOnAnEdgeIsRefused) {
+  Mesh mesh = boxMesh();
+  mesh.vertices.push_back({2, 0, 0});
+  mesh.triangles.push_back({1, 3, 8});
+  MeshReport report;
+  expectRefused(mesh, "open edge", &report);
+  EXPECT_EQ(report.non_manifold_edges, 1u);
+  EXPECT_NEAR(repaired(mesh)->massProperties().volume, 1, 1e-6);
+}
+
+TEST(MeshJudge, SheetsEncloseNothing) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
+  expectRefused(mesh, "no volume");
+  expectRefused(boxMesh({0, 0, 0}, {1, 1, 1e-14}), "no volume");
+}
+
+TEST(MeshJudge, OddUnitsAreNoted) {
+  const auto noted = [](double size) {
+    MeshReport report;
+    makeSolid(boxMesh({0, 0, 0}, {size, size, size}), "box", {}, &report);
+    return !report.notes.empty();
+  };
+  EXPECT_TRUE(noted(150));
+  EXPECT_TRUE(noted(0.001));
+  EXPECT_FALSE(noted(1));
+  EXPECT_FALSE(noted(0.03));
+}
+
+TEST(MeshJudge, NothingUsable) {
+  const auto codeOf = [](const Mesh& mesh) {
+    try {
+      makeSolid(mesh, "thing");
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return ErrorCode::cancelled;
+  };
+  EXPECT_EQ(codeOf({}), ErrorCode::empty_input);
+  EXPECT_EQ(codeOf({{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 1}}}), ErrorCode::empty_input);
+  EXPECT_EQ(codeOf({{{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}, {{0, 1, 2}}}), ErrorCode::not_finite);
+  EXPECT_EQ(codeOf({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}}}), ErrorCode::bad_argument);
+}
+
+}  // namespace
+}  // namespace innersphere::test
