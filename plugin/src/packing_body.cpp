@@ -8,6 +8,7 @@ PackingBody::PackingBody(const PackingShape& packing_shape, const btTransform& b
     : impl(&packing_shape.impl()),
       world(impl->toWorld(body)),
       radii(estimator == Estimator::volume_true ? impl->volume_true : nullptr),
+      margin(packing_shape.getMargin()),
       slack(search_slack),
       excess(radii != nullptr ? impl->largest_bulge * impl->scaling.x() : btScalar(0)) {}
 

@@ -10,8 +10,9 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 struct PackingBody {
-  /// `slack` [m]: how far beyond its radius a sphere looks for contacts.
-  PackingBody(const PackingShape& packing_shape, const btTransform& body, Estimator estimator, btScalar slack);
+  /// `slack` [m]: how far beyond its radius and the shape's margin a sphere looks for contacts.
+  PackingBody(const PackingShape& packing_shape, const btTransform& body, Estimator estimator,
+              btScalar slack);
 
   const PackingShape::Impl& shape() const { return *impl; }
   std::size_t count() const { return impl->packing().spheres.size(); }
@@ -19,23 +20,28 @@ struct PackingBody {
   const btVector3& origin() const { return world.getOrigin(); }
 
   /// Centre of sphere i relative to origin(), axes of the world.
-  btVector3 centreOf(std::size_t i) const { return world.getBasis() * (centre(impl->packing().spheres[i]) * scale()); }
+  btVector3 centreOf(std::size_t i) const {
+    return world.getBasis() * (centre(impl->packing().spheres[i]) * scale());
+  }
   /// The sphere's own radius [m].
   btScalar ownRadius(std::size_t i) const { return btScalar(impl->packing().spheres[i].radius) * scale(); }
   /// Its radius for the estimator [m].
-  btScalar radiusOf(std::size_t i) const { return radii == nullptr ? ownRadius(i) : btScalar(radii[i]) * scale(); }
+  btScalar radiusOf(std::size_t i) const {
+    return radii == nullptr ? ownRadius(i) : btScalar(radii[i]) * scale();
+  }
   /// How close to the other surface its centre must be to be reported.
-  btScalar reach(std::size_t i) const { return radiusOf(i) + slack; }
+  btScalar reach(std::size_t i) const { return radiusOf(i) + margin + slack; }
   /// No sphere reaches further beyond its own radius than this.
-  btScalar largestExcess() const { return slack + excess; }
+  btScalar largestExcess() const { return slack + margin + excess; }
 
   Placement placement() const;
 
   const PackingShape::Impl* impl;
-  btTransform world;     ///< from the packing's frame, scaled, to the world
-  const float* radii;    ///< volume-true radii, or null for the spheres' own
+  btTransform world;   ///< from the packing's frame, scaled, to the world
+  const float* radii;  ///< volume-true radii, or null for the spheres' own
+  btScalar margin;     ///< of the shape: the solid is this much larger on all sides [m]
   btScalar slack;
-  btScalar excess = 0;   ///< largest volume-true radius minus own radius [m]
+  btScalar excess = 0;  ///< largest volume-true radius minus own radius [m]
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

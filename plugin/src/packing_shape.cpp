@@ -26,9 +26,30 @@ struct ToShapeFrame : btTriangleCallback {
   btTriangleCallback* user = nullptr;
 };
 
+/// The largest distance from the surface to the nearest sphere, at most so many places of it looked at.
+btScalar measureRecess(const Packing& packing) {
+  constexpr std::size_t kPlaces = 1000;
+  const Surface& surface = packing.surface;
+  const std::size_t stride = surface.triangles.size() / kPlaces + 1;
+  btScalar recess = 0;
+  const auto look = [&](const btVector3& p) {
+    btScalar gap = BT_LARGE_FLOAT;
+    for (const Sphere& s : packing.spheres) gap = btMin(gap, p.distance(centre(s)) - btScalar(s.radius));
+    recess = btMax(recess, gap);
+  };
+  for (std::size_t t = 0; t < surface.triangles.size(); t += stride) {
+    btVector3 corners[3];
+    for (int k = 0; k < 3; ++k) corners[k] = toBullet(surface.vertices[surface.triangles[t][k]]);
+    look(corners[0]);
+    look((corners[0] + corners[1] + corners[2]) / 3);
+  }
+  return recess;
+}
+
 }  // namespace
 
-PackingShape::Impl::Impl(std::shared_ptr<const CollisionModel> collision_model) : model(std::move(collision_model)) {
+PackingShape::Impl::Impl(std::shared_ptr<const CollisionModel> collision_model)
+    : model(std::move(collision_model)) {
   if (!model) {
     throw Error(ErrorCode::bad_argument, "PackingShape needs a CollisionModel; it was given a null pointer.");
   }
@@ -45,7 +66,8 @@ PackingShape::Impl::Impl(std::shared_ptr<const CollisionModel> collision_model) 
   const VolumeTrueRadii* stored = volumeTrueRadii(packing(), spheres.size());
   if (stored != nullptr && stored->count == spheres.size()) volume_true = stored->radii.data();
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    if (volume_true != nullptr) largest_bulge = btMax(largest_bulge, btScalar(volume_true[i] - spheres[i].radius));
+    if (volume_true != nullptr)
+      largest_bulge = btMax(largest_bulge, btScalar(volume_true[i] - spheres[i].radius));
   }
   // Without a surface the volume-true spheres are what collides.
   const btScalar bulge = hasSurface() ? btScalar(0) : largest_bulge;
@@ -75,6 +97,11 @@ const SurfaceTree& PackingShape::Impl::surfaceTree() const {
   return surface_tree_.get([this] { return std::make_unique<SurfaceTree>(packing().surface); });
 }
 
+btScalar PackingShape::Impl::recess() const {
+  if (packing().quality.gap_max > 0) return btScalar(packing().quality.gap_max);
+  return recess_.get([this] { return std::make_unique<btScalar>(measureRecess(packing())); });
+}
+
 btTransform PackingShape::Impl::toWorld(const btTransform& body) const {
   const btTransform& local = frame.from_packing;
   return body * btTransform(local.getBasis(), local.getOrigin() * scaling.x());
@@ -87,9 +114,13 @@ PackingShape::PackingShape(std::shared_ptr<const CollisionModel> model)
 
 PackingShape::~PackingShape() = default;
 
-const CollisionModel& PackingShape::model() const { return *impl_->model; }
+const CollisionModel& PackingShape::model() const {
+  return *impl_->model;
+}
 
-const btTransform& PackingShape::principalTransform() const { return impl_->frame.from_packing; }
+const btTransform& PackingShape::principalTransform() const {
+  return impl_->frame.from_packing;
+}
 
 const PackingShape* PackingShape::from(const btCollisionShape* shape) {
   if (shape == nullptr || shape->getShapeType() != kPackingShapeType) return nullptr;
@@ -117,25 +148,32 @@ btScalar PackingShape::getContactBreakingThreshold(btScalar factor) const {
 
 void PackingShape::setLocalScaling(const btVector3& scaling) {
   const btScalar tolerance = btScalar(1e-5) * scaling.x();
-  const bool uniform = isFinite(scaling) && scaling.x() > 0 && btFabs(scaling.y() - scaling.x()) <= tolerance &&
+  const bool uniform = isFinite(scaling) && scaling.x() > 0 &&
+                       btFabs(scaling.y() - scaling.x()) <= tolerance &&
                        btFabs(scaling.z() - scaling.x()) <= tolerance;
   if (!uniform) {
     throw Error(ErrorCode::bad_argument,
-                "PackingShape can only be scaled by the same positive factor on every axis; pack a stretched mesh instead.");
+                "PackingShape can only be scaled by the same positive factor on every axis; pack a stretched "
+                "mesh instead.");
   }
   impl_->scaling = scaling;
 }
 
-const btVector3& PackingShape::getLocalScaling() const { return impl_->scaling; }
+const btVector3& PackingShape::getLocalScaling() const {
+  return impl_->scaling;
+}
 
 void PackingShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
   const btScalar scale = impl_->scaling.x();
   inertia = impl_->frame.moments * (mass * scale * scale);
 }
 
-const char* PackingShape::getName() const { return "InnerSpherePacking"; }
+const char* PackingShape::getName() const {
+  return "InnerSpherePacking";
+}
 
-void PackingShape::processAllTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const {
+void PackingShape::processAllTriangles(btTriangleCallback* callback, const btVector3& min,
+                                       const btVector3& max) const {
   if (!impl_->hasSurface()) return;
   ToShapeFrame to_shape;
   to_shape.from_packing = impl_->frame.from_packing;

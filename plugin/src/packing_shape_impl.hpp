@@ -10,9 +10,9 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bullet's table has no free type numbers. This one is used by no shape of Bullet's, and where our algorithm is not
-/// registered it leads to the triangle path, which is safe; CUSTOM_CONCAVE_SHAPE_TYPE would lead to a cast to
-/// btSdfCollisionShape.
+/// Bullet's table has no free type numbers. This one is used by no shape of Bullet's, and where our algorithm
+/// is not registered it leads to the triangle path, which is safe; CUSTOM_CONCAVE_SHAPE_TYPE would lead to a
+/// cast to btSdfCollisionShape.
 constexpr int kPackingShapeType = FAST_CONCAVE_MESH_PROXYTYPE;
 
 struct PackingShape::Impl {
@@ -23,6 +23,8 @@ struct PackingShape::Impl {
   const SphereTree& sphereTree() const;
   /// Only if hasSurface(). In the packing's frame.
   const SurfaceTree& surfaceTree() const;
+  /// How far the spheres may end inside of the surface, for scale 1 [m].
+  btScalar recess() const;
   /// From the packing's frame to the world for a body at `body`: x_world = result(scale * x).
   btTransform toWorld(const btTransform& body) const;
 
@@ -40,6 +42,7 @@ struct PackingShape::Impl {
  private:
   Lazy<SphereTree> sphere_tree_;
   Lazy<SurfaceTree> surface_tree_;
+  Lazy<btScalar> recess_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -14,8 +14,8 @@ struct PrincipalFrame {
   btVector3 moments{0, 0, 0};  ///< principal moments for unit mass [m^2]
 };
 
-/// From packing.solid, or, if it has no volume (imported spheres), from the spheres at equal density. Axes that are
-/// principal already, to within 1e-5, are kept, so that a box or a torus does not turn.
+/// From packing.solid, or, if it has no volume (imported spheres), from the spheres at equal density. Axes
+/// that are principal already, to within 1e-5, are kept, so that a box or a torus does not turn.
 PrincipalFrame principalFrame(const Packing& packing);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

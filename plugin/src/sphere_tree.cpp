@@ -7,7 +7,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 SphereTree::SphereTree(const std::vector<Sphere>& spheres) {
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    btDbvtNode* leaf = tree_.insert(btDbvtVolume::FromCR(centre(spheres[i]), btScalar(spheres[i].radius)), nullptr);
+    btDbvtNode* leaf =
+        tree_.insert(btDbvtVolume::FromCR(centre(spheres[i]), btScalar(spheres[i].radius)), nullptr);
     leaf->dataAsInt = static_cast<int>(i);
   }
   tree_.optimizeTopDown();

@@ -12,8 +12,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bullet's own box tree over the spheres, in the packing's frame. Const members are safe to call from several threads at
-/// once.
+/// Bullet's own box tree over the spheres, in the packing's frame. Const members are safe to call from
+/// several threads at once.
 class SphereTree {
  public:
   explicit SphereTree(const std::vector<Sphere>& spheres);

@@ -14,18 +14,19 @@ constexpr std::size_t kMaxQuantizedTriangles = std::size_t(1) << 21;
 struct NearestHit : btTriangleRaycastCallback {
   NearestHit(const btVector3& from, const btVector3& to)
       : btTriangleRaycastCallback(from, to, kF_KeepUnflippedNormal) {}
-  btScalar reportHit(const btVector3& normal, btScalar fraction, int, int) override {
-    found = true;
-    nearest_normal = normal;
+  btScalar reportHit(const btVector3& normal, btScalar fraction, int, int index) override {
+    triangle = index;
+    face = normal;
     return fraction;
   }
-  bool found = false;
-  btVector3 nearest_normal{0, 0, 0};
+  int triangle = -1;
+  btVector3 face{0, 0, 0};
 };
 
 }  // namespace
 
-SurfaceTree::SurfaceTree(const Surface& surface) : triangles_(std::make_unique<btTriangleIndexVertexArray>()) {
+SurfaceTree::SurfaceTree(const Surface& surface)
+    : surface_(surface), triangles_(std::make_unique<btTriangleIndexVertexArray>()) {
   btIndexedMesh mesh;
   mesh.m_numTriangles = static_cast<int>(surface.triangles.size());
   mesh.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(surface.triangles.data());
@@ -41,16 +42,19 @@ SurfaceTree::SurfaceTree(const Surface& surface) : triangles_(std::make_unique<b
 
 SurfaceTree::~SurfaceTree() = default;
 
-void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const {
+void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3& min,
+                                   const btVector3& max) const {
   tree_->processAllTriangles(callback, min, max);
 }
 
 bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScalar length, Hit& hit) const {
   NearestHit nearest(from, from + direction * length);
   tree_->performRaycast(&nearest, nearest.m_from, nearest.m_to);
-  if (!nearest.found) return false;
+  if (nearest.triangle < 0) return false;
   hit.distance = nearest.m_hitFraction * length;
-  hit.normal = nearest.nearest_normal.normalized();
+  hit.face = nearest.face.normalized();
+  const SmoothNormals& normals = normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
+  hit.normal = normals.at(static_cast<std::size_t>(nearest.triangle), from + direction * hit.distance);
   return true;
 }
 

@@ -7,6 +7,8 @@
 
 #include "innersphere/bullet_precision.hpp"
 #include "innersphere/geometry.hpp"
+#include "lazy.hpp"
+#include "smooth_normals.hpp"
 
 class btBvhTriangleMeshShape;
 class btTriangleCallback;
@@ -15,8 +17,8 @@ class btTriangleIndexVertexArray;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bullet's own quantised tree over a Surface, in the surface's frame. Refers to the surface's arrays: they must stay.
-/// Const members are safe to call from several threads at once.
+/// Bullet's own quantised tree over a Surface, in the surface's frame. Refers to the surface's arrays: they
+/// must stay. Const members are safe to call from several threads at once.
 class SurfaceTree {
  public:
   explicit SurfaceTree(const Surface& surface);
@@ -27,12 +29,15 @@ class SurfaceTree {
   /// Where a ray meets the surface first.
   struct Hit {
     btScalar distance;  ///< [m] along the ray
-    btVector3 normal;   ///< unit, out of the solid
+    btVector3 face;     ///< unit normal of the triangle, out of the solid
+    btVector3 normal;   ///< the same, smoothed over curved surfaces
   };
   /// `direction` is a unit vector. False if nothing is met within `length`.
   bool cast(const btVector3& from, const btVector3& direction, btScalar length, Hit& hit) const;
 
  private:
+  const Surface& surface_;
+  Lazy<SmoothNormals> normals_;
   std::unique_ptr<btTriangleIndexVertexArray> triangles_;
   std::unique_ptr<btBvhTriangleMeshShape> tree_;
 };

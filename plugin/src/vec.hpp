@@ -16,7 +16,9 @@ btVector3 toBullet(const std::array<T, 3>& v) {
   return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
 }
 
-inline btVector3 centre(const Sphere& s) { return btVector3(s.x, s.y, s.z); }
+inline btVector3 centre(const Sphere& s) {
+  return btVector3(s.x, s.y, s.z);
+}
 
 inline std::array<float, 3> toFloats(const btVector3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};

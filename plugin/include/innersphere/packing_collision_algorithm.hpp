@@ -11,9 +11,10 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Makes a dispatcher collide PackingShape with every other shape.
 struct PackingCollisionAlgorithm {
-  /// Registers for contact and closest-point queries against every shape type but compound and soft body, which Bullet
-  /// itself walks down to their children. Call it after btGImpactCollisionAlgorithm::registerAlgorithm, which overwrites
-  /// every row of its own. Calling it again replaces the options. Throws Error: bad_argument, no_device.
+  /// Registers for contact and closest-point queries against every shape type but compound and soft body,
+  /// which Bullet itself walks down to their children. Call it after
+  /// btGImpactCollisionAlgorithm::registerAlgorithm, which overwrites every row of its own. Calling it again
+  /// replaces the options. Throws Error: bad_argument, no_device.
   static void registerAlgorithm(btCollisionDispatcher* dispatcher, const ContactOptions& options = {});
 };
 

@@ -12,14 +12,16 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A moving non-convex solid. Its frame is the solid's principal frame: origin at the centre of mass, axes along the
-/// principal axes of inertia, as Bullet's rigid bodies need it. principalTransform() places the packing, and so the
-/// user's graphics, in that frame. Register PackingCollisionAlgorithm with the dispatcher, or bodies fall through.
+/// A moving non-convex solid. Its frame is the solid's principal frame: origin at the centre of mass, axes
+/// along the principal axes of inertia, as Bullet's rigid bodies need it. principalTransform() places the
+/// packing, and so the user's graphics, in that frame. Register PackingCollisionAlgorithm with the
+/// dispatcher, or bodies fall through.
 class PackingShape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
-  /// Bodies of the same solid can share one shape, and shapes can share one model. Throws Error if `model` is null.
+  /// Bodies of the same solid can share one shape, and shapes can share one model. Throws Error if `model` is
+  /// null.
   explicit PackingShape(std::shared_ptr<const CollisionModel> model);
   ~PackingShape() override;
 
@@ -36,16 +38,18 @@ class PackingShape : public btConcaveShape {
   void getBoundingSphere(btVector3& centre, btScalar& radius) const override;
   btScalar getAngularMotionDisc() const override;
   btScalar getContactBreakingThreshold(btScalar factor) const override;
-  /// About the centre of mass; replaces the scaling before. Uniform and positive only: throws Error bad_argument otherwise.
+  /// About the centre of mass; replaces the scaling before. Uniform and positive only: throws Error
+  /// bad_argument otherwise.
   void setLocalScaling(const btVector3& scaling) override;
   const btVector3& getLocalScaling() const override;
   /// Exact moments of the solid for a homogeneous body of this mass [kg m^2].
   void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
   const char* getName() const override;
   // btConcaveShape
-  /// Triangles of the solid's surface near a box, for rays, sweeps, debug drawing and soft bodies. None if the packing has
-  /// no surface: such a body collides, but rays pass through it.
-  void processAllTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const override;
+  /// Triangles of the solid's surface near a box, for rays, sweeps, debug drawing and soft bodies. None if
+  /// the packing has no surface: such a body collides, but rays pass through it.
+  void processAllTriangles(btTriangleCallback* callback, const btVector3& min,
+                           const btVector3& max) const override;
 
   struct Impl;  ///< private to the plug-in
   const Impl& impl() const { return *impl_; }

@@ -19,7 +19,8 @@ class ConvexSurface : public DistanceSurface {
     results.normal.setZero();
     const btScalar distance =
         btGjkEpaSolver2::SignedDistance(p, 0, &convex_, btTransform::getIdentity(), results);
-    if (!(btFabs(distance) < BT_LARGE_FLOAT) || !isFinite(results.normal) || results.normal.fuzzyZero()) return false;
+    if (!(btFabs(distance) < BT_LARGE_FLOAT) || !isFinite(results.normal) || results.normal.fuzzyZero())
+      return false;
     nearest.distance = distance;
     nearest.normal = results.normal.normalized();
     return true;

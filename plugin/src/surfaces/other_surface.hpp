@@ -17,16 +17,19 @@ struct Touch {
   btVector3 normal{0, 0, 0};  ///< unit, out of the other solid at the nearest point; axes of the world
 };
 
-/// One implementation for each kind of shape. An object belongs to one pair of bodies and may remember things of it.
+/// One implementation for each kind of shape. An object belongs to one pair of bodies and may remember things
+/// of it.
 class OtherSurface {
  public:
   virtual ~OtherSurface() = default;
 
-  /// Appends the spheres of `body` whose centre is closer than their reach (body.reach) to this shape placed at `world`.
+  /// Appends the spheres of `body` whose centre is closer than their reach (body.reach) to this shape placed
+  /// at `world`.
   virtual void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) = 0;
 };
 
-/// The surface of `shape`, or null for a shape without one (fluids, invalid types). The shape must outlive it.
+/// The surface of `shape`, or null for a shape without one (fluids, invalid types). The shape must outlive
+/// it.
 std::unique_ptr<OtherSurface> makeOtherSurface(const btCollisionShape& shape);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -8,8 +8,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Signed distance of a point at `offset` from the nearest point of the core, which is thickened by `radius`; `normal` is
-/// the outward direction, `fallback` where the point lies on the core.
+/// Signed distance of a point at `offset` from the nearest point of the core, which is thickened by `radius`;
+/// `normal` is the outward direction, `fallback` where the point lies on the core.
 inline btScalar thickenedDistance(const btVector3& offset, btScalar radius, const btVector3& fallback,
                                   btVector3& normal) {
   const btScalar length = offset.length();

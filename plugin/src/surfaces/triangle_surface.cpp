@@ -1,10 +1,10 @@
 // Triangle meshes, heightfields and every other shape that answers processAllTriangles.
 //
-// A sphere can touch several triangles at once (floor and wall), so every local minimum of the distance counts: a nearest
-// point in the interior of a triangle, or on an edge that two triangles agree on; other edge points belong to a triangle
-// whose neighbour is nearer. Meshes are two-sided, as everywhere in Bullet: which side is outside is decided by where the
-// body's spheres are when they first touch, and kept while the pair lives, so that small spheres which have gone through
-// are pushed back the right way.
+// A sphere can touch several triangles at once (floor and wall), so every local minimum of the distance
+// counts: a nearest point in the interior of a triangle, or on an edge that two triangles agree on; other
+// edge points belong to a triangle whose neighbour is nearer. Meshes are two-sided, as everywhere in Bullet:
+// which side is outside is decided by where the body's spheres are when they first touch, and kept while the
+// pair lives, so that small spheres which have gone through are pushed back the right way.
 #include <algorithm>
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -24,10 +24,11 @@ constexpr btScalar kSameDirection = btScalar(0.866);  // cos 30 degrees
 /// Nearest point of one triangle to the centre of one sphere, lengths in the packing's frame.
 struct Candidate {
   std::uint32_t sphere;
-  bool interior;        ///< not on an edge or corner
+  bool interior;  ///< not on an edge or corner
   btScalar distance;
-  btScalar height;      ///< signed distance from the triangle's plane
-  btVector3 direction;  ///< unit, from the nearest point to the centre; the triangle's normal if they coincide
+  btScalar height;  ///< signed distance from the triangle's plane
+  btVector3
+      direction;  ///< unit, from the nearest point to the centre; the triangle's normal if they coincide
   btVector3 point;
 };
 
@@ -70,8 +71,8 @@ class Collector : public btTriangleCallback {
     if (!(distance < reach)) return;
     const btUsageBitfield& used = result.m_usedVertices;
     const bool interior = used.usedVertexA && used.usedVertexB && used.usedVertexC;
-    Candidate candidate{static_cast<std::uint32_t>(i), interior, distance, normal.dot(c - v[0]), normal,
-                        result.m_closestPointOnSimplex};
+    Candidate candidate{static_cast<std::uint32_t>(i), interior, distance,
+                        normal.dot(c - v[0]),          normal,   result.m_closestPointOnSimplex};
     if (distance > SIMD_EPSILON * reach) {
       candidate.direction = offset / distance;
     } else {
@@ -101,7 +102,8 @@ class TriangleSurface : public OtherSurface {
     if (side_ == 0) side_ = sideOf(body, candidates);
 
     for (auto first = candidates.begin(); first != candidates.end();) {
-      auto last = std::find_if(first, candidates.end(), [&](const Candidate& c) { return c.sphere != first->sphere; });
+      auto last = std::find_if(first, candidates.end(),
+                               [&](const Candidate& c) { return c.sphere != first->sphere; });
       resolve(body, &*first, &*first + (last - first), touches);
       first = last;
     }
@@ -121,7 +123,8 @@ class TriangleSurface : public OtherSurface {
     mesh_.processAllTriangles(&collector, min, max);
   }
 
-  /// +1 if the body is on the side that the triangles' winding calls outside, -1 on the other. Large spheres decide.
+  /// +1 if the body is on the side that the triangles' winding calls outside, -1 on the other. Large spheres
+  /// decide.
   static int sideOf(const PackingBody& body, const std::vector<Candidate>& candidates) {
     double sum = 0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -137,9 +140,8 @@ class TriangleSurface : public OtherSurface {
                std::vector<Touch>& touches) const {
     const std::size_t start = touches.size();
     const auto known = [&](const btVector3& normal) {
-      return std::any_of(touches.begin() + static_cast<std::ptrdiff_t>(start), touches.end(), [&](const Touch& t) {
-        return btFabs(t.normal.dot(normal)) > kSameDirection;
-      });
+      return std::any_of(touches.begin() + static_cast<std::ptrdiff_t>(start), touches.end(),
+                         [&](const Touch& t) { return btFabs(t.normal.dot(normal)) > kSameDirection; });
     };
     for (const Candidate* c = first; c != last; ++c) {
       const btVector3 direction = body.world.getBasis() * c->direction;
@@ -158,15 +160,18 @@ class TriangleSurface : public OtherSurface {
     int triangles;
     btScalar height;
   };
-  /// The triangles that share the nearest point of `c`. Of their heights, the largest in size tells inside from outside.
-  static Corner cornerAt(const Candidate* c, const Candidate* first, const Candidate* last, btScalar tolerance) {
+  /// The triangles that share the nearest point of `c`. Of their heights, the largest in size tells inside
+  /// from outside.
+  static Corner cornerAt(const Candidate* c, const Candidate* first, const Candidate* last,
+                         btScalar tolerance) {
     Corner corner{1, c->height};
     const auto join = [&](const Candidate& other) {
       if (other.point.distance2(c->point) > tolerance * tolerance) return;
       ++corner.triangles;
       if (btFabs(other.height) > btFabs(corner.height)) corner.height = other.height;
     };
-    for (const Candidate* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o) join(*(o - 1));
+    for (const Candidate* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o)
+      join(*(o - 1));
     for (const Candidate* o = c + 1; o != last && o->distance - c->distance <= tolerance; ++o) join(*o);
     return corner;
   }

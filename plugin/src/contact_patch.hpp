@@ -1,0 +1,35 @@
+// What the narrow phase hands to Bullet.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <LinearMath/btVector3.h>
+
+#include "innersphere/bullet_precision.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Bullet keeps four points in a manifold.
+constexpr int kPatchPoints = 4;
+
+/// A point of contact. Axes of the world, positions relative to the origin of A's packing.
+struct ContactPoint {
+  btVector3 on_b{0, 0, 0};    ///< on the surface of B [m]
+  btVector3 normal{0, 0, 0};  ///< unit, from A to B
+  btScalar depth = 0;         ///< [m], negative where the bodies do not touch yet
+  std::uint64_t id = 0;       ///< of the sphere it was measured at, the same from step to step
+};
+
+/// A part of the overlap region with one direction of contact: one manifold.
+struct ContactPatch {
+  btVector3 normal{0, 0, 0};  ///< unit, from A to B
+  btVector3 centre{0, 0, 0};
+  btScalar area = 0;  ///< [m^2]
+  int count = 0;
+  std::array<ContactPoint, kPatchPoints> points;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

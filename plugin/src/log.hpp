@@ -1,0 +1,13 @@
+// The plug-in side of the log callback.
+#pragma once
+
+#include "innersphere/log.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Hands a message to the user's callback.
+void log(const std::string& message);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,189 @@
+#include "manifold_set.hpp"
+
+#include <algorithm>
+
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Patches whose normals differ by more than about 45 degrees are not the same patch.
+constexpr btScalar kSamePatch = btScalar(0.7);
+
+using PointIndices = std::array<int, kPatchPoints>;
+
+struct NewPoint {
+  PointLaw law;
+  btVector3 normal{0, 0, 0};   ///< from A to B
+  btVector3 on_b{0, 0, 0};     ///< in the world
+  btVector3 local_a{0, 0, 0};  ///< the point on A, in the frame of A's object
+};
+
+/// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.
+PointIndices matchPoints(const btPersistentManifold& manifold, const NewPoint* points, int count) {
+  PointIndices match;
+  match.fill(-1);
+  std::array<bool, kPatchPoints> taken{};
+  const int old_count = manifold.getNumContacts();
+  for (int round = 0; round < std::min(count, old_count); ++round) {
+    int best_new = -1, best_old = -1;
+    btScalar best = BT_LARGE_FLOAT;
+    for (int i = 0; i < count; ++i) {
+      if (match[i] >= 0) continue;
+      for (int j = 0; j < old_count; ++j) {
+        const btScalar distance = manifold.getContactPoint(j).m_localPointA.distance2(points[i].local_a);
+        if (!taken[j] && distance < best) {
+          best = distance;
+          best_new = i;
+          best_old = j;
+        }
+      }
+    }
+    if (best_new < 0) break;
+    match[best_new] = best_old;
+    taken[best_old] = true;
+  }
+  return match;
+}
+
+void removeUnmatched(btPersistentManifold& manifold, PointIndices& match) {
+  for (int j = manifold.getNumContacts() - 1; j >= 0; --j) {
+    if (std::find(match.begin(), match.end(), j) != match.end()) continue;
+    const int last = manifold.getNumContacts() - 1;
+    manifold.removeContactPoint(j);  // moves the last point to j
+    std::replace(match.begin(), match.end(), last, j);
+  }
+}
+
+btManifoldPoint* pointAt(btPersistentManifold& manifold, const btVector3& on_b) {
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    if (manifold.getContactPoint(i).m_positionWorldOnB == on_b) return &manifold.getContactPoint(i);
+  }
+  return nullptr;
+}
+
+/// Unless the user has set a law of their own, through the bodies or in a material callback.
+void setSpring(btManifoldPoint& point, const PointLaw& law) {
+  constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
+                            BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+  if (!law.spring || (point.m_contactPointFlags & kUsersOwn) != 0) return;
+  point.m_combinedContactStiffness1 = law.stiffness;
+  point.m_combinedContactDamping1 = law.damping;
+  point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+}
+
+/// The points of one patch into the manifold that `result` holds.
+void writePatch(const btCollisionObject* a, const btVector3& origin, const ContactPatch& patch,
+                std::size_t index, const ContactLaw& law, btManifoldResult* result) {
+  btPersistentManifold& manifold = *result->getPersistentManifold();
+  std::array<NewPoint, kPatchPoints> points;
+  int count = 0;
+  for (int i = 0; i < patch.count; ++i) {
+    NewPoint& point = points[count];
+    point.law = law.point(index, patch.points[i].depth);
+    if (-point.law.depth > manifold.getContactBreakingThreshold()) continue;
+    point.normal = patch.points[i].normal;
+    point.on_b = origin + patch.points[i].on_b;
+    point.local_a = a->getWorldTransform().invXform(point.on_b + point.normal * point.law.depth);
+    ++count;
+  }
+  PointIndices match = matchPoints(manifold, points.data(), count);
+  removeUnmatched(manifold, match);
+  for (int i = 0; i < count; ++i) {
+    const NewPoint& point = points[i];
+    // Bullet keeps impulses and lifetime of the cached point nearest to the new one: move the match there
+    // first.
+    btVector3 before(0, 0, 0);
+    if (match[i] >= 0) {
+      btVector3& cached = manifold.getContactPoint(match[i]).m_localPointA;
+      before = cached;
+      cached = point.local_a;
+    }
+    result->addContactPoint(-point.normal, point.on_b, -point.law.depth);
+    if (btManifoldPoint* added = pointAt(manifold, point.on_b)) {
+      setSpring(*added, point.law);
+    } else if (match[i] >= 0) {
+      manifold.getContactPoint(match[i]).m_localPointA = before;  // kept by a friction anchor
+    }
+  }
+  result->refreshContactPoints();
+}
+
+}  // namespace
+
+ManifoldSet::~ManifoldSet() {
+  for (const Entry& entry : entries_) dispatcher_->releaseManifold(entry.manifold);
+}
+
+void ManifoldSet::report(const btCollisionObject* a, const btCollisionObject* b, const btVector3& origin,
+                         const std::vector<ContactPatch>& patches, btManifoldResult* result) {
+  // The result looks up the order of the bodies in its manifold.
+  btPersistentManifold order(a, b, 0, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  btPersistentManifold* const before = result->getPersistentManifold();
+  result->setPersistentManifold(&order);
+  for (const ContactPatch& patch : patches) {
+    for (int i = 0; i < patch.count; ++i) {
+      const ContactPoint& point = patch.points[i];
+      result->addContactPoint(-point.normal, origin + point.on_b, -point.depth);
+    }
+  }
+  result->setPersistentManifold(before);
+}
+
+void ManifoldSet::append(btManifoldArray& manifolds) const {
+  for (const Entry& entry : entries_) manifolds.push_back(entry.manifold);
+}
+
+void ManifoldSet::assign(const btTransform& a, const std::vector<ContactPatch>& patches) {
+  owner_.assign(entries_.size(), -1);
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const ContactPatch& patch = patches[p];
+    const btVector3 normal = patch.normal * a.getBasis();
+    const btVector3 centre = patch.centre * a.getBasis();
+    const btScalar extent = btSqrt(patch.area) + btScalar(1e-30);
+    int best = -1;
+    btScalar best_cost = BT_LARGE_FLOAT;
+    for (std::size_t e = 0; e < entries_.size(); ++e) {
+      const btScalar cosine = normal.dot(entries_[e].normal);
+      const btScalar cost = 1 - cosine + entries_[e].centre.distance(centre) / extent;
+      if (owner_[e] < 0 && cosine > kSamePatch && cost < best_cost) {
+        best_cost = cost;
+        best = static_cast<int>(e);
+      }
+    }
+    if (best >= 0) owner_[best] = static_cast<int>(p);
+  }
+}
+
+void ManifoldSet::write(const btCollisionObject* a, const btCollisionObject* b, const btVector3& origin,
+                        const std::vector<ContactPatch>& patches, const ContactLaw& law,
+                        btManifoldResult* result) {
+  assign(a->getWorldTransform(), patches);
+  // Patches that match no manifold take an idle one, or a new one.
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    if (std::find(owner_.begin(), owner_.end(), static_cast<int>(p)) != owner_.end()) continue;
+    auto idle = std::find(owner_.begin(), owner_.end(), -1);
+    if (idle == owner_.end()) {
+      entries_.push_back({dispatcher_->getNewManifold(a, b), btVector3(0, 0, 0), btVector3(0, 0, 0)});
+      idle = owner_.insert(owner_.end(), -1);
+    }
+    *idle = static_cast<int>(p);
+  }
+  btPersistentManifold* const before = result->getPersistentManifold();
+  for (std::size_t e = 0; e < entries_.size(); ++e) {
+    if (owner_[e] < 0) {
+      while (entries_[e].manifold->getNumContacts() > 0) entries_[e].manifold->removeContactPoint(0);
+      continue;
+    }
+    const ContactPatch& patch = patches[owner_[e]];
+    entries_[e].normal = patch.normal * a->getWorldTransform().getBasis();
+    entries_[e].centre = patch.centre * a->getWorldTransform().getBasis();
+    result->setPersistentManifold(entries_[e].manifold);
+    writePatch(a, origin, patch, static_cast<std::size_t>(owner_[e]), law, result);
+  }
+  result->setPersistentManifold(before);
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

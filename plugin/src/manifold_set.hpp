@@ -1,0 +1,49 @@
+// The persistent manifolds of one pair of bodies.
+#pragma once
+
+#include <vector>
+
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
+#include "contact_law.hpp"
+#include "contact_patch.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// One manifold a patch. A patch keeps its manifold from step to step, and a point its place in it, so that
+/// Bullet's warm starting works; points that were not found again are removed. Manifolds are given back only
+/// at the end, because btCollisionDispatcherMt cannot release a manifold in the dispatch that made it.
+class ManifoldSet {
+ public:
+  explicit ManifoldSet(btDispatcher* dispatcher) : dispatcher_(dispatcher) {}
+  ~ManifoldSet();
+  ManifoldSet(const ManifoldSet&) = delete;
+  ManifoldSet& operator=(const ManifoldSet&) = delete;
+
+  /// Replaces the contacts between `a` and `b`. `origin`: of A's packing in the world.
+  void write(const btCollisionObject* a, const btCollisionObject* b, const btVector3& origin,
+             const std::vector<ContactPatch>& patches, const ContactLaw& law, btManifoldResult* result);
+
+  /// Only tells `result` of them, as closest-point queries want it: keeps nothing and makes no manifold.
+  static void report(const btCollisionObject* a, const btCollisionObject* b, const btVector3& origin,
+                     const std::vector<ContactPatch>& patches, btManifoldResult* result);
+
+  void append(btManifoldArray& manifolds) const;
+
+ private:
+  struct Entry {
+    btPersistentManifold* manifold;
+    btVector3 normal;  ///< of its last patch, in the frame of a
+    btVector3 centre;
+  };
+  void assign(const btTransform& to_a, const std::vector<ContactPatch>& patches);
+
+  btDispatcher* dispatcher_;
+  std::vector<Entry> entries_;
+  std::vector<int> owner_;  ///< for each entry, the patch it holds now, or -1
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,22 @@
+#include "measure.hpp"
+
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include "packing_shape_impl.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+Measure::Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b)
+    : spacing(btMin(a.getContactBreakingThreshold(gContactBreakingThreshold),
+                    b.getContactBreakingThreshold(gContactBreakingThreshold))) {
+  const PackingShape* packing_b = PackingShape::from(&b);
+  on_surfaces = options.stiffness == 0 && a.impl().hasSurface() &&
+                (packing_b == nullptr || packing_b->impl().hasSurface());
+  if (!on_surfaces) return;
+  slack_a = spacing + a.impl().recess() * a.getLocalScaling().x();
+  if (packing_b != nullptr) slack_b = packing_b->impl().recess() * b.getLocalScaling().x();
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

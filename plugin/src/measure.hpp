@@ -1,0 +1,22 @@
+// How a pair measures its depth of contact.
+#pragma once
+
+#include "innersphere/contact_options.hpp"
+#include "innersphere/packing_shape.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+struct Measure {
+  Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b);
+
+  /// On the surfaces of the solids; else volume over area, which a given stiffness (force per volume) asks
+  /// for, and a packing without a surface.
+  bool on_surfaces = false;
+  btScalar spacing;      ///< of points, and the largest separation of a contact [m]
+  btScalar slack_a = 0;  ///< how far beyond their radii spheres look for contacts [m]
+  btScalar slack_b = 0;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,143 @@
+#include "overlap_batch.hpp"
+
+#include <algorithm>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+
+#include "innersphere/error.hpp"
+#include "measure.hpp"
+#include "patch_builder.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+bool same(const btVector3& a, const btVector3& b) {
+  return a.x() == b.x() && a.y() == b.y() && a.z() == b.z();
+}
+
+bool same(const btTransform& a, const btTransform& b) {
+  return same(a.getOrigin(), b.getOrigin()) && same(a.getBasis()[0], b.getBasis()[0]) &&
+         same(a.getBasis()[1], b.getBasis()[1]) && same(a.getBasis()[2], b.getBasis()[2]);
+}
+
+}  // namespace
+
+PackingSide::PackingSide(const btCollisionObjectWrapper& wrapper, const PackingShape& packing_shape)
+    : object(wrapper.getCollisionObject()),
+      shape(&packing_shape),
+      transform(wrapper.getWorldTransform()),
+      scaling(packing_shape.getLocalScaling()),
+      margin(packing_shape.getMargin()),
+      child(wrapper.m_parent != nullptr) {}
+
+bool PackingSide::operator==(const PackingSide& other) const {
+  return object == other.object && shape == other.shape && margin == other.margin &&
+         same(scaling, other.scaling) && same(transform, other.transform);
+}
+
+bool PackingSide::refresh() {
+  if (child || object->getCollisionShape() != shape) return false;
+  transform = object->getWorldTransform();
+  scaling = shape->getLocalScaling();
+  margin = shape->getMargin();
+  return isFinite(transform);
+}
+
+void OverlapBatch::setOptions(const ContactOptions& options) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (options.backend != options_.backend) context_.reset();
+  options_ = options;
+  for (PackingContact* contact : live_) contact->valid = false;
+}
+
+void OverlapBatch::add(PackingContact* contact) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  live_.push_back(contact);
+}
+
+void OverlapBatch::remove(PackingContact* contact) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  live_.erase(std::remove(live_.begin(), live_.end(), contact), live_.end());
+}
+
+const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, const PackingSide& a,
+                                                      const PackingSide& b) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!contact.valid || !(contact.a == a) || !(contact.b == b)) {
+    contact.a = a;
+    contact.b = b;
+    run(contact);
+  }
+  contact.wanted = true;
+  return contact.patches;
+}
+
+void OverlapBatch::run(PackingContact& asked) {
+  stale_.assign(1, &asked);
+  for (PackingContact* other : live_) {
+    if (other == &asked || !other->wanted) continue;
+    other->wanted = false;
+    if (!other->a.object->isActive() && !other->b.object->isActive()) continue;
+    PackingSide a = other->a, b = other->b;
+    if (!a.refresh() || !b.refresh()) continue;
+    if (other->valid && other->a == a && other->b == b) continue;
+    other->a = a;
+    other->b = b;
+    stale_.push_back(other);
+  }
+  queries_.clear();
+  for (PackingContact* contact : stale_) {
+    contact->valid = false;
+    queries_.push_back(makeQuery(*contact));
+  }
+  if (!context_) context_ = std::make_unique<QueryContext>(QueryContextOptions{options_.backend, 0});
+  const QueryOptions options{Want::contacts, options_.estimator};
+  try {
+    context_->run(queries_.data(), queries_.size(), options, result_);
+  } catch (const Error&) {
+    // Another pair may be at fault; it will hear of it when it is asked for.
+    if (stale_.size() == 1) throw;
+    stale_.resize(1);
+    context_->run(queries_.data(), 1, options, result_);
+  }
+  for (std::size_t i = 0; i < stale_.size(); ++i) takeResult(i, *stale_[i]);
+}
+
+PairQuery OverlapBatch::makeQuery(const PackingContact& contact) const {
+  const Measure measure(options_, *contact.a.shape, *contact.b.shape);
+  PairQuery query;
+  query.a = &contact.a.shape->model();
+  query.b = &contact.b.shape->model();
+  query.placement_a = PackingBody(*contact.a.shape, contact.a.transform, options_.estimator, 0).placement();
+  query.placement_b = PackingBody(*contact.b.shape, contact.b.transform, options_.estimator, 0).placement();
+  query.margin = measure.slack_a + measure.slack_b + contact.a.margin + contact.b.margin;
+  return query;
+}
+
+void OverlapBatch::takeResult(std::size_t index, PackingContact& contact) {
+  // Every lens belongs to a sphere of A and to one of B: both lists together have all of it twice.
+  contacts_.clear();
+  const auto append = [&](const QueryResult::Ranges<SphereContact>& ranges) {
+    for (std::size_t k = ranges.first[index]; k < ranges.first[index + 1]; ++k) {
+      SphereContact half = ranges.items[k];
+      half.volume /= 2;
+      for (float& component : half.area) component /= 2;
+      contacts_.push_back(half);
+    }
+  };
+  append(result_.contacts_a);
+  const std::size_t count_a = contacts_.size();
+  append(result_.contacts_b);
+
+  const Measure measure(options_, *contact.a.shape, *contact.b.shape);
+  const PackingBody a(*contact.a.shape, contact.a.transform, options_.estimator, measure.slack_a);
+  const PackingBody b(*contact.b.shape, contact.b.transform, options_.estimator, measure.slack_b);
+  const PackingGauge gauge(a, b, contacts_, count_a);
+  buildContactPatches(contacts_, measure.on_surfaces ? &gauge : nullptr, measure.spacing,
+                      contact.a.transform.getBasis(), contact.patches);
+  contact.valid = true;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,78 @@
+// All pairs of packings of one dispatcher, queried together.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include "contact_patch.hpp"
+#include "innersphere/contact_options.hpp"
+#include "innersphere/query.hpp"
+#include "packing_body.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// One side of a pair of packings, as last seen.
+struct PackingSide {
+  PackingSide(const btCollisionObjectWrapper& wrapper, const PackingShape& packing_shape);
+
+  bool operator==(const PackingSide& other) const;
+  /// To where the body is now. False if that cannot be known: a child of a compound, a changed shape, a body
+  /// at NaN.
+  bool refresh();
+
+  const btCollisionObject* object;
+  const PackingShape* shape;
+  btTransform transform;
+  btVector3 scaling;
+  btScalar margin;
+  bool child;  ///< of a compound shape
+};
+
+/// The contact of two packings, kept until one of them moves.
+struct PackingContact {
+  PackingContact(const PackingSide& first, const PackingSide& second) : a(first), b(second) {}
+
+  PackingSide a;
+  PackingSide b;
+  std::vector<ContactPatch> patches;
+  bool valid = false;   ///< patches belong to the transforms in a and b
+  bool wanted = false;  ///< asked for since the last batch
+};
+
+/// Bullet asks for one pair at a time. The first one that is out of date makes one query for all pairs that
+/// were asked for lately and have moved, so that a step costs about one launch. Safe to use from several
+/// threads at once.
+class OverlapBatch {
+ public:
+  /// Error no_device if the options ask for CUDA by name and there is none.
+  void setOptions(const ContactOptions& options);
+
+  void add(PackingContact* contact);
+  void remove(PackingContact* contact);
+
+  /// Brings `contact` up to date for two sides and returns its patches. It need not have been added; then it
+  /// is queried alone. Throws Error from the query.
+  const std::vector<ContactPatch>& update(PackingContact& contact, const PackingSide& a,
+                                          const PackingSide& b);
+
+ private:
+  void run(PackingContact& asked);
+  PairQuery makeQuery(const PackingContact& contact) const;
+  void takeResult(std::size_t index, PackingContact& contact);
+
+  std::mutex mutex_;
+  ContactOptions options_;
+  std::unique_ptr<QueryContext> context_;  ///< made by the first query
+  std::vector<PackingContact*> live_;
+  std::vector<PackingContact*> stale_;
+  std::vector<PairQuery> queries_;
+  QueryResult result_;
+  std::vector<SphereContact> contacts_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,123 @@
+#include "pair_algorithm.hpp"
+
+#include <optional>
+#include <utility>
+
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
+#include "innersphere/error.hpp"
+#include "log.hpp"
+#include "manifold_set.hpp"
+#include "surface_contact.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+using Wrapper = btCollisionObjectWrapper;
+
+btScalar sizeOf(const PackingShape& packing, const btCollisionShape& other) {
+  const btScalar size = packing.getAngularMotionDisc();
+  return other.isInfinite() ? size : btMin(size, other.getAngularMotionDisc());
+}
+
+}  // namespace
+
+struct PairAlgorithm::State {
+  State(btDispatcher* dispatcher, std::shared_ptr<Registration> owner, bool closest_query)
+      : registration(std::move(owner)), closest(closest_query), manifolds(dispatcher) {}
+  ~State() { forget(); }
+
+  /// Contact of A, a packing, with B.
+  const std::vector<ContactPatch>& update(const ContactOptions& options, const Wrapper& a, const Wrapper& b) {
+    const PackingShape& packing = *PackingShape::from(a.getCollisionShape());
+    if (a.getCollisionShape() != shape_a || b.getCollisionShape() != shape_b) {
+      forget();
+      shape_a = a.getCollisionShape();
+      shape_b = b.getCollisionShape();
+    }
+    if (const PackingShape* other = PackingShape::from(shape_b)) {
+      const PackingSide side_a(a, packing), side_b(b, *other);
+      if (!packings) {
+        packings.emplace(side_a, side_b);
+        if (!closest) registration->batch().add(&*packings);
+      }
+      return registration->batch().update(*packings, side_a, side_b);
+    }
+    if (!surface) surface.emplace(packing, *shape_b);
+    return surface->update(options, a.getWorldTransform(), b.getWorldTransform());
+  }
+
+  void forget() {
+    if (packings && !closest) registration->batch().remove(&*packings);
+    packings.reset();
+    surface.reset();
+  }
+
+  /// Once for each pair: a body that is lost stays lost.
+  void report(const std::string& message) {
+    if (!reported) log(message);
+    reported = true;
+  }
+
+  std::shared_ptr<Registration> registration;
+  const bool closest;
+  bool reported = false;
+  const btCollisionShape* shape_a = nullptr;
+  const btCollisionShape* shape_b = nullptr;
+  std::optional<PackingContact> packings;
+  std::optional<SurfaceContact> surface;
+  ManifoldSet manifolds;
+};
+
+PairAlgorithm::PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
+                             std::shared_ptr<Registration> registration, bool closest)
+    : btCollisionAlgorithm(info),
+      state_(std::make_unique<State>(m_dispatcher, std::move(registration), closest)) {}
+
+PairAlgorithm::~PairAlgorithm() = default;
+
+void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
+                                     const btDispatcherInfo& dispatch, btManifoldResult* result) {
+  const Wrapper* a = body0;
+  const Wrapper* b = body1;
+  if (PackingShape::from(a->getCollisionShape()) == nullptr) std::swap(a, b);
+  const PackingShape* packing = PackingShape::from(a->getCollisionShape());
+  if (packing == nullptr) return;  // the user has given both bodies another shape
+
+  static const std::vector<ContactPatch> kNone;
+  const std::vector<ContactPatch>* patches = &kNone;
+  const ContactOptions options = state_->registration->options();
+  if (!isFinite(a->getWorldTransform()) || !isFinite(b->getWorldTransform())) {
+    state_->report("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
+  } else {
+    try {
+      patches = &state_->update(options, *a, *b);
+    } catch (const Error& error) {
+      state_->report(std::string("Contacts of a pair of bodies are skipped: ") + error.what());
+    }
+  }
+  const btCollisionObject& object_a = *a->getCollisionObject();
+  const btCollisionObject& object_b = *b->getCollisionObject();
+  ContactLaw law(options, reducedMass(object_a, object_b), dispatch.m_timeStep,
+                 sizeOf(*packing, *b->getCollisionShape()));
+  law.weigh(*patches);
+  const btVector3 origin = packing->impl().toWorld(a->getWorldTransform()).getOrigin();
+  if (state_->closest) {
+    state_->manifolds.report(&object_a, &object_b, origin, *patches, result);
+  } else {
+    state_->manifolds.write(&object_a, &object_b, origin, *patches, law, result);
+  }
+}
+
+btScalar PairAlgorithm::calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                              btManifoldResult*) {
+  return 1;
+}
+
+void PairAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
+  state_->manifolds.append(manifolds);
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,36 @@
+// Bullet's collision algorithm for a pair with a packing in it.
+#pragma once
+
+#include <memory>
+
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+
+#include "registration.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+class PairAlgorithm : public btCollisionAlgorithm {
+ public:
+  /// `closest`: answers one closest-point query, without touching the dispatcher's manifolds.
+  PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, std::shared_ptr<Registration> registration,
+                bool closest);
+  ~PairAlgorithm() override;
+
+  void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                        const btDispatcherInfo& dispatch, btManifoldResult* result) override;
+  btScalar calculateTimeOfImpact(btCollisionObject* body0, btCollisionObject* body1,
+                                 const btDispatcherInfo& dispatch, btManifoldResult* result) override;
+  void getAllContactManifolds(btManifoldArray& manifolds) override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Bullet allocates algorithms from a pool whose elements have a fixed size and does not check in release
+/// builds.
+static_assert(sizeof(PairAlgorithm) <= 128);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

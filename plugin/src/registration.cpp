@@ -1,0 +1,65 @@
+#include "registration.hpp"
+
+#include <map>
+#include <new>
+
+#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include "pair_algorithm.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+btCollisionAlgorithm* CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                           const btCollisionObjectWrapper* body0,
+                                                           const btCollisionObjectWrapper* body1) {
+  const bool ours = PackingShape::from(body0->getCollisionShape()) != nullptr ||
+                    PackingShape::from(body1->getCollisionShape()) != nullptr;
+  if (!ours) return previous_->CreateCollisionAlgorithm(info, body0, body1);
+  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(PairAlgorithm));
+  return new (memory) PairAlgorithm(info, registration_.shared_from_this(), closest_);
+}
+
+std::shared_ptr<Registration> Registration::of(btCollisionDispatcher* dispatcher) {
+  static std::mutex mutex;
+  // Never destroyed: worlds in static storage may outlive it otherwise.
+  static auto& registrations = *new std::map<btCollisionDispatcher*, std::shared_ptr<Registration>>;
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::shared_ptr<Registration>& registration = registrations[dispatcher];
+  if (!registration) registration = std::make_shared<Registration>();
+  return registration;
+}
+
+void Registration::setOptions(const ContactOptions& options) {
+  batch_.setOptions(options);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  options_ = options;
+}
+
+ContactOptions Registration::options() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return options_;
+}
+
+void Registration::fillTables(btCollisionDispatcher* dispatcher) {
+  // Not the dispatcher's own table, which may hold our functions already, but what the configuration started
+  // it with.
+  btCollisionConfiguration* defaults = dispatcher->getCollisionConfiguration();
+  const auto fill = [&](int type0, int type1) {
+    create_funcs_.emplace_back(*this, defaults->getCollisionAlgorithmCreateFunc(type0, type1), false);
+    dispatcher->registerCollisionCreateFunc(type0, type1, &create_funcs_.back());
+    create_funcs_.emplace_back(*this, defaults->getClosestPointsAlgorithmCreateFunc(type0, type1), true);
+    dispatcher->registerClosestPointsCreateFunc(type0, type1, &create_funcs_.back());
+  };
+  const std::lock_guard<std::mutex> lock(mutex_);
+  create_funcs_.clear();
+  for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type) {
+    if (type == COMPOUND_SHAPE_PROXYTYPE || type == SOFTBODY_SHAPE_PROXYTYPE) continue;
+    fill(type, kPackingShapeType);
+    if (type != kPackingShapeType) fill(kPackingShapeType, type);
+  }
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

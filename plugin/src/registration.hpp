@@ -1,0 +1,56 @@
+// What one dispatcher was told, shared by its algorithms.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+
+#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+
+#include "innersphere/contact_options.hpp"
+#include "overlap_batch.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+class Registration;
+
+/// An entry of a dispatcher's table.
+class CreateFunc : public btCollisionAlgorithmCreateFunc {
+ public:
+  CreateFunc(Registration& registration, btCollisionAlgorithmCreateFunc* previous, bool closest)
+      : registration_(registration), previous_(previous), closest_(closest) {}
+  btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                 const btCollisionObjectWrapper* body0,
+                                                 const btCollisionObjectWrapper* body1) override;
+
+ private:
+  Registration& registration_;
+  btCollisionAlgorithmCreateFunc* previous_;  ///< for shapes that share our type number
+  bool closest_;
+};
+
+class Registration : public std::enable_shared_from_this<Registration> {
+ public:
+  /// The registration of a dispatcher, made on first use and kept to the end of the process: a dispatcher
+  /// does not tell when it goes, and its table refers to our functions until then.
+  static std::shared_ptr<Registration> of(btCollisionDispatcher* dispatcher);
+
+  void setOptions(const ContactOptions& options);
+  ContactOptions options() const;
+
+  /// Writes our functions into the dispatcher's tables.
+  void fillTables(btCollisionDispatcher* dispatcher);
+
+  OverlapBatch& batch() { return batch_; }
+
+ private:
+  mutable std::mutex mutex_;
+  ContactOptions options_;
+  OverlapBatch batch_;
+  std::deque<CreateFunc> create_funcs_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

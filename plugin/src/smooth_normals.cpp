@@ -1,0 +1,67 @@
+#include "smooth_normals.hpp"
+
+#include "vec.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+constexpr btScalar kSmooth = btScalar(0.866);  // cos 30 degrees
+
+/// Twice the area of a triangle along its normal.
+btVector3 areaVector(const Surface& surface, std::size_t t) {
+  const auto& triangle = surface.triangles[t];
+  const btVector3 a = toBullet(surface.vertices[triangle[0]]);
+  return (toBullet(surface.vertices[triangle[1]]) - a).cross(toBullet(surface.vertices[triangle[2]]) - a);
+}
+
+btVector3 unit(const btVector3& v) {
+  const btScalar length = v.length();
+  return length > 0 ? v / length : btVector3(0, 0, 0);
+}
+
+}  // namespace
+
+SmoothNormals::SmoothNormals(const Surface& surface)
+    : surface_(surface), corners_(3 * surface.triangles.size()) {
+  std::vector<std::vector<std::uint32_t>> around(surface.vertices.size());
+  std::vector<btVector3> faces(surface.triangles.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    faces[t] = unit(areaVector(surface, t));
+    for (std::uint32_t v : surface.triangles[t]) around[v].push_back(static_cast<std::uint32_t>(t));
+  }
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t v = surface.triangles[t][k];
+      btVector3 sum(0, 0, 0);
+      for (std::uint32_t other : around[v]) {
+        if (faces[t].dot(faces[other]) < kSmooth) continue;
+        // Weighted by the angle at the corner, so that it does not matter how faces are cut.
+        const auto& triangle = surface.triangles[other];
+        const int at = triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
+        const btVector3 p = toBullet(surface.vertices[v]);
+        const btVector3 e1 = unit(toBullet(surface.vertices[triangle[(at + 1) % 3]]) - p);
+        const btVector3 e2 = unit(toBullet(surface.vertices[triangle[(at + 2) % 3]]) - p);
+        sum += faces[other] * btAcos(btClamped(e1.dot(e2), btScalar(-1), btScalar(1)));
+      }
+      corners_[3 * t + k] = toFloats(unit(sum));
+    }
+  }
+}
+
+btVector3 SmoothNormals::at(std::size_t t, const btVector3& point) const {
+  const auto& triangle = surface_.triangles[t];
+  btVector3 v[3];
+  for (int k = 0; k < 3; ++k) v[k] = toBullet(surface_.vertices[triangle[k]]);
+  const btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
+  btVector3 sum(0, 0, 0);
+  for (int k = 0; k < 3; ++k) {
+    const btVector3& p = v[(k + 1) % 3];
+    const btVector3& q = v[(k + 2) % 3];
+    sum += toBullet(corners_[3 * t + k]) * (p - point).cross(q - point).dot(normal);
+  }
+  return unit(sum);
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

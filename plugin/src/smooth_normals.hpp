@@ -1,0 +1,30 @@
+// Normals of a curved surface that was cut into triangles.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <LinearMath/btVector3.h>
+
+#include "innersphere/bullet_precision.hpp"
+#include "innersphere/geometry.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Neighbouring triangles that meet at less than 30 degrees are taken as one curved surface: its normal turns
+/// smoothly across them. Sharper edges stay sharp, and flat faces exactly flat.
+class SmoothNormals {
+ public:
+  explicit SmoothNormals(const Surface& surface);
+
+  /// Unit normal at a point of a triangle.
+  btVector3 at(std::size_t triangle, const btVector3& point) const;
+
+ private:
+  const Surface& surface_;
+  std::vector<std::array<float, 3>> corners_;  ///< three normals a triangle
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

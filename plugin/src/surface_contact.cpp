@@ -1,0 +1,58 @@
+#include "surface_contact.hpp"
+
+#include <cmath>
+
+#include "measure.hpp"
+#include "patch_builder.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// The cap that a plane at signed distance `s` from its centre cuts from a ball. The ball is at `centre`, the
+/// plane's normal points to the side that is kept out.
+SphereContact cap(const Touch& touch, const btVector3& centre, double r) {
+  const double s = touch.distance;
+  SphereContact contact;
+  contact.sphere = touch.sphere;
+  if (s <= -r) {
+    contact.volume = static_cast<float>(4.0 / 3.0 * M_PI * r * r * r);
+    contact.centroid = toFloats(centre);
+    return contact;
+  }
+  const double h = r - s;
+  contact.volume = static_cast<float>(M_PI * h * h * (3 * r - h) / 3);
+  // The cap's centroid lies 3 (2r - h)^2 / (4 (3r - h)) from the centre of the ball.
+  const double offset = 3 * (2 * r - h) * (2 * r - h) / (4 * (3 * r - h));
+  contact.centroid = toFloats(centre - touch.normal * btScalar(offset));
+  contact.area = toFloats(touch.normal * btScalar(-M_PI * (r * r - s * s)));
+  return contact;
+}
+
+}  // namespace
+
+SurfaceContact::SurfaceContact(const PackingShape& packing, const btCollisionShape& other)
+    : packing_(packing), other_(other), surface_(makeOtherSurface(other)) {}
+
+const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& options,
+                                                        const btTransform& packing,
+                                                        const btTransform& other) {
+  static thread_local std::vector<Touch> touches;
+  static thread_local std::vector<SphereContact> contacts;
+  patches_.clear();
+  if (!surface_) return patches_;
+  const Measure measure(options, packing_, other_);
+  const PackingBody a(packing_, packing, options.estimator, measure.slack_a);
+  touches.clear();
+  surface_->touch(a, other, touches);
+  contacts.clear();
+  for (const Touch& touch : touches)
+    contacts.push_back(cap(touch, a.centreOf(touch.sphere), a.reach(touch.sphere)));
+  const SurfaceGauge gauge(a, touches);
+  buildContactPatches(contacts, measure.on_surfaces ? &gauge : nullptr, measure.spacing, packing.getBasis(),
+                      patches_);
+  return patches_;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

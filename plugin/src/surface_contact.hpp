@@ -1,0 +1,34 @@
+// The contact of a packing with a shape of another kind.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include "contact_patch.hpp"
+#include "innersphere/contact_options.hpp"
+#include "innersphere/packing_shape.hpp"
+#include "surfaces/other_surface.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+class SurfaceContact {
+ public:
+  /// `packing` and `other` are what the two wrappers of update() will hold.
+  SurfaceContact(const PackingShape& packing, const btCollisionShape& other);
+
+  /// A is the packing.
+  const std::vector<ContactPatch>& update(const ContactOptions& options, const btTransform& packing,
+                                          const btTransform& other);
+
+ private:
+  const PackingShape& packing_;
+  const btCollisionShape& other_;
+  std::unique_ptr<OtherSurface> surface_;  ///< null for shapes without one
+  std::vector<ContactPatch> patches_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
