@@ -33,32 +33,30 @@ CellSearch::Probe CellSearch::nearestBall(const Point& x, std::size_t begin, std
 }
 
 CellSearch::Probe CellSearch::probe(const Point& x, std::size_t begin, std::size_t end, double enough,
-                                    SignedHint& hint) const {
+                                    double negligible) {
   const Probe ball = nearestBall(x, begin, end);
   if (ball.value <= enough) return ball;
-  const double clearance = hint.clearance(x);
-  const bool inside = clearance > 0 ? hint.inside() : container_.contains(x);
-  if (inside) {
-    if (clearance >= ball.value) return ball;
-    const Container::Nearest surface = container_.closest(x, ball.value);
-    if (!(surface.distance < ball.value)) {
-      hint = {x, ball.value};
-      return ball;
+  if (const Soundings::Sounding* known = soundings_.around(x)) {
+    if (known->distance < 0) {
+      const Ball empty{known->at, -known->distance};
+      return {empty.distance(x), direction(empty.centre, x), empty};
     }
-    hint = {x, surface.distance};
-    return {surface.distance, direction(surface.point, x), {surface.point, 0}};
+    if (known->clearance(x) >= ball.value) return ball;
   }
-  // Around a point outside is a ball without solid; spheres keep off it as they keep off each other.
-  const double far = 8 * threshold_ + 4 * top_;
-  const Container::Nearest surface = container_.closest(x, far);
-  const double distance = std::min(surface.distance, far);
-  hint = {x, -distance};
-  return {-distance, direction(x, surface.point), {x, distance}};
+  const Container::Nearest surface = container_.closest(x, ball.value);
+  const double distance = std::min(surface.distance, ball.value);
+  const Probe wall{distance, direction(surface.point, x), {surface.point, 0}};
+  if (distance <= negligible) return wall;
+  int side = soundings_.side(x, distance);
+  if (side == 0) side = container_.contains(x) ? 1 : -1;
+  soundings_.add(x, side * distance);
+  if (side < 0) return {-distance, direction(x, surface.point), {x, distance}};
+  return distance == ball.value ? ball : wall;
 }
 
-bool CellSearch::climb(Point x, SignedHint hint) {
+bool CellSearch::climb(Point x) {
   const Point start = x;
-  Probe best = probe(x, 0, brick_balls_, 0, hint);
+  Probe best = probe(x, 0, brick_balls_, 0, 0);
   double half = 0.5 * best.value;
   while (half > 1e-4 * best.value) {
     // As long as the cube keeps to the ball about x, all of it lies inside the solid.
@@ -74,7 +72,7 @@ bool CellSearch::climb(Point x, SignedHint hint) {
     }
     for (int step = 0; step < 10 && program.optimum() > best.value * (1 + 1e-5); ++step) {
       const Point y = centre + program.argmax();
-      const Probe p = probe(y, 0, brick_balls_, best.value, hint);
+      const Probe p = probe(y, 0, brick_balls_, best.value, 0);
       if (p.value > best.value) {
         best = p;
         x = y;
@@ -90,8 +88,7 @@ bool CellSearch::climb(Point x, SignedHint hint) {
     }
   }
   const Point snapped = container_.snap(x);
-  hint = {x, best.value};
-  const Ball ball = container_.fit(snapped, probe(snapped, 0, brick_balls_, 0, hint).value);
+  const Ball ball = container_.fit(snapped, probe(snapped, 0, brick_balls_, 0, 0).value);
   if (!(ball.radius > 0)) return false;
   for (const Candidate& other : result_.candidates) {
     if (other.ball.distance(ball.centre) < ball.radius) return true;

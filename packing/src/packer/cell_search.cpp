@@ -90,22 +90,14 @@ void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end) {
 CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
   const Point centre = cell.centre();
   const double half = cell.side() / 2;
-  SignedHint hint{centre, cell.surface};
-  const auto remember = [&] {
-    const double left = hint.clearance(centre);
-    if (left > std::abs(cell.surface)) {
-      cell.surface = std::copysign(std::nextafter(static_cast<float>(left), 0.0f), hint.distance);
-    }
-  };
   MaxMin program(half);
   std::vector<Ball> cuts;
   // In a cell larger than the spheres sought the linear programme says little.
   const int most = half > threshold_ ? 1 : 12;
   Point x = centre;
   for (int k = 0; k < most; ++k) {
-    const Probe p = probe(x, begin, balls_.size(), threshold_, hint);
-    remember();
-    if (p.value > threshold_ && climb(x, hint)) return Verdict::found;
+    const Probe p = probe(x, begin, balls_.size(), threshold_, k == 0 ? threshold_ - kSqrt3 * half : 0);
+    if (p.value > threshold_ && climb(x)) return Verdict::found;
     program.add(p.value - p.gradient.dot(x - centre), p.gradient);
     cuts.push_back(p.ball);
     if (program.optimum() <= threshold_ || k == 0) {

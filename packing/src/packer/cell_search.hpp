@@ -7,7 +7,7 @@
 #include "packer/cells.hpp"
 #include "packer/container.hpp"
 #include "packer/max_min.hpp"
-#include "packer/signed_hint.hpp"
+#include "packer/soundings.hpp"
 #include "packer/sphere_grid.hpp"
 
 namespace innersphere {
@@ -53,16 +53,17 @@ class CellSearch {
   Verdict bound(Cell& cell, std::size_t begin);
   double provenBound(const MaxMin& program, std::span<const Ball> balls, const Point& centre,
                      double half) const;
-  bool climb(Point x, SignedHint hint);
+  bool climb(Point x);
 
   Probe nearestBall(const Point& x, std::size_t begin, std::size_t end) const;
-  Probe probe(const Point& x, std::size_t begin, std::size_t end, double enough, SignedHint& hint) const;
+  Probe probe(const Point& x, std::size_t begin, std::size_t end, double enough, double negligible);
 
   const Container& container_;
   const SphereGrid& placed_;
   const float top_;
   const float threshold_;
   Result result_;
+  Soundings soundings_;
   std::vector<Ball> balls_;  // a stack: those that matter in the brick, then those that matter in the cell
                              // being visited, ...
   std::size_t brick_balls_ = 0;

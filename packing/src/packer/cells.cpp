@@ -10,10 +10,6 @@ Cell Cell::child(int octant) const {
   Cell half = *this;
   for (int k = 0; k < 3; ++k) half.at[k] = 2 * at[k] + (octant >> k & 1);
   half.level = static_cast<std::uint8_t>(level + 1);
-  // The distance changes by no more than the way to the child's centre.
-  const double way = std::sqrt(3.0) / 4 * side();
-  const double left = std::abs(surface) - way * (1 + 1e-6);
-  half.surface = left > 0 ? std::copysign(std::nextafter(static_cast<float>(left), 0.0f), surface) : 0.0f;
   return half;
 }
 

@@ -14,15 +14,14 @@ namespace innersphere {
 struct Cell {
   std::array<std::uint32_t, 3> at{};  ///< integer position: the cube spans at * side to (at + 1) * side
   float upper = 1;                    ///< no larger sphere is centred in it
-  float surface = 0;  ///< distance from the centre to the surface, at least; negative outside, 0: unknown
-  std::uint8_t level = 0;  ///< side 2^-level
+  std::uint8_t level = 0;             ///< side 2^-level
 
   static constexpr int kDeepest = 30;
 
   double side() const { return std::ldexp(1.0, -level); }
   Point centre() const { return Point(at[0] + 0.5, at[1] + 0.5, at[2] + 0.5) * side(); }
 
-  /// One of the eight halves, with the bounds that it inherits.
+  /// One of the eight halves, with the bound that it inherits.
   Cell child(int octant) const;
 };
 

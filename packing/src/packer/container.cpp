@@ -29,6 +29,7 @@ Container::Container(const Solid& solid) : solid_(solid) {
   // A little room, so that no corner of the solid lies on the boundary of the unit cube.
   side_ = longest * (1 + 1e-9);
   for (int k = 0; k < 3; ++k) origin_[k] = 0.5 * (box.min[k] + box.max[k]) - 0.5 * side_;
+  coarseness_ = std::sqrt(3.0) / 2 * std::numeric_limits<float>::epsilon() * farthest / side_;
   margin_ = 16 * std::numeric_limits<double>::epsilon() * (1 + farthest / side_);
 }
 

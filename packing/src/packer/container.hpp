@@ -27,6 +27,9 @@ class Container {
   Vec3d toWorld(const Point& x) const;
   Point fromWorld(const Vec3d& p) const;
 
+  /// snap() moves a point by at most this.
+  double coarseness() const { return coarseness_; }
+
   /// The nearest point that a Sphere can have as its centre.
   Point snap(const Point& x) const;
 
@@ -42,6 +45,7 @@ class Container {
   Vec3d origin_{};
   double side_ = 1;
   double margin_ = 0;
+  double coarseness_ = 0;
 };
 
 }  // namespace innersphere

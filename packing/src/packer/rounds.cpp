@@ -2,7 +2,6 @@
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,17 +48,15 @@ std::vector<std::size_t> sortIntoBricks(std::vector<Active>& active, int level) 
 
 }  // namespace
 
-Rounds::Placed Rounds::run(const std::function<bool(const Placed&)>& stop,
+Rounds::Placed Rounds::run(tbb::task_arena& arena, const std::function<bool(const Placed&)>& stop,
                            const std::function<bool(const Placed&, float)>& pause) {
-  tbb::task_arena arena(options_.threads > 0 ? options_.threads
-                                             : static_cast<int>(tbb::task_arena::automatic));
-  const double delta = options_.delta * (1 - 1e-4);
+  const double delta = delta_ * (1 - 1e-4);
   const auto tight_steps = static_cast<std::size_t>(std::ceil(std::log1p(delta) / std::log1p(kTightDelta)));
   const Ladder ladder(0.5, min_radius_, std::exp(std::log1p(delta) / static_cast<double>(tight_steps)));
   CellQueue queue(ladder);
-  queue.push(Cell{{0, 0, 0}, 0.5f, 0, 0});
-  SphereGrid grid;
+  queue.push(Cell{{0, 0, 0}, 0.5f, 0});
   Placed placed;
+  SphereGrid& grid = placed.grid;
 
   while (!queue.empty()) {
     const std::size_t rung = queue.top();
@@ -99,7 +96,6 @@ Rounds::Placed Rounds::run(const std::function<bool(const Placed&)>& stop,
         const Ball& ball = candidate.ball;
         if (grid.nearest(ball.centre, ball.radius).distance < ball.radius) continue;
         grid.insert(ball);
-        placed.balls.push_back(ball);
         placed.top.push_back(top);
         if (stop(placed)) return placed;
       }

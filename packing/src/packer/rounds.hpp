@@ -1,10 +1,11 @@
 // The packing in rounds.
 #pragma once
 
+#include <tbb/task_arena.h>
+
 #include <functional>
 #include <vector>
 
-#include "innersphere/packer.hpp"
 #include "packer/cell_search.hpp"
 
 namespace innersphere {
@@ -18,21 +19,22 @@ class Rounds {
  public:
   /// What has been placed, in the order of placing.
   struct Placed {
-    std::vector<Ball> balls;
+    SphereGrid grid;
     std::vector<float> top;     ///< for each ball: nothing larger was possible when it was placed
     float largest_missing = 0;  ///< nothing larger is possible now
   };
 
-  /// `stop` is asked after every sphere, `pause` between the parallel parts (it may throw).
-  Rounds(const Container& container, const PackOptions& options, double min_radius)
-      : container_(container), options_(options), min_radius_(min_radius) {}
+  Rounds(const Container& container, double delta, double min_radius)
+      : container_(container), delta_(delta), min_radius_(min_radius) {}
 
-  Placed run(const std::function<bool(const Placed&)>& stop,
+  /// `stop` is asked after every sphere; `pause` between the parallel parts, from this thread, with the
+  /// threshold, and it may throw. Both end the packing by returning true. Searches run in `arena`.
+  Placed run(tbb::task_arena& arena, const std::function<bool(const Placed&)>& stop,
              const std::function<bool(const Placed&, float)>& pause);
 
  private:
   const Container& container_;
-  const PackOptions& options_;
+  double delta_;
   double min_radius_;
 };
 

@@ -1,0 +1,54 @@
+// What is known of the surface around the points that were looked at.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "packer/ball.hpp"
+
+namespace innersphere {
+
+/// Points with a distance that the surface certainly keeps from them, and the side that they lie on. Asking a
+/// solid whether a point is inside is expensive; mostly it follows from a sounding nearby.
+class Soundings {
+ public:
+  struct Sounding {
+    Point at;
+    double distance;  ///< positive inside, negative outside
+
+    /// How far the surface stays away from x, at least; not positive if x is out of reach.
+    double clearance(const Point& x) const { return std::abs(distance) - (x - at).norm() * (1 + 1e-9); }
+  };
+
+  void add(const Point& at, double distance) { soundings_.push_back({at, distance}); }
+
+  /// The sounding with the largest clearance at x, or null if none reaches x.
+  const Sounding* around(const Point& x) const {
+    const Sounding* best = nullptr;
+    double most = 0;
+    for (const Sounding& sounding : soundings_) {
+      // Most are too far away, which shows without a root.
+      if ((x - sounding.at).squaredNorm() >= sounding.distance * sounding.distance) continue;
+      const double clearance = sounding.clearance(x);
+      if (clearance > most) {
+        most = clearance;
+        best = &sounding;
+      }
+    }
+    return best;
+  }
+
+  /// 1 inside, -1 outside, 0 unknown; `clear` is the distance of x from the surface. If that empty ball meets
+  /// the empty ball of a sounding, both are on the same side.
+  int side(const Point& x, double clear) const {
+    for (auto it = soundings_.rbegin(); it != soundings_.rend(); ++it) {
+      if (it->clearance(x) + clear > 0) return it->distance > 0 ? 1 : -1;
+    }
+    return 0;
+  }
+
+ private:
+  std::vector<Sounding> soundings_;
+};
+
+}  // namespace innersphere

@@ -1,0 +1,85 @@
+#include "packer/surface_samples.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace innersphere {
+namespace {
+
+constexpr std::size_t kSamples = 50000;
+
+// Steps of the two-dimensional sequence with the most even spread known (Roberts' R2): 1/p and 1/p^2, where
+// p^3 = p + 1.
+constexpr double kStepU = 0.7548776662466927;
+constexpr double kStepV = 0.5698402909980532;
+
+}  // namespace
+
+SurfaceSamples::SurfaceSamples(const Surface& surface, const Container& container) {
+  const auto corner = [&](std::size_t triangle, int k) {
+    const auto& v = surface.vertices[surface.triangles[triangle][k]];
+    return container.fromWorld({v[0], v[1], v[2]});
+  };
+  std::vector<double> area(surface.triangles.size());
+  for (std::size_t t = 0; t < area.size(); ++t) {
+    const Point a = corner(t, 0), ab = corner(t, 1) - a, ac = corner(t, 2) - a;
+    const Point cross(ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
+                      ab[0] * ac[1] - ab[1] * ac[0]);
+    area[t] = cross.norm() / 2;
+  }
+  const double total = std::accumulate(area.begin(), area.end(), 0.0);
+  if (!(total > 0)) return;
+  std::size_t triangle = 0;
+  double before = 0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double target = (static_cast<double>(i) + 0.5) / kSamples * total;
+    while (triangle + 1 < area.size() && before + area[triangle] < target) before += area[triangle++];
+    double u = std::fmod(static_cast<double>(i + 1) * kStepU, 1.0),
+           v = std::fmod(static_cast<double>(i + 1) * kStepV, 1.0);
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    const Point a = corner(triangle, 0);
+    points_.push_back(a + u * (corner(triangle, 1) - a) + v * (corner(triangle, 2) - a));
+  }
+}
+
+bool SurfaceSamples::covered(const SphereGrid& grid, double gap, std::size_t& first) const {
+  while (first < points_.size() && grid.nearest(points_[first], gap).distance < gap) ++first;
+  return first == points_.size();
+}
+
+std::optional<std::size_t> SurfaceSamples::prefixWithin(const SphereGrid& grid, double gap) const {
+  std::size_t prefix = 0;
+  for (const Point& x : points_) {
+    std::size_t first = grid.balls().size();
+    grid.visitNear(x, x, gap, [&](std::uint32_t i) {
+      if (i < first && grid.balls()[i].distance(x) < gap) first = i;
+    });
+    if (first == grid.balls().size()) return std::nullopt;
+    prefix = std::max(prefix, first + 1);
+  }
+  return prefix;
+}
+
+Quality SurfaceSamples::measure(const SphereGrid& grid) const {
+  Quality quality;
+  if (points_.empty()) return quality;
+  std::vector<double> gaps(points_.size());
+  const double guess = 2 * grid.balls().back().radius;
+  tbb::parallel_for(std::size_t{0}, gaps.size(), [&](std::size_t i) {
+    gaps[i] = std::max(0.0, grid.nearestOfAll(points_[i], guess).distance);
+  });
+  quality.gap_mean = std::accumulate(gaps.begin(), gaps.end(), 0.0) / static_cast<double>(gaps.size());
+  const auto p95 = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() * 95 / 100);
+  std::nth_element(gaps.begin(), p95, gaps.end());
+  quality.gap_p95 = *p95;
+  quality.gap_max = *std::max_element(p95, gaps.end());
+  return quality;
+}
+
+}  // namespace innersphere
