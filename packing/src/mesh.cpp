@@ -2,6 +2,7 @@
 
 #include "innersphere/error.hpp"
 #include "mesh_clean.hpp"
+#include "mesh_cuts.hpp"
 #include "mesh_report.hpp"
 #include "mesh_shells.hpp"
 #include "mesh_solid.hpp"
@@ -60,12 +61,12 @@ std::size_t closeLoops(Mesh& mesh, const Topology& topology) {
   return topology.unbalanced.size();
 }
 
-void noteShells(const ShellsReport& shells, const MeshReport& found, MeshReport& report) {
+void noteShells(const ShellsReport& shells, MeshReport& report) {
   if (shells.turned > 0) {
-    report.inside_out = shells.turned == found.components;
+    report.inside_out = shells.turned == shells.count;
     report.notes.push_back(report.inside_out
                                ? "the mesh was inside-out (negative volume): all triangles were turned"
-                               : counted(shells.turned, "shell") + " of " + std::to_string(found.components) +
+                               : counted(shells.turned, "shell") + " of " + std::to_string(shells.count) +
                                      " inside-out: turned");
   }
   if (shells.cavities > 0) {
@@ -80,13 +81,23 @@ void noteShells(const ShellsReport& shells, const MeshReport& found, MeshReport&
   }
 }
 
-void noteUnits(const MeshReport& found, MeshReport& report) {
-  const Vec3d size = found.bounds.max - found.bounds.min;
+void noteUnits(MeshReport& report) {
+  const Vec3d size = report.bounds.max - report.bounds.min;
   const double longest = std::max({size[0], size[1], size[2]});
   if (longest < kSmall || longest > kLarge) {
     report.notes.push_back("the longest side is " + text(longest) +
                            " m; if the file is not in metres, give a scale (0.001 for millimetres)");
   }
+}
+
+void noteCuts(const Cuts& cuts, MeshReport& report) {
+  report.cuts = cuts.pairs;
+  report.cut_at = cuts.at;
+  if (cuts.pairs == 0) return;
+  report.notes.push_back(
+      counted(cuts.pairs, "pair") + " of triangles cut each other, one near " + text(cuts.at) +
+      ": spheres keep away from all of them, also inside; a union in a mesh editor gives a "
+      "better fill");
 }
 
 }  // namespace
@@ -116,7 +127,7 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
     report.notes.push_back(counted(turned, "triangle") + " turned to wind like the neighbours");
   }
   describe(topology, mesh, report);
-  noteUnits(report, report);
+  noteUnits(report);
   if (report.non_manifold_edges > 0) {
     report.notes.push_back(counted(report.non_manifold_edges, "edge") + " used by more than two triangles");
   }
@@ -130,9 +141,12 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
                            "number exceeds 1/2");
     topology = topologyOf(mesh);
   }
-  noteShells(orderShells(mesh, topology), report, report);
+  const ShellsReport shells = orderShells(mesh, topology);
+  noteShells(shells, report);
+  noteCuts(findCuts(mesh), report);
+  const bool may_overlap = report.cuts > 0 || shells.boxes_meet;
 
-  auto solid = std::make_unique<MeshSolid>(std::move(mesh), name, options.repair);
+  auto solid = std::make_unique<MeshSolid>(std::move(mesh), name, may_overlap);
   const double size = diagonal(solid->bounds());
   if (!(solid->massProperties().volume > 1e-12 * size * size * size)) {
     throw Error(ErrorCode::not_a_solid, name + " encloses no volume (" +

@@ -1,5 +1,6 @@
 #include "mesh_shells.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mass_properties.hpp"
@@ -51,6 +52,19 @@ bool isInside(const Shell& inner, const Shell& outer) {
   return true;
 }
 
+bool boxesMeet(const std::vector<Shell>& shells) {
+  const auto isAround = [&](std::size_t i, std::size_t j) {
+    const auto& around = shells[i].around;
+    return std::find(around.begin(), around.end(), j) != around.end();
+  };
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (meet(shells[i].box, shells[j].box) && !isAround(i, j) && !isAround(j, i)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 ShellsReport orderShells(Mesh& mesh, const Topology& topology) {
@@ -62,6 +76,8 @@ ShellsReport orderShells(Mesh& mesh, const Topology& topology) {
   }
 
   ShellsReport report;
+  report.count = shells.size();
+  report.boxes_meet = boxesMeet(shells);
   std::vector<bool> turn(shells.size());
   for (std::size_t i = 0; i < shells.size(); ++i) {
     const Shell& shell = shells[i];

@@ -7,6 +7,8 @@
 namespace innersphere {
 
 struct ShellsReport {
+  std::size_t count = 0;
+  bool boxes_meet = false;  ///< of two shells, neither of which is inside the other
   std::size_t turned =
       0;  ///< shells that faced inwards with nothing around them, with all that is inside them
   std::size_t cavities = 0;  ///< shells that face inwards inside another: left as they are

@@ -7,9 +7,8 @@
 namespace innersphere {
 namespace {
 
-// Cells along the longest side when a repaired mesh is searched for points that it winds around more than
-// once.
-constexpr int kRepairCells = 128;
+// Cells along the longest side when a mesh is searched for points that it winds around more than once.
+constexpr int kOverlapCells = 64;
 
 }  // namespace
 
@@ -30,10 +29,9 @@ MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once)
   Moments moments = momentsOf(mesh_);
   if (count_once) {
     // The divergence theorem integrates the winding number; the solid counts as 1 where that exceeds 1/2.
-    moments.add(integrate(bounds_, kRepairCells, [&](const Vec3d& p, double reach, double) {
-      const double distance = tree_.closest(p, reach).distance;
+    moments.add(integrate(bounds_, kOverlapCells, [&](const Vec3d& p, double reach, double) {
       const double winding = std::round(winding_.windingNumber(p));
-      return Probe{(winding > 0.5 ? 1 : 0) - winding, distance};
+      return Probe{(winding > 0.5 ? 1 : 0) - winding, tree_.closest(p, reach).distance};
     }));
   }
   mass_ = moments.massProperties();

@@ -13,8 +13,9 @@ Surface surfaceOf(const Mesh& mesh);
 
 class MeshSolid : public Solid {
  public:
-  /// `closed`: each edge is used as often in one direction as in the other. If the mesh may wind around
-  /// points more than once (after repair), `count_once` corrects the mass properties for them by sampling.
+  /// `closed`: each edge is used as often in one direction as in the other. Inside is where the winding
+  /// number exceeds 1/2. If it may be other than 0 and 1 somewhere, `count_once` corrects the mass properties
+  /// for that by sampling.
   MeshSolid(Mesh closed, const std::string& name, bool count_once);
 
   ClosestPoint closestPoint(const Vec3d& p, double cutoff) const override;

@@ -62,8 +62,7 @@ class Triangle {
   static double clamp01(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 
   Vec3d a_, ab_, ac_;
-  Vec3d to_s_{},
-      to_t_{};  ///< dual basis: foot point = a + s ab + t ac with s = to_s . (p - a), t = to_t . (p - a)
+  Vec3d to_s_{}, to_t_{};  ///< dual basis: foot point = a + s ab + t ac with s = to_s . ap, t = to_t . ap
   double inverse_ab_, inverse_ac_, inverse_bc_;
   bool thin_;
 };

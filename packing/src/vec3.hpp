@@ -60,5 +60,11 @@ inline bool holds(const Bounds& box, const Vec3d& p) {
 inline bool holds(const Bounds& outer, const Bounds& inner) {
   return holds(outer, inner.min) && holds(outer, inner.max);
 }
+inline bool meet(const Bounds& a, const Bounds& b) {
+  for (int k = 0; k < 3; ++k) {
+    if (a.min[k] > b.max[k] || b.min[k] > a.max[k]) return false;
+  }
+  return true;
+}
 
 }  // namespace innersphere

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 4;
 // A dipole is used from this many radii of its triangles on.
-constexpr double kFar = 3;
+constexpr double kFar = 2;
 
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace innersphere {
 double windingNumber(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
 /// A tree that lets far triangles count as one dipole (Barill et al. 2018). For a closed mesh the sum is an
-/// integer, and the error of the dipoles, under 0.1, is far from changing it.
+/// integer, and the error of the dipoles, under 0.2, is far from changing it.
 class WindingTree {
  public:
   explicit WindingTree(const Mesh& mesh);

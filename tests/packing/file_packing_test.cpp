@@ -10,6 +10,8 @@
 #include "file_scratch.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/packing_file.hpp"
+#include "packing_json.hpp"
+#include "packing_text.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -272,25 +274,24 @@ TEST(FilePacking, ClaimsOfHugeContentsAreHarmless) {
 }
 
 TEST(FilePacking, TruncatedAndFlippedFilesAreRefusedOrValid) {
-  const Scratch scratch;
+  using Reader = Packing (*)(const std::string&);
+  using Writer = std::string (*)(const Packing&);
+  const std::vector<std::pair<Writer, Reader>> formats{
+      {toJson, fromJson}, {toCbor, fromCbor}, {toXyzr, fromXyzr}};
   std::mt19937 random(3);
-  for (const char* name : {"p.json", "p.cbor", "p.xyzr"}) {
-    writePacking(somePacking(12), scratch.path(name));
-    const std::string good = bytesOf(scratch.path(name));
-    std::size_t read = 0, refused = 0;
-    const auto tryOut = [&](const std::string& bytes) {
-      const std::string path = scratch.write(std::string("x-") + name, bytes);
+  for (const auto& [write, read] : formats) {
+    const std::string good = write(somePacking(12));
+    std::size_t accepted = 0, refused = 0;
+    const auto tryOut = [&, read = read](const std::string& bytes) {
       try {
-        validate(readPacking(path));
-        ++read;
-      } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+        validate(read(bytes));
+        ++accepted;
+      } catch (const Error&) {
         ++refused;
       }
     };
-    for (std::size_t length = 0; length < good.size(); length += 1 + good.size() / 300)
-      tryOut(good.substr(0, length));
-    for (int trial = 0; trial < 2000; ++trial) {
+    for (std::size_t length = 0; length < good.size(); ++length) tryOut(good.substr(0, length));
+    for (int trial = 0; trial < 5000; ++trial) {
       std::string bytes = good;
       const int flips = 1 + trial % 3;
       for (int i = 0; i < flips; ++i) {
@@ -301,8 +302,8 @@ TEST(FilePacking, TruncatedAndFlippedFilesAreRefusedOrValid) {
         bytes.insert(random() % bytes.size(), bytes.substr(random() % bytes.size(), random() % 50));
       tryOut(bytes);
     }
-    EXPECT_GT(read, 0u) << name;
-    EXPECT_GT(refused, 300u) << name;
+    EXPECT_GT(accepted, 0u);
+    EXPECT_GT(refused, 1000u);
   }
 }
 

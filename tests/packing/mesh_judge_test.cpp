@@ -81,6 +81,29 @@ TEST(MeshJudge, RepairCountsOverlapsOnce) {
   }
 }
 
+TEST(MeshJudge, ShellsThatCutEachOtherAreNamedAndCountOnce) {
+  Mesh mesh = boxMesh({0, 0, 0}, {2, 1, 1});
+  append(mesh, boxMesh({1, 0.25, 0.25}, {3, 0.75, 0.75}));
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "cross", {}, &report);
+  EXPECT_GT(report.cuts, 0u);
+  EXPECT_NE(joined(report).find("cut each other"), std::string::npos) << joined(report);
+  EXPECT_NEAR(solid->massProperties().volume, 2.25, 0.01);
+  EXPECT_TRUE(solid->contains({1.5, 0.5, 0.5}));
+  EXPECT_NEAR(solid->closestPoint({1.5, 0.5, 0.5}).distance, 0.25, 1e-15);
+}
+
+// Their faces touch in planes, so no triangle passes through another.
+TEST(MeshJudge, FlushOverlapsCountOnceToo) {
+  Mesh mesh = boxMesh({0, 0, 0}, {2, 1, 1});
+  append(mesh, boxMesh({1, 0, 0}, {3, 1, 1}));
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "flush", {}, &report);
+  EXPECT_EQ(report.cuts, 0u);
+  EXPECT_NEAR(solid->massProperties().volume, 3, 0.05);
+  EXPECT_NEAR(solid->massProperties().centre_of_mass[0], 1.5, 0.02);
+}
+
 TEST(MeshJudge, InsideOutIsTurned) {
   MeshReport report;
   const auto solid = makeSolid(inverted(torusMesh(1, 0.4, 24, 12)), "torus", {}, &report);

@@ -1,5 +1,5 @@
-// Plain value types that every part of InnerSphere exchanges. No library types appear here, so that a simulation
-// can include the query and the plug-in without Eigen, assimp or CUDA.
+// Plain value types that every part of InnerSphere exchanges. No library types appear here, so that a
+// simulation can include the query and the plug-in without Eigen, assimp or CUDA.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ struct Bounds {
   Vec3d max{};
 };
 
-/// A ball in single precision: centre and radius [m], in the frame of its solid. Sixteen bytes, so that a GPU thread
-/// reads it with one load.
+/// A ball in single precision: centre and radius [m], in the frame of its solid. Sixteen bytes, so that a GPU
+/// thread reads it with one load.
 struct alignas(16) Sphere {
   float x = 0;
   float y = 0;
@@ -32,15 +32,15 @@ struct alignas(16) Sphere {
 /// What a rigid body needs to know of a homogeneous solid, for unit density: a body of density rho has mass
 /// rho * volume and inertia rho * inertia.
 struct MassProperties {
-  double volume = 0;               ///< [m^3]
-  Vec3d centre_of_mass{};          ///< [m], in the frame of the solid
-  Mat3d inertia{};                 ///< [m^5] about the centre of mass, along the axes of the solid
+  double volume = 0;       ///< [m^3]
+  Vec3d centre_of_mass{};  ///< [m], in the frame of the solid
+  Mat3d inertia{};         ///< [m^5] about the centre of mass, along the axes of the solid
 };
 
 /// A closed triangle surface, wound counter-clockwise seen from outside. It serves drawing, ray tests and
 /// convex sweeps; collisions are decided by the spheres.
 struct Surface {
-  std::vector<std::array<float, 3>> vertices;          ///< [m]
+  std::vector<std::array<float, 3>> vertices;           ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into vertices
 };
 

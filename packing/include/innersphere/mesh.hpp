@@ -19,42 +19,48 @@ struct Mesh {
 };
 
 struct MeshOptions {
-  /// readMesh() multiplies all coordinates with it: 0.001 for a file in millimetres. Over 0. makeSolid() ignores it.
+  /// readMesh() multiplies all coordinates with it: 0.001 for a file in millimetres. Over 0. makeSolid()
+  /// ignores it.
   double scale = 1;
-  /// makeSolid() accepts a mesh that does not bound a volume: its holes are closed with flat fans, and inside is where the
-  /// winding number exceeds 1/2. Distances near a hole are to its fan, so the fill is only as good as that guess; mass
-  /// properties are corrected by sampling where triangles cut each other. Costs up to some seconds.
+  /// makeSolid() accepts a mesh that does not bound a volume: its holes are closed with flat fans, and inside
+  /// is where the winding number exceeds 1/2. Distances near a hole are to its fan, so the fill is only as
+  /// good as that guess.
   bool repair = false;
 };
 
 /// What was found in a mesh.
 struct MeshReport {
-  std::size_t vertices = 0;             ///< after welding equal positions
-  std::size_t triangles = 0;            ///< after removing degenerate ones
-  std::size_t degenerate = 0;           ///< removed: two equal corners
-  std::size_t open_edges = 0;           ///< used by one triangle only
-  std::size_t open_loops = 0;           ///< connected chains of open edges
-  Vec3d open_at{};                      ///< a corner of the longest of them [m]
-  std::size_t non_manifold_edges = 0;   ///< used by more than two triangles
-  std::size_t flipped_edges = 0;        ///< whose two triangles wind in opposite senses
-  std::size_t components = 0;           ///< connected over edges
-  bool inside_out = false;              ///< negative volume: all triangles were flipped
-  Bounds bounds;                        ///< [m]
-  std::vector<std::string> notes;       ///< one sentence for each thing that was mended or looks suspicious
+  std::size_t vertices = 0;            ///< after welding equal positions
+  std::size_t triangles = 0;           ///< after removing degenerate ones
+  std::size_t degenerate = 0;          ///< removed: two equal corners
+  std::size_t open_edges = 0;          ///< used by one triangle only
+  std::size_t open_loops = 0;          ///< connected chains of open edges
+  Vec3d open_at{};                     ///< a corner of the longest of them [m]
+  std::size_t non_manifold_edges = 0;  ///< used by more than two triangles
+  std::size_t flipped_edges = 0;       ///< whose two triangles wind in opposite senses
+  std::size_t cuts = 0;                ///< pairs of triangles that pass through each other; touching is none
+  Vec3d cut_at{};                      ///< a corner of one of them [m]
+  std::size_t components = 0;          ///< connected over edges
+  bool inside_out = false;             ///< negative volume: all triangles were flipped
+  Bounds bounds;                       ///< [m]
+  std::vector<std::string> notes;      ///< one sentence for each thing that was mended or looks suspicious
 };
 
-/// Reads a mesh through assimp (OBJ, STL, PLY, OFF, glTF, ...), with node transforms applied in double and equal positions
-/// welded. assimp keeps coordinates in single precision. Throws Error: file_not_found, bad_format, empty_input, not_finite,
-/// bad_argument (the scale).
+/// Reads a mesh through assimp (OBJ, STL, PLY, OFF, glTF, ...), with node transforms applied in double and
+/// equal positions welded. assimp keeps coordinates in single precision. Throws Error: file_not_found,
+/// bad_format, empty_input, not_finite, bad_argument (the scale).
 Mesh readMesh(const std::string& path, const MeshOptions& options = {});
 
-/// Judges a mesh and makes it a solid with exact distances. Mends what is safe and notes it: welds equal positions, and those
-/// within 1e-7 of the diagonal if the mesh is open without that; drops degenerate triangles; winds triangles like their
-/// neighbours; turns shells that are inside-out; drops shells inside solid material that face outwards. A shell inside
-/// another that faces inwards stays: a cavity. Triangles that cut each other are not looked for.
-/// Throws Error: not_a_solid if the mesh does not bound a volume and repair was not asked for, with the defect, its place and the
-/// way out; empty_input, not_finite, bad_argument (a triangle names a vertex that is not there). `report` may be null; it
-/// is filled in also when not_a_solid is thrown.
+/// Judges a mesh and makes it a solid with exact distances. Mends what is safe and notes it: welds equal
+/// positions, and those within 1e-7 of the diagonal if the mesh is open without that; drops degenerate
+/// triangles; winds triangles like their neighbours; turns shells that are inside-out; drops shells inside
+/// solid material that face outwards. A shell inside another that faces inwards stays: a cavity. Shells may
+/// cut themselves and each other: inside is where the winding number exceeds 1/2, mass properties count each
+/// point once (by sampling 64 cells along the longest side), and distances are to the nearest triangle, so
+/// that spheres keep away from inner ones too. Throws Error: not_a_solid if the mesh does not bound a volume
+/// and repair was not asked for, with the defect, its place and the way out; empty_input, not_finite,
+/// bad_argument (a triangle names a vertex that is not there). `report` may be null; it is filled in also
+/// when not_a_solid is thrown.
 std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshOptions& options = {},
                                  MeshReport* report = nullptr);
 

@@ -10,19 +10,20 @@
 
 namespace innersphere {
 
-/// Radii that make the first `count` spheres stand for the whole volume of the solid. A sphere's share is the volume of
-/// the solid that is nearer to its surface than to any other sphere's; its volume-true radius is that of a ball with the
-/// volume of its share. Shares of a prefix sum to the solid, so neighbouring volume-true spheres overlap a little.
+/// Radii that make the first `count` spheres stand for the whole volume of the solid. A sphere's share is the
+/// volume of the solid that is nearer to its surface than to any other sphere's; its volume-true radius is
+/// that of a ball with the volume of its share. Shares of a prefix sum to the solid, so neighbouring
+/// volume-true spheres overlap a little.
 struct VolumeTrueRadii {
-  std::uint32_t count = 0;       ///< length of the prefix
-  std::vector<float> radii;      ///< [m], `count` of them, in the order of the spheres
-  double sampling_error = 0;     ///< standard error of one share relative to the mean share, 0 to 1
+  std::uint32_t count = 0;    ///< length of the prefix
+  std::vector<float> radii;   ///< [m], `count` of them, in the order of the spheres
+  double sampling_error = 0;  ///< standard error of one share relative to the mean share, 0 to 1
 };
 
 /// What the packer guarantees about the fill.
 struct Certificate {
-  /// Each sphere had at least 1/(1+delta) of the largest radius that was possible when it was placed. 0 means that
-  /// nothing is certified (an imported packing).
+  /// Each sphere had at least 1/(1+delta) of the largest radius that was possible when it was placed. 0 means
+  /// that nothing is certified (an imported packing).
   double delta = 0;
   /// No sphere larger than this fits any more [m].
   double largest_missing_radius = 0;
@@ -44,24 +45,26 @@ struct Provenance {
   std::string version;      ///< version of InnerSphere that wrote it
 };
 
-/// Spheres inside a solid that do not overlap each other, sorted by falling radius: the first n of them are a valid,
-/// coarser packing. Immutable by convention once made; share it with std::shared_ptr<const Packing>.
+/// Spheres inside a solid that do not overlap each other, sorted by falling radius: the first n of them are a
+/// valid, coarser packing. Immutable by convention once made; share it with std::shared_ptr<const Packing>.
 struct Packing {
   std::vector<Sphere> spheres;
-  std::vector<VolumeTrueRadii> volume_true;  ///< by rising count: 64, 128, 256, ..., spheres.size(); may be empty
-  MassProperties solid;                      ///< exact, of the solid, not of the spheres
-  Surface surface;                           ///< of the solid; may be empty
+  std::vector<VolumeTrueRadii>
+      volume_true;       ///< by rising count: 64, 128, 256, ..., spheres.size(); may be empty
+  MassProperties solid;  ///< exact, of the solid, not of the spheres
+  Surface surface;       ///< of the solid; may be empty
   Certificate certificate;
   Quality quality;
   Provenance provenance;
 };
 
-/// The stored volume-true radii of the longest prefix that is not longer than `count`, or null if there is none.
+/// The stored volume-true radii of the longest prefix that is not longer than `count`, or null if there is
+/// none.
 const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count);
 
-/// Throws Error if a caller could not use the packing: no spheres, non-finite numbers, radii that are not positive or
-/// not sorted, volume-true radii of the wrong length, surface triangles without their vertices. Does not look for overlaps; see
-/// check.hpp for that.
+/// Throws Error if a caller could not use the packing: no spheres, non-finite numbers, radii that are not
+/// positive or not sorted, volume-true radii of the wrong length, surface triangles without their vertices.
+/// Does not look for overlaps; see check.hpp for that.
 void validate(const Packing& packing);
 
 }  // namespace innersphere

@@ -7,14 +7,16 @@
 
 namespace innersphere {
 
-/// Reads a packing; the format follows from the ending (.json, .cbor, .xyzr). Survives any bytes. An .xyzr file has spheres only:
-/// they are sorted, the mass properties are those of the balls, nothing is certified, and whether they overlap is
-/// for check() to say. Throws Error: file_not_found, bad_format, unsupported_version, empty_input, not_finite.
+/// Reads a packing; the format follows from the ending (.json, .cbor, .xyzr). Survives any bytes. An .xyzr
+/// file has spheres only: they are sorted, the mass properties are those of the balls, nothing is certified,
+/// and whether they overlap is for check() to say. Throws Error: file_not_found, bad_format,
+/// unsupported_version, empty_input, not_finite.
 Packing readPacking(const std::string& path);
 
-/// Writes a packing; the format follows from the ending (.json, .cbor, .ply, .xyzr; the last two hold spheres only). The file
-/// appears under its name only when it is complete. Reading .json or .cbor gives the same numbers back, bit for bit. Throws
-/// Error: bad_argument (unknown ending), file_exists, write_failed, and what validate() throws.
+/// Writes a packing; the format follows from the ending (.json, .cbor, .ply, .xyzr; the last two hold spheres
+/// only). The file appears under its name only when it is complete. Reading .json or .cbor gives the same
+/// numbers back, bit for bit. Throws Error: bad_argument (unknown ending), file_exists, write_failed, and
+/// what validate() throws.
 void writePacking(const Packing& packing, const std::string& path, bool overwrite = false);
 
 }  // namespace innersphere

@@ -15,14 +15,14 @@ struct ClosestPoint {
   Vec3d point{};        ///< [m]
 };
 
-/// A bounded solid. Implementations are immutable and safe to query from several threads at once. Only distances from
-/// the inside need to be exact; outside, a lower bound is enough.
+/// A bounded solid. Implementations are immutable and safe to query from several threads at once. Only
+/// distances from the inside need to be exact; outside, a lower bound is enough.
 class Solid {
  public:
   virtual ~Solid() = default;
 
-  /// Nearest point of the surface. A caller that does not care for surface farther than `cutoff` [m] says so and gets
-  /// distance = infinity there, which is cheaper.
+  /// Nearest point of the surface. A caller that does not care for surface farther than `cutoff` [m] says so
+  /// and gets distance = infinity there, which is cheaper.
   virtual ClosestPoint closestPoint(const Vec3d& p,
                                     double cutoff = std::numeric_limits<double>::infinity()) const = 0;
 
