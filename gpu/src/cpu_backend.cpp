@@ -69,15 +69,22 @@ void CpuBackend::walkRange(const std::vector<PreparedQuery>& queries, std::size_
 void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin,
                            std::size_t end, Want want, core::Sums& total, HitWriter& writer) {
   const core::Setup& setup = query.setup;
+  const auto forHits = [&](std::size_t cluster, const auto& visit) {
+    const auto number = static_cast<std::uint32_t>(cluster);
+    const bool from_a = core::isFromA(setup, number);
+    core::walkCandidates(setup, number, 0, 1, [&](std::uint32_t a, std::uint32_t b) {
+      core::Pair pair;
+      return !core::isHit(setup, from_a, a, b, pair) || visit(a, b, pair);
+    });
+  };
   if (want == Want::touch) {
     const std::atomic_ref<unsigned long long> touched(total.pairs);
     for (std::size_t cluster = begin; cluster < end && touched.load(std::memory_order_relaxed) == 0;
          ++cluster) {
-      core::walkCluster(setup, static_cast<std::uint32_t>(cluster), 0, 1,
-                        [&](std::uint32_t, std::uint32_t, const core::Pair&) {
-                          touched.store(1, std::memory_order_relaxed);
-                          return false;
-                        });
+      forHits(cluster, [&](std::uint32_t, std::uint32_t, const core::Pair&) {
+        touched.store(1, std::memory_order_relaxed);
+        return false;
+      });
     }
     return;
   }
@@ -85,12 +92,11 @@ void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std:
   sums.clear();
   const bool wrench = want != Want::volume, collect = wantsHits(want);
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
-    core::walkCluster(setup, static_cast<std::uint32_t>(cluster), 0, 1,
-                      [&](std::uint32_t a, std::uint32_t b, const core::Pair& pair) {
-                        sums.add(pair, setup.shifts, wrench);
-                        if (collect) writer.add({index, a, b});
-                        return true;
-                      });
+    forHits(cluster, [&](std::uint32_t a, std::uint32_t b, const core::Pair& pair) {
+      sums.add(pair, setup.shifts, wrench);
+      if (collect) writer.add({index, setup.a.grid.ids[a], setup.b.grid.ids[b]});
+      return true;
+    });
   }
   if (sums.pairs == 0) return;
   const tbb::spin_mutex::scoped_lock lock(locks_[index % locks_.size()]);

@@ -21,12 +21,13 @@ std::uint32_t low(std::uint64_t key) {
 }
 
 /// Sums the lenses of one sphere with its partners, keys[0 .. count).
-SphereContact sumContact(const core::Setup& setup, const std::uint64_t* keys, std::size_t count, bool of_b) {
+SphereContact sumContact(const PreparedQuery& query, const std::uint64_t* keys, std::size_t count,
+                         bool of_b) {
   double volume = 0;
   core::Vec3r moment{0, 0, 0}, area{0, 0, 0};
   for (std::size_t k = 0; k < count; ++k) {
-    const core::Pair pair = of_b ? core::makePair(setup, low(keys[k]), high(keys[k]))
-                                 : core::makePair(setup, high(keys[k]), low(keys[k]));
+    const std::uint32_t a = of_b ? low(keys[k]) : high(keys[k]), b = of_b ? high(keys[k]) : low(keys[k]);
+    const core::Pair pair = core::makePair(query.setup, query.grid_a->placeOf(a), query.grid_b->placeOf(b));
     const core::Contact contact = core::makeContact(pair);
     volume += contact.lens.volume;
     moment = moment + contact.lens.volume * core::lensCentroid(pair, contact);
@@ -126,8 +127,8 @@ void HitSorter::writeContacts(const std::vector<PreparedQuery>& queries, bool of
     auto query = std::upper_bound(contacts.first.begin(), contacts.first.end(), begin) - 1;
     for (std::size_t c = begin; c < end; ++c) {
       while (c >= query[1]) ++query;
-      const core::Setup& setup = queries[static_cast<std::size_t>(query - contacts.first.begin())].setup;
-      contacts.items[c] = sumContact(setup, keys_.data() + heads_[c], heads_[c + 1] - heads_[c], of_b);
+      const PreparedQuery& prepared = queries[static_cast<std::size_t>(query - contacts.first.begin())];
+      contacts.items[c] = sumContact(prepared, keys_.data() + heads_[c], heads_[c + 1] - heads_[c], of_b);
     }
   });
 }

@@ -62,6 +62,13 @@ SphereCells cellsOf(const core::GridView& grid, const Sphere& s, float growth) {
   return cells;
 }
 
+/// Sorts by cell: blocks in the order of their keys, in each its cells.
+std::uint64_t sortKey(int level, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  const std::uint64_t block =
+      core::blockKey(level, x >> core::kBlockBits, y >> core::kBlockBits, z >> core::kBlockBits);
+  return block << (3 * core::kBlockBits) | static_cast<std::uint64_t>(core::bitOfCell(x, y, z));
+}
+
 /// Every third bit of a number of kAxisBits bits.
 std::uint64_t spreadBits(std::uint64_t x) {
   std::uint64_t spread = 0;
@@ -73,9 +80,9 @@ std::uint64_t spreadBits(std::uint64_t x) {
 
 HashGrid::HashGrid(std::vector<Sphere> spheres, float growth) : spheres_(std::move(spheres)) {
   measure(growth);
-  fillCells(growth);
   orderSpheres();
   boundClusters();
+  fillCells(growth);
 }
 
 void HashGrid::measure(float growth) {
@@ -106,7 +113,6 @@ void HashGrid::measure(float growth) {
     radius = std::max(radius, std::sqrt(dot(d, d)) + r);
   }
   view_.half = {roundUp(half[0]), roundUp(half[1]), roundUp(half[2])};
-  view_.spheres = spheres_.data();
   view_.count = static_cast<std::uint32_t>(spheres_.size());
   view_.radius = roundUp(radius);
   view_.reach = roundUp(reach);
@@ -119,6 +125,61 @@ void HashGrid::measure(float growth) {
   view_.inverse_cell = std::ldexp(1.0f, -view_.finest);
   for (int axis = 0; axis < 3; ++axis)
     view_.last_cell[axis] = std::floor(2 * sizes[axis] * view_.inverse_cell);
+}
+
+void HashGrid::orderSpheres() {
+  struct Place {
+    std::uint64_t code;
+    std::uint32_t level;
+    std::uint32_t index;
+  };
+  std::vector<Place> places(spheres_.size());
+  tbb::parallel_for(std::size_t{0}, spheres_.size(), [&](std::size_t i) {
+    const CellBox box = boxOf(view_, spheres_[i], 0);
+    places[i] = {spreadBits(box.lo[0]) | spreadBits(box.lo[1]) << 1 | spreadBits(box.lo[2]) << 2,
+                 static_cast<std::uint32_t>(std::max(core::levelOf(spheres_[i].radius) - view_.finest, 0)),
+                 static_cast<std::uint32_t>(i)};
+  });
+  tbb::parallel_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    if (a.level != b.level) return a.level < b.level;
+    return a.code != b.code ? a.code < b.code : a.index < b.index;
+  });
+  std::vector<Sphere> sorted(places.size());
+  ids_.resize(places.size());
+  places_.resize(places.size());
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    sorted[k] = spheres_[places[k].index];
+    ids_[k] = places[k].index;
+    places_[places[k].index] = static_cast<std::uint32_t>(k);
+  }
+  spheres_ = std::move(sorted);
+  view_.spheres = spheres_.data();
+  view_.ids = ids_.data();
+}
+
+void HashGrid::boundClusters() {
+  const std::size_t n = spheres_.size();
+  clusters_.resize((n + core::kClusterSize - 1) / core::kClusterSize);
+  tbb::parallel_for(std::size_t{0}, clusters_.size(), [&](std::size_t c) {
+    const std::size_t begin = c * core::kClusterSize,
+                      end = std::min<std::size_t>(begin + core::kClusterSize, n);
+    constexpr float kMax = std::numeric_limits<float>::max();
+    Vec3f lo{kMax, kMax, kMax}, hi{-kMax, -kMax, -kMax};
+    for (std::size_t k = begin; k < end; ++k) {
+      const Sphere& s = spheres_[k];
+      lo = {std::min(lo.x, s.x), std::min(lo.y, s.y), std::min(lo.z, s.z)};
+      hi = {std::max(hi.x, s.x), std::max(hi.y, s.y), std::max(hi.z, s.z)};
+    }
+    const Vec3f middle = 0.5f * (lo + hi);
+    double radius = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Sphere& s = spheres_[k];
+      radius = std::max(radius, distance(s, middle) + s.radius);
+    }
+    clusters_[c] = {middle.x, middle.y, middle.z, roundUp(radius)};
+  });
+  view_.clusters = clusters_.data();
+  view_.cluster_count = static_cast<std::uint32_t>(clusters_.size());
 }
 
 void HashGrid::fillCells(float growth) {
@@ -140,7 +201,7 @@ void HashGrid::fillCells(float growth) {
       for (std::uint32_t y = 0; y < cells.size[1]; ++y) {
         for (std::uint32_t x = 0; x < cells.size[0]; ++x) {
           const std::uint32_t begins = (x == 0 ? 1u : 0u) | (y == 0 ? 2u : 0u) | (z == 0 ? 4u : 0u);
-          all[at++] = {core::cellKey(cells.level, cells.lo[0] + x, cells.lo[1] + y, cells.lo[2] + z),
+          all[at++] = {sortKey(cells.level, cells.lo[0] + x, cells.lo[1] + y, cells.lo[2] + z),
                        begins << core::kIndexBits | static_cast<std::uint32_t>(i)};
         }
       }
@@ -152,79 +213,40 @@ void HashGrid::fillCells(float growth) {
   });
 
   entries_.resize(all.size());
-  std::vector<std::uint64_t> keys(all.size());
-  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+  std::vector<std::uint64_t> keys;
+  for (std::size_t k = 0; k < all.size(); ++k) {
     entries_[k] = all[k].entry;
-    keys[k] = all[k].key;
-  });
+    if (k > 0 && all[k].key == all[k - 1].key) continue;
+    keys.push_back(all[k].key);
+    cells_.push_back(static_cast<std::uint32_t>(k));
+  }
+  cells_.push_back(static_cast<std::uint32_t>(all.size()));
+  view_.cells = cells_.data();
   view_.entries = entries_.data();
   fillTable(keys);
 }
 
+/// `keys`: the sort keys of the occupied cells, rising.
 void HashGrid::fillTable(const std::vector<std::uint64_t>& keys) {
-  std::size_t cells = 0;
-  for (std::size_t k = 0; k < keys.size(); ++k) cells += k == 0 || keys[k] != keys[k - 1];
-  int bits = 1;
-  while ((std::size_t{1} << bits) < 2 * cells) ++bits;
-  slots_.assign(std::size_t{1} << bits, core::CellSlot{0, 0, 0});
-  view_.hash_shift = 64 - bits;
-  const std::size_t mask = slots_.size() - 1;
-  for (std::size_t k = 0; k < keys.size();) {
-    std::size_t end = k + 1;
-    while (end < keys.size() && keys[end] == keys[k]) ++end;
-    std::size_t at = core::hashCell(view_, keys[k]);
-    while (slots_[at].count != 0) at = (at + 1) & mask;
-    slots_[at] = {keys[k], static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(end - k)};
-    k = end;
+  constexpr int kCellBits = 3 * core::kBlockBits;
+  std::vector<core::Block> blocks;
+  for (std::size_t cell = 0; cell < keys.size(); ++cell) {
+    const std::uint64_t key = keys[cell] >> kCellBits;
+    if (blocks.empty() || blocks.back().key != key)
+      blocks.push_back({key, 0, static_cast<std::uint32_t>(cell)});
+    blocks.back().occupied |= std::uint64_t{1} << (keys[cell] & ((1u << kCellBits) - 1));
   }
-  view_.slots = slots_.data();
-}
-
-void HashGrid::orderSpheres() {
-  struct Place {
-    std::uint64_t code;
-    std::uint32_t level;
-    std::uint32_t index;
-  };
-  std::vector<Place> places(spheres_.size());
-  tbb::parallel_for(std::size_t{0}, spheres_.size(), [&](std::size_t i) {
-    const CellBox box = boxOf(view_, spheres_[i], 0);
-    places[i] = {spreadBits(box.lo[0]) | spreadBits(box.lo[1]) << 1 | spreadBits(box.lo[2]) << 2,
-                 static_cast<std::uint32_t>(std::max(core::levelOf(spheres_[i].radius) - view_.finest, 0)),
-                 static_cast<std::uint32_t>(i)};
-  });
-  tbb::parallel_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    if (a.level != b.level) return a.level < b.level;
-    return a.code != b.code ? a.code < b.code : a.index < b.index;
-  });
-  order_.resize(places.size());
-  for (std::size_t k = 0; k < places.size(); ++k) order_[k] = places[k].index;
-  view_.order = order_.data();
-}
-
-void HashGrid::boundClusters() {
-  const std::size_t n = spheres_.size();
-  clusters_.resize((n + core::kClusterSize - 1) / core::kClusterSize);
-  tbb::parallel_for(std::size_t{0}, clusters_.size(), [&](std::size_t c) {
-    const std::size_t begin = c * core::kClusterSize,
-                      end = std::min<std::size_t>(begin + core::kClusterSize, n);
-    constexpr float kMax = std::numeric_limits<float>::max();
-    Vec3f lo{kMax, kMax, kMax}, hi{-kMax, -kMax, -kMax};
-    for (std::size_t k = begin; k < end; ++k) {
-      const Sphere& s = spheres_[order_[k]];
-      lo = {std::min(lo.x, s.x), std::min(lo.y, s.y), std::min(lo.z, s.z)};
-      hi = {std::max(hi.x, s.x), std::max(hi.y, s.y), std::max(hi.z, s.z)};
-    }
-    const Vec3f middle = 0.5f * (lo + hi);
-    double radius = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Sphere& s = spheres_[order_[k]];
-      radius = std::max(radius, distance(s, middle) + s.radius);
-    }
-    clusters_[c] = {middle.x, middle.y, middle.z, roundUp(radius)};
-  });
-  view_.clusters = clusters_.data();
-  view_.cluster_count = static_cast<std::uint32_t>(clusters_.size());
+  int bits = 1;
+  while ((std::size_t{1} << bits) < 2 * blocks.size()) ++bits;
+  blocks_.assign(std::size_t{1} << bits, core::Block{0, 0, 0});
+  view_.hash_shift = 64 - bits;
+  const std::size_t mask = blocks_.size() - 1;
+  for (const core::Block& block : blocks) {
+    std::size_t at = core::hashBlock(view_, block.key);
+    while (blocks_[at].occupied != 0) at = (at + 1) & mask;
+    blocks_[at] = block;
+  }
+  view_.blocks = blocks_.data();
 }
 
 }  // namespace innersphere

@@ -18,11 +18,13 @@ class DeviceGrid {
 };
 
 /// Immutable once built. Count, scan, fill: every cell holds exactly the spheres that touch it, so no cell
-/// can overflow. The content of a cell is in the order of the spheres, and the whole grid depends on nothing
-/// but the input.
+/// can overflow. Spheres have one order throughout, also inside a cell, and the grid depends on nothing but
+/// the input.
 ///
 /// With volume-true radii the spheres of one packing overlap a little and a cell holds a few more; nothing
-/// relies on how many.
+/// relies on how many. Greedy packings of a cube, 4,000 and 60,000 spheres: the fullest cell has 9, and 14
+/// with radii grown to the cube's volume. The grid then takes 66 bytes a sphere, its copy of the spheres
+/// included.
 class HashGrid {
  public:
   /// `growth`: cells list the spheres as if their radii were larger by so much, so that a query with a margin
@@ -33,8 +35,12 @@ class HashGrid {
   /// For the CPU; valid as long as the grid.
   const core::GridView& view() const { return view_; }
 
-  std::size_t slotCount() const { return slots_.size(); }
+  std::size_t tableSize() const { return blocks_.size(); }
+  std::size_t cellCount() const { return cells_.size() - 1; }
   std::size_t entryCount() const { return entries_.size(); }
+
+  /// Where a sphere of the packing is in the grid's order.
+  std::uint32_t placeOf(std::uint32_t id) const { return places_[id]; }
 
   /// Copies on devices, made on first use there. The lock guards them.
   struct DeviceCopies {
@@ -45,15 +51,17 @@ class HashGrid {
 
  private:
   void measure(float growth);
-  void fillCells(float growth);
-  void fillTable(const std::vector<std::uint64_t>& keys);
   void orderSpheres();
   void boundClusters();
+  void fillCells(float growth);
+  void fillTable(const std::vector<std::uint64_t>& keys);
 
   std::vector<Sphere> spheres_;
-  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<std::uint32_t> places_;
   std::vector<Sphere> clusters_;
-  std::vector<core::CellSlot> slots_;
+  std::vector<core::Block> blocks_;
+  std::vector<std::uint32_t> cells_;
   std::vector<std::uint32_t> entries_;
   core::GridView view_{};
   mutable DeviceCopies device_copies_;

@@ -1,6 +1,7 @@
 // The same bits, whatever the threads, the batch and the roles; and both backends alike.
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "conformance.hpp"
 
@@ -169,6 +170,22 @@ TEST_P(DeterminismConformance, BackendsAgree) {
     }
   }
   EXPECT_EQ(context.lastBackend(), GetParam());
+}
+
+TEST_P(DeterminismConformance, ContextsInManyThreadsShareModels) {
+  const std::vector<PairQuery> queries = batch(20);
+  std::vector<QueryResult> results(4);
+  std::vector<std::thread> threads;  // the first to come builds the grids, and copies them to the device
+  for (QueryResult& result : results) {
+    threads.emplace_back([&] {
+      QueryContext context = makeContext(2);
+      for (int run = 0; run < 3; ++run) {
+        context.run(queries.data(), queries.size(), {Want::contacts, Estimator::volume_true}, result);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const QueryResult& result : results) expectSame(results[0], result);
 }
 
 TEST_P(DeterminismConformance, AnyBatchSize) {

@@ -23,7 +23,9 @@ TEST(FixedSum, RoundTripIsExactAboveTheQuantum) {
                                   static_cast<int>(random.uniform(54, core::kFixedBits - 1)) - shift);
       const double back = toDouble(toFixed(x, shift), shift);
       EXPECT_NEAR(back, x, std::ldexp(1.0, -shift));
-      if (std::fabs(x) > std::ldexp(1.0, 53 - shift)) EXPECT_EQ(back, x);
+      if (std::fabs(x) > std::ldexp(1.0, 53 - shift)) {
+        EXPECT_EQ(back, x);
+      }
     }
   }
   EXPECT_EQ(toDouble(toFixed(0, 100), 100), 0);

@@ -10,16 +10,18 @@ namespace innersphere {
 
 /// Which radii a query uses.
 enum class Estimator {
-  raw,         ///< the packing's own spheres, as in the paper: the gaps between them count as empty (25 to 70 % low)
-  volume_true  ///< radii whose volumes sum to the solid's: right in the mean. Falls back to raw where none are stored
+  raw,  ///< the packing's own spheres, as in the paper: the gaps between them count as empty (25 to 70 % low)
+  volume_true  ///< radii whose volumes sum to the solid's: right in the mean. Falls back to raw where none
+               ///< are stored
 };
 
-/// A packing with its hierarchical hash grids. Bodies of the same shape share one model. Grids are built on first use for
-/// each prefix and estimator, on the device only when a query runs there; all members are safe to call from several
-/// threads at once.
+/// A packing with its hierarchical hash grids. Bodies of the same shape share one model. Grids are built on
+/// first use, on the device only when a query runs there, and live as long as the model: one for each prefix
+/// and estimator, and for each size of margin, of which there are four an octave. All members are safe to
+/// call from several threads at once.
 class CollisionModel {
  public:
-  /// Throws Error if the packing is not valid (see validate()).
+  /// Throws Error if the packing is not valid (see validate()) or has lengths beyond 1e15 m.
   explicit CollisionModel(std::shared_ptr<const Packing> packing);
   ~CollisionModel();
   CollisionModel(const CollisionModel&) = delete;

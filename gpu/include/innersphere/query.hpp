@@ -14,15 +14,16 @@ namespace innersphere {
 
 /// Where a query runs.
 enum class Backend {
-  automatic,  ///< by the amount of work, CUDA if it is compiled in and a device is there; the same results within 1e-5
+  automatic,  ///< by the amount of work, CUDA if it is compiled in and a device is there; the same pairs,
+              ///< sums within 1e-5
   cpu,
   cuda  ///< Error no_device if there is none: never a silent fallback
 };
 
-/// What is computed. Each value includes those before it, except that contacts and pairs are independent of each other;
-/// asking for less costs less.
+/// What is computed. Each value includes those before it, except that contacts and pairs are independent of
+/// each other; asking for less costs less.
 enum class Want {
-  touch,     ///< pair_count is 0 or not 0
+  touch,     ///< only whether anything overlaps: pair_count is 0 or 1
   volume,    ///< volume, centroid, pair_count
   wrench,    ///< all of Overlap
   contacts,  ///< also the contacts of each sphere, of both bodies
@@ -35,14 +36,19 @@ struct PairQuery {
   const CollisionModel* b = nullptr;
   Placement placement_a;
   Placement placement_b;
-  std::uint32_t prefix_a = 0;  ///< use only so many spheres of A, the largest ones; 0: all
-  std::uint32_t prefix_b = 0;
-  double margin = 0;           ///< [m], >= 0: pairs count as overlapping up to this distance; every sphere of A grows by it
+  /// Use only so many spheres of A, the largest ones; 0, or more than there are: all. Volume-true radii exist
+  /// for some lengths only: with Estimator::volume_true the query uses the longest of them that is not longer
+  /// than this (see volumeTrueRadii()), and exactly this many spheres with their raw radii if none is.
+  std::uint32_t prefix_a = 0;
+  std::uint32_t prefix_b = 0;  ///< the same for B
+  /// [m], >= 0: pairs count as overlapping up to this distance. Every sphere of A grows by it, in all
+  /// results.
+  double margin = 0;
 };
 
 struct QueryOptions {
-  Want want = Want::wrench;
-  Estimator estimator = Estimator::volume_true;
+  Want want = Want::wrench;                      ///< what is not wanted is zero or empty in the result
+  Estimator estimator = Estimator::volume_true;  ///< of both bodies
 };
 
 /// Results of a batch. Keep the object and pass it again: after warm-up nothing is allocated.
@@ -68,8 +74,9 @@ struct QueryContextOptions {
 /// True if CUDA is compiled in and a device answers. Creates no CUDA context.
 bool cudaAvailable();
 
-/// Runs queries. Holds scratch memory and, after the first query that goes there, a stream of the device: use one
-/// context for each thread. Sums are the same bits on every run, for any number of threads and any place in a batch.
+/// Runs queries. Holds scratch memory and, after the first query that goes there, a stream of the device: use
+/// one context for each thread. All results are the same bits on every run, for any number of threads and any
+/// place in a batch; without a margin, swapping A and B negates force and area exactly.
 class QueryContext {
  public:
   /// Throws Error no_device if CUDA was asked for by name and there is none.
@@ -78,11 +85,12 @@ class QueryContext {
   QueryContext(QueryContext&&) noexcept;
   QueryContext& operator=(QueryContext&&) noexcept;
 
-  /// Collides `count` pairs. Throws Error: bad_argument (null or non-rigid or non-positive scale), not_finite,
-  /// device_error, device_out_of_memory; the context stays usable.
+  /// Collides `count` pairs. Throws Error: bad_argument (a null model, a rotation that is not one, a scale or
+  /// margin out of range), not_finite, device_error, device_out_of_memory; the message names the query. The
+  /// context stays usable and `result` as it was.
   void run(const PairQuery* queries, std::size_t count, const QueryOptions& options, QueryResult& result);
 
-  /// One pair, only its sums.
+  /// One pair, only its sums: Want::contacts and Want::pairs give no more than Want::wrench here.
   Overlap overlap(const PairQuery& query, const QueryOptions& options = {});
 
   /// The backend that the last run used: cpu or cuda.

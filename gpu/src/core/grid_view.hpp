@@ -1,9 +1,13 @@
 // The hierarchical hash grid as a query reads it (Weller, Frese, Zachmann 2013, with their level rule
 // corrected).
 //
-// Level e has cubic cells with edges of 2^e metres. A sphere of radius r lives on the level with 2r <= 2^e <
-// 4r, so it touches at most two cells along each axis: eight in all. All levels share one origin, so the cell
-// of a coarse level is that of a finer one shifted right.
+// Level e has cubic cells with edges of 2^e metres. A sphere of radius r lives on the level with
+// 2r <= 2^e < 4r, so it touches at most two cells along each axis: eight in all. All levels share one origin,
+// so the cell of a coarse level is that of a finer one shifted right.
+//
+// Most cells are empty, and neighbours are looked up together. So the hash table holds blocks of 4 x 4 x 4
+// cells with a bit for each occupied one: mostly one lookup serves a sphere on one level, and an empty cell
+// costs no access to memory of its own.
 #pragma once
 
 #include <cmath>
@@ -26,21 +30,39 @@ INNERSPHERE_HD inline int levelOf(float radius) {
   return power_of_two ? floor_log2 + 1 : floor_log2 + 2;
 }
 
-/// One cell of the closed hash table: which entries it holds. Empty where count is 0.
-struct CellSlot {
-  std::uint64_t key;
-  std::uint32_t first;
-  std::uint32_t count;
-};
-
 constexpr int kAxisBits = 19;  ///< a cell coordinate has at most so many bits, whatever the packing
 constexpr int kLevelBits = 5;
-constexpr int kIndexBits =
-    29;  ///< an entry: sphere index, and above it for each axis whether this is the sphere's first cell
+constexpr int kBlockBits = 2;   ///< a block has 2^kBlockBits cells along each axis
+constexpr int kIndexBits = 29;  ///< of an entry that are the place of a sphere, see GridView::entries
+constexpr std::uint32_t kClusterSize = 32;
 
-INNERSPHERE_HD inline std::uint64_t cellKey(int level, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  return static_cast<std::uint64_t>(level) << (3 * kAxisBits) |
-         static_cast<std::uint64_t>(z) << (2 * kAxisBits) | static_cast<std::uint64_t>(y) << kAxisBits | x;
+/// The cells of a block that hold something, as bits, and where the first of them is in GridView::cells. An
+/// empty slot of the table has no bits.
+struct Block {
+  std::uint64_t key;
+  std::uint64_t occupied;
+  std::uint32_t first;
+};
+
+INNERSPHERE_HD inline std::uint64_t blockKey(int level, std::uint32_t bx, std::uint32_t by,
+                                             std::uint32_t bz) {
+  constexpr int kBits = kAxisBits - kBlockBits;
+  return static_cast<std::uint64_t>(level) << (3 * kBits) | static_cast<std::uint64_t>(bz) << (2 * kBits) |
+         static_cast<std::uint64_t>(by) << kBits | bx;
+}
+
+/// Number of a cell in its block.
+INNERSPHERE_HD inline int bitOfCell(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  constexpr std::uint32_t kMask = (1u << kBlockBits) - 1;
+  return static_cast<int>((z & kMask) << (2 * kBlockBits) | (y & kMask) << kBlockBits | (x & kMask));
+}
+
+INNERSPHERE_HD inline int countBits(std::uint64_t bits) {
+#if defined(__CUDA_ARCH__)
+  return __popcll(bits);
+#else
+  return __builtin_popcountll(bits);
+#endif
 }
 
 /// The cells of the finest level that a box touches, both ends included.
@@ -51,16 +73,18 @@ struct CellBox {
 
 /// A grid in the memory of whoever queries it. Lengths are those of the packing; cells are laid out relative
 /// to `centre`, so that positions keep their digits in single precision where the packing is far from its
-/// origin.
+/// origin. Spheres are in an order of their own, level by level along a space-filling curve.
 struct GridView {
-  const Sphere* spheres;       ///< `count` of them, in the packing's order
-  const std::uint32_t* order;  ///< their indices along a space-filling curve, level by level
-  const Sphere* clusters;      ///< balls around every kClusterSize spheres in that order
-  const CellSlot* slots;       ///< the hash table
-  const std::uint32_t* entries;
+  const Sphere* spheres;       ///< `count` of them
+  const std::uint32_t* ids;    ///< their indices in the packing
+  const Sphere* clusters;      ///< balls around every kClusterSize spheres
+  const Block* blocks;         ///< the hash table, at most half full
+  const std::uint32_t* cells;  ///< first entry of each occupied cell, and the number of entries at the end
+  const std::uint32_t*
+      entries;  ///< place in `spheres`; above it a bit for each axis: is this its first cell?
   std::uint32_t count;
   std::uint32_t cluster_count;
-  int hash_shift;  ///< 64 minus the bits of the table
+  int hash_shift;  ///< 64 minus the bits of the table's size
   int finest;      ///< levels, as exponents
   int coarsest;
   float inverse_cell;  ///< 2^-finest
@@ -72,20 +96,24 @@ struct GridView {
   float largest;       ///< radius of any sphere
 };
 
-constexpr std::uint32_t kClusterSize = 32;
-
-INNERSPHERE_HD inline std::uint32_t hashCell(const GridView& grid, std::uint64_t key) {
+INNERSPHERE_HD inline std::uint32_t hashBlock(const GridView& grid, std::uint64_t key) {
   return static_cast<std::uint32_t>(key * 0x9e3779b97f4a7c15u >> grid.hash_shift);
 }
 
-/// Slot of a cell, or null if no sphere touches it. The table is never more than half full, so probing ends.
-INNERSPHERE_HD inline const CellSlot* findCell(const GridView& grid, std::uint64_t key) {
-  const std::uint32_t mask = static_cast<std::uint32_t>((std::uint64_t{1} << (64 - grid.hash_shift)) - 1);
-  for (std::uint32_t at = hashCell(grid, key);; at = (at + 1) & mask) {
-    const CellSlot& slot = grid.slots[at];
-    if (slot.count == 0) return nullptr;
-    if (slot.key == key) return &slot;
+/// A block, or null if all of its cells are empty. The table is never full, so probing ends.
+INNERSPHERE_HD inline const Block* findBlock(const GridView& grid, std::uint64_t key) {
+  const auto mask = static_cast<std::uint32_t>((std::uint64_t{1} << (64 - grid.hash_shift)) - 1);
+  for (std::uint32_t at = hashBlock(grid, key);; at = (at + 1) & mask) {
+    const Block& block = grid.blocks[at];
+    if (block.occupied == 0) return nullptr;
+    if (block.key == key) return &block;
   }
+}
+
+/// The occupied cell number `bit` of a block, as an index into GridView::cells.
+INNERSPHERE_HD inline std::uint32_t cellIndex(const Block& block, int bit) {
+  const std::uint64_t before = (std::uint64_t{1} << bit) - 1;
+  return block.first + static_cast<std::uint32_t>(countBits(block.occupied & before));
 }
 
 namespace detail {

@@ -17,8 +17,8 @@ struct Pair {
   double distance2;
 };
 
-/// Everything in it is symmetric under exchange of the bodies, to the last bit: v changes sign, the rest
-/// changes places.
+/// From places in the two grids. Everything in it is symmetric under exchange of the bodies, to the last bit:
+/// v changes sign, the rest changes places.
 INNERSPHERE_HD inline Pair makePair(const Setup& setup, std::uint32_t ia, std::uint32_t ib) {
   const Sphere a = setup.a.grid.spheres[ia];
   const Sphere b = setup.b.grid.spheres[ib];
@@ -36,6 +36,11 @@ INNERSPHERE_HD inline Pair makePair(const Setup& setup, std::uint32_t ia, std::u
 INNERSPHERE_HD inline bool overlaps(const Pair& pair) {
   const double sum = pair.ra + pair.rb;
   return pair.distance2 < sum * sum;
+}
+
+/// Who of the two finds the pair: the smaller sphere walks through the other's grid; of equals, that of A.
+INNERSPHERE_HD inline bool walksToPartner(const Pair& pair, bool from_a) {
+  return from_a ? pair.rb >= pair.ra : pair.ra > pair.rb;
 }
 
 /// An overlapping pair's lens, with the unit vector from a to b. Concentric spheres have no direction: n is
