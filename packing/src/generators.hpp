@@ -22,8 +22,7 @@ Ring lifted(const Polygon& polygon, double z);
 std::vector<std::array<std::uint32_t, 3>> triangulate(const Polygon& polygon);
 
 /// Joins rings of equal length, each to the next, by strips whose diagonals run from point i to i + 1 of the
-/// next ring. Outwards is to the right of going along the rings' points, seen from the first ring towards the
-/// last: counter-clockwise rings that go up enclose what is between them. With `closed` the last ring is
+/// next ring. Counter-clockwise rings that go up enclose what is between them. With `closed` the last ring is
 /// joined to the first. Otherwise the ends are closed: a ring of one point is the tip of a cone, a longer one
 /// has to be flat, level and simple.
 Mesh loft(const std::vector<Ring>& rings, bool closed);

@@ -95,7 +95,7 @@ Mesh trayMesh() {
   return loft({square(1, 0), square(1, 1), square(0.8, 1), square(0.8, 0.2)}, false);
 }
 
-// A trefoil: a tube of radius 0.09 around the (2, 3) torus knot.
+// A trefoil: a tube of radius 0.07 around the (2, 3) torus knot.
 Mesh knotMesh() {
   constexpr double kRing = 0.3, kWinding = 0.12, kTube = 0.07;
   constexpr int kAlong = 144, kAround = 20;
