@@ -13,7 +13,7 @@ namespace innersphere {
 namespace {
 
 /// Clusters of 32 spheres in a batch from which on a launch on the device pays: it takes some 60 us, in which
-/// one core walks two packings of 4,000 spheres that touch lightly.
+/// one core walks two packings of 4,000 spheres that hardly touch.
 constexpr std::size_t kDeviceClusters = 256;
 
 }  // namespace
