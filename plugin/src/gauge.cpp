@@ -6,6 +6,8 @@ namespace {
 
 /// A surface that is met at a flatter angle than this is the side of the solid, not the face in contact.
 constexpr btScalar kFacing = btScalar(0.2);
+/// A ray that starts inside a sphere by this fraction of its radius starts inside the solid.
+constexpr btScalar kInside = btScalar(0.95);
 
 /// Where the line through `p` along `direction` leaves the solid near sphere i. Both points relative to the
 /// body's origin.
@@ -14,11 +16,11 @@ bool leave(const PackingBody& body, std::size_t i, const btVector3& p, const btV
   const btMatrix3x3& axes = body.world.getBasis();
   const btVector3 c = body.centreOf(i);
   const btScalar radius = body.ownRadius(i);
-  // Start on the line, beside the centre and inside the sphere.
+  // Start on the line, beside the centre and inside the sphere, or as near to the line as that goes.
   btVector3 beside = p - c;
   beside -= direction * direction.dot(beside);
   const btScalar length = beside.length();
-  const btScalar most = btScalar(0.95) * radius;
+  const btScalar most = kInside * radius;
   if (length > most) beside *= most / length;
   const btVector3 start = c + beside;
 
@@ -28,9 +30,12 @@ bool leave(const PackingBody& body, std::size_t i, const btVector3& p, const btV
                                        hit)) {
     return false;
   }
-  if ((axes * hit.face).dot(direction) < kFacing) return false;
+  const btVector3 face = axes * hit.face;
+  if (face.dot(direction) < kFacing) return false;
   normal = axes * hit.normal;
-  point = start + direction * (hit.distance * body.scale() + body.margin);
+  // The face, continued to the line.
+  const btVector3 met = start + direction * (hit.distance * body.scale() + body.margin);
+  point = p + direction * ((met - p).dot(face) / direction.dot(face));
   return true;
 }
 
@@ -56,15 +61,18 @@ std::uint64_t PackingGauge::id(std::size_t index) const {
   return 2 * std::uint64_t(contacts_[index].sphere) + (index < a_.last ? 0 : 1);
 }
 
-/// The sphere of one side that contains the point, or comes nearest to it.
-std::size_t PackingGauge::sphereAt(const Side& side, const btVector3& p) const {
+/// The sphere of one side that the line through `p` passes through nearest to p, or passes most closely.
+std::size_t PackingGauge::sphereOn(const Side& side, const btVector3& p, const btVector3& direction) const {
   std::size_t best = contacts_[side.first].sphere;
-  btScalar nearest = BT_LARGE_FLOAT;
+  btScalar least = BT_LARGE_FLOAT;
   for (std::size_t k = side.first; k < side.last; ++k) {
     const std::size_t i = contacts_[k].sphere;
-    const btScalar distance = (side.body->centreOf(i) + side.offset).distance(p) - side.body->ownRadius(i);
-    if (distance < nearest) {
-      nearest = distance;
+    const btVector3 apart = side.body->centreOf(i) + side.offset - p;
+    const btScalar along = apart.dot(direction);
+    const btScalar beside = (apart - direction * along).length() - kInside * side.body->ownRadius(i);
+    const btScalar cost = btMax(btScalar(0), beside) + btScalar(0.1) * btFabs(along);
+    if (cost < least) {
+      least = cost;
       best = i;
     }
   }
@@ -72,11 +80,20 @@ std::size_t PackingGauge::sphereAt(const Side& side, const btVector3& p) const {
 }
 
 bool PackingGauge::measure(std::size_t index, const btVector3& direction, Gap& gap) const {
-  const btVector3 p = toBullet(contacts_[index].centroid);
   const std::size_t own = contacts_[index].sphere;
   const bool of_a = index < a_.last;
-  const std::size_t i = of_a ? own : sphereAt(a_, p);
-  const std::size_t j = of_a ? sphereAt(b_, p) : own;
+  const Side& side = of_a ? a_ : b_;
+  const btVector3 p = side.body->centreOf(own) + side.offset;
+  const std::size_t partner = sphereOn(of_a ? b_ : a_, p, direction);
+  return measure(of_a ? own : partner, of_a ? partner : own, p, direction, gap);
+}
+
+bool PackingGauge::measureAt(const btVector3& p, const btVector3& direction, Gap& gap) const {
+  return measure(sphereOn(a_, p, direction), sphereOn(b_, p, direction), p, direction, gap);
+}
+
+bool PackingGauge::measure(std::size_t i, std::size_t j, const btVector3& p, const btVector3& direction,
+                           Gap& gap) const {
   if (!leave(*a_.body, i, p - a_.offset, direction, gap.on_a, gap.normal_a)) return false;
   if (!leave(*b_.body, j, p - b_.offset, -direction, gap.on_b, gap.normal_b)) return false;
   gap.on_b += b_.offset;

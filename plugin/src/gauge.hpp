@@ -21,12 +21,17 @@ struct Gap {
   btVector3 normal_b{0, 0, 0};  ///< unit, into B: equal to normal_a where flat faces meet
 };
 
+/// Gauge::id() never returns this.
+constexpr std::uint64_t kClimbedId = ~std::uint64_t(0);
+
 class Gauge {
  public:
   virtual ~Gauge() = default;
   /// At contact `index` of the list that the gauge was made for, roughly along `direction` from A to B. False
   /// if there is no surface where it is expected.
   virtual bool measure(std::size_t index, const btVector3& direction, Gap& gap) const = 0;
+  /// The same at another point between the bodies. Only a gauge of two packings can do it.
+  virtual bool measureAt(const btVector3& p, const btVector3& direction, Gap& gap) const = 0;
   /// Of the sphere behind a contact: the same from step to step.
   virtual std::uint64_t id(std::size_t index) const = 0;
   /// The normals of B do not come from triangles.
@@ -38,6 +43,7 @@ class SurfaceGauge : public Gauge {
  public:
   SurfaceGauge(const PackingBody& a, const std::vector<Touch>& touches) : a_(a), touches_(touches) {}
   bool measure(std::size_t index, const btVector3& direction, Gap& gap) const override;
+  bool measureAt(const btVector3&, const btVector3&, Gap&) const override { return false; }
   std::uint64_t id(std::size_t index) const override { return touches_[index].sphere; }
   bool exactB() const override { return true; }
 
@@ -52,6 +58,7 @@ class PackingGauge : public Gauge {
   PackingGauge(const PackingBody& a, const PackingBody& b, const std::vector<SphereContact>& contacts,
                std::size_t count_a);
   bool measure(std::size_t index, const btVector3& direction, Gap& gap) const override;
+  bool measureAt(const btVector3& p, const btVector3& direction, Gap& gap) const override;
   std::uint64_t id(std::size_t index) const override;
   bool exactB() const override { return false; }
 
@@ -62,7 +69,8 @@ class PackingGauge : public Gauge {
     std::size_t first;
     std::size_t last;
   };
-  std::size_t sphereAt(const Side& side, const btVector3& p) const;
+  std::size_t sphereOn(const Side& side, const btVector3& p, const btVector3& direction) const;
+  bool measure(std::size_t i, std::size_t j, const btVector3& p, const btVector3& direction, Gap& gap) const;
 
   const std::vector<SphereContact>& contacts_;
   Side a_;

@@ -15,6 +15,7 @@ using PointIndices = std::array<int, kPatchPoints>;
 
 struct NewPoint {
   PointLaw law;
+  btScalar depth = 0;
   btVector3 normal{0, 0, 0};   ///< from A to B
   btVector3 on_b{0, 0, 0};     ///< in the world
   btVector3 local_a{0, 0, 0};  ///< the point on A, in the frame of A's object
@@ -63,14 +64,18 @@ btManifoldPoint* pointAt(btPersistentManifold& manifold, const btVector3& on_b) 
   return nullptr;
 }
 
-/// Unless the user has set a law of their own, through the bodies or in a material callback.
-void setSpring(btManifoldPoint& point, const PointLaw& law) {
+/// Stiffness, damping and the depth they act on, unless the user has set a law of their own, through the
+/// bodies or in a material callback. The callback has seen the true depth.
+void setLaw(btManifoldPoint& point, const NewPoint& from, const btTransform& a) {
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
                             BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
-  if (!law.spring || (point.m_contactPointFlags & kUsersOwn) != 0) return;
-  point.m_combinedContactStiffness1 = law.stiffness;
-  point.m_combinedContactDamping1 = law.damping;
+  if (!from.law.spring || (point.m_contactPointFlags & kUsersOwn) != 0) return;
+  point.m_combinedContactStiffness1 = from.law.stiffness;
+  point.m_combinedContactDamping1 = from.law.damping;
   point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+  point.m_distance1 = -from.law.depth;
+  point.m_positionWorldOnA = from.on_b + from.normal * from.law.depth;
+  point.m_localPointA = a.invXform(point.m_positionWorldOnA);
 }
 
 /// The points of one patch into the manifold that `result` holds.
@@ -81,11 +86,12 @@ void writePatch(const btCollisionObject* a, const btVector3& origin, const Conta
   int count = 0;
   for (int i = 0; i < patch.count; ++i) {
     NewPoint& point = points[count];
-    point.law = law.point(index, patch.points[i].depth);
-    if (-point.law.depth > manifold.getContactBreakingThreshold()) continue;
+    point.depth = patch.points[i].depth;
+    point.law = law.point(index, point.depth);
+    if (-point.depth > manifold.getContactBreakingThreshold()) continue;
     point.normal = patch.points[i].normal;
     point.on_b = origin + patch.points[i].on_b;
-    point.local_a = a->getWorldTransform().invXform(point.on_b + point.normal * point.law.depth);
+    point.local_a = a->getWorldTransform().invXform(point.on_b + point.normal * point.depth);
     ++count;
   }
   PointIndices match = matchPoints(manifold, points.data(), count);
@@ -100,9 +106,9 @@ void writePatch(const btCollisionObject* a, const btVector3& origin, const Conta
       before = cached;
       cached = point.local_a;
     }
-    result->addContactPoint(-point.normal, point.on_b, -point.law.depth);
+    result->addContactPoint(-point.normal, point.on_b, -point.depth);
     if (btManifoldPoint* added = pointAt(manifold, point.on_b)) {
-      setSpring(*added, point.law);
+      setLaw(*added, point, a->getWorldTransform());
     } else if (match[i] >= 0) {
       manifold.getContactPoint(match[i]).m_localPointA = before;  // kept by a friction anchor
     }

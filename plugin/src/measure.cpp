@@ -13,7 +13,10 @@ Measure::Measure(const ContactOptions& options, const PackingShape& a, const btC
   const PackingShape* packing_b = PackingShape::from(&b);
   on_surfaces = options.stiffness == 0 && a.impl().hasSurface() &&
                 (packing_b == nullptr || packing_b->impl().hasSurface());
-  if (!on_surfaces) return;
+  if (!on_surfaces) {
+    estimator = options.estimator;
+    return;
+  }
   slack_a = spacing + a.impl().recess() * a.getLocalScaling().x();
   if (packing_b != nullptr) slack_b = packing_b->impl().recess() * b.getLocalScaling().x();
 }

@@ -13,8 +13,9 @@ struct Measure {
   /// On the surfaces of the solids; else volume over area, which a given stiffness (force per volume) asks
   /// for, and a packing without a surface.
   bool on_surfaces = false;
-  btScalar spacing;      ///< of points, and the largest separation of a contact [m]
-  btScalar slack_a = 0;  ///< how far beyond their radii spheres look for contacts [m]
+  Estimator estimator = Estimator::raw;  ///< radii of the spheres
+  btScalar spacing;                      ///< of points, and the largest separation of a contact [m]
+  btScalar slack_a = 0;                  ///< how far beyond their radii spheres look for contacts [m]
   btScalar slack_b = 0;
 };
 

@@ -1,4 +1,4 @@
-// Points of a patch whose depth was measured on the solids' surfaces.
+// Contacts of a patch, measured on the solids' surfaces.
 #pragma once
 
 #include <vector>
@@ -19,8 +19,14 @@ struct PatchContacts {
   btScalar spacing;
 };
 
-/// Fills in points and normal; patch.count is 0 if no contact of the patch is near both surfaces.
-void measuredPoints(const PatchContacts& from, ContactPatch& patch);
+/// A point and the part of the patch's area that it stands for.
+struct MeasuredPoint {
+  ContactPoint point;
+  btScalar area;  ///< [m^2]
+};
+
+/// Appends those contacts of the patch that are on, or near, both surfaces.
+void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

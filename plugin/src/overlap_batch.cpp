@@ -67,13 +67,21 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
   if (!contact.valid || !(contact.a == a) || !(contact.b == b)) {
     contact.a = a;
     contact.b = b;
-    run(contact);
+    gatherStale(contact);
+    try {
+      runStale();
+    } catch (const Error&) {
+      // Another pair may be at fault; it will hear of it when it is asked for.
+      if (stale_.size() == 1) throw;
+      stale_.assign(1, &contact);
+      runStale();
+    }
   }
   contact.wanted = true;
   return contact.patches;
 }
 
-void OverlapBatch::run(PackingContact& asked) {
+void OverlapBatch::gatherStale(PackingContact& asked) {
   stale_.assign(1, &asked);
   for (PackingContact* other : live_) {
     if (other == &asked || !other->wanted) continue;
@@ -86,31 +94,36 @@ void OverlapBatch::run(PackingContact& asked) {
     other->b = b;
     stale_.push_back(other);
   }
-  queries_.clear();
-  for (PackingContact* contact : stale_) {
-    contact->valid = false;
-    queries_.push_back(makeQuery(*contact));
-  }
-  if (!context_) context_ = std::make_unique<QueryContext>(QueryContextOptions{options_.backend, 0});
-  const QueryOptions options{Want::contacts, options_.estimator};
-  try {
-    context_->run(queries_.data(), queries_.size(), options, result_);
-  } catch (const Error&) {
-    // Another pair may be at fault; it will hear of it when it is asked for.
-    if (stale_.size() == 1) throw;
-    stale_.resize(1);
-    context_->run(queries_.data(), 1, options, result_);
-  }
-  for (std::size_t i = 0; i < stale_.size(); ++i) takeResult(i, *stale_[i]);
 }
 
-PairQuery OverlapBatch::makeQuery(const PackingContact& contact) const {
-  const Measure measure(options_, *contact.a.shape, *contact.b.shape);
+void OverlapBatch::runStale() {
+  for (PackingContact* contact : stale_) contact->valid = false;
+  // Surfaces are measured with the spheres' own radii; volumes use the estimator's.
+  query(Estimator::raw);
+  query(Estimator::volume_true);
+}
+
+void OverlapBatch::query(Estimator estimator) {
+  queried_.clear();
+  queries_.clear();
+  for (PackingContact* contact : stale_) {
+    const Measure measure(options_, *contact->a.shape, *contact->b.shape);
+    if (measure.estimator != estimator) continue;
+    queried_.push_back(contact);
+    queries_.push_back(makeQuery(*contact, measure));
+  }
+  if (queries_.empty()) return;
+  if (!context_) context_ = std::make_unique<QueryContext>(QueryContextOptions{options_.backend, 0});
+  context_->run(queries_.data(), queries_.size(), {Want::contacts, estimator}, result_);
+  for (std::size_t i = 0; i < queried_.size(); ++i) takeResult(i, *queried_[i]);
+}
+
+PairQuery OverlapBatch::makeQuery(const PackingContact& contact, const Measure& measure) const {
   PairQuery query;
   query.a = &contact.a.shape->model();
   query.b = &contact.b.shape->model();
-  query.placement_a = PackingBody(*contact.a.shape, contact.a.transform, options_.estimator, 0).placement();
-  query.placement_b = PackingBody(*contact.b.shape, contact.b.transform, options_.estimator, 0).placement();
+  query.placement_a = PackingBody(*contact.a.shape, contact.a.transform, measure.estimator, 0).placement();
+  query.placement_b = PackingBody(*contact.b.shape, contact.b.transform, measure.estimator, 0).placement();
   query.margin = measure.slack_a + measure.slack_b + contact.a.margin + contact.b.margin;
   return query;
 }
@@ -131,11 +144,11 @@ void OverlapBatch::takeResult(std::size_t index, PackingContact& contact) {
   append(result_.contacts_b);
 
   const Measure measure(options_, *contact.a.shape, *contact.b.shape);
-  const PackingBody a(*contact.a.shape, contact.a.transform, options_.estimator, measure.slack_a);
-  const PackingBody b(*contact.b.shape, contact.b.transform, options_.estimator, measure.slack_b);
+  const PackingBody a(*contact.a.shape, contact.a.transform, measure.estimator, measure.slack_a);
+  const PackingBody b(*contact.b.shape, contact.b.transform, measure.estimator, measure.slack_b);
   const PackingGauge gauge(a, b, contacts_, count_a);
-  buildContactPatches(contacts_, measure.on_surfaces ? &gauge : nullptr, measure.spacing,
-                      contact.a.transform.getBasis(), contact.patches);
+  buildContactPatches(contacts_, measure.on_surfaces ? &gauge : nullptr, measure.slack_a + measure.slack_b,
+                      measure.spacing, contact.a.transform.getBasis(), contact.patches);
   contact.valid = true;
 }
 

@@ -10,6 +10,7 @@
 #include "contact_patch.hpp"
 #include "innersphere/contact_options.hpp"
 #include "innersphere/query.hpp"
+#include "measure.hpp"
 #include "packing_body.hpp"
 
 namespace innersphere {
@@ -60,8 +61,10 @@ class OverlapBatch {
                                           const PackingSide& b);
 
  private:
-  void run(PackingContact& asked);
-  PairQuery makeQuery(const PackingContact& contact) const;
+  void gatherStale(PackingContact& asked);
+  void runStale();
+  void query(Estimator estimator);
+  PairQuery makeQuery(const PackingContact& contact, const Measure& measure) const;
   void takeResult(std::size_t index, PackingContact& contact);
 
   std::mutex mutex_;
@@ -69,6 +72,7 @@ class OverlapBatch {
   std::unique_ptr<QueryContext> context_;  ///< made by the first query
   std::vector<PackingContact*> live_;
   std::vector<PackingContact*> stale_;
+  std::vector<PackingContact*> queried_;
   std::vector<PairQuery> queries_;
   QueryResult result_;
   std::vector<SphereContact> contacts_;

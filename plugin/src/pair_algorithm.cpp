@@ -87,7 +87,7 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
 
   static const std::vector<ContactPatch> kNone;
   const std::vector<ContactPatch>* patches = &kNone;
-  const ContactOptions options = state_->registration->options();
+  ContactOptions options = state_->registration->options();
   if (!isFinite(a->getWorldTransform()) || !isFinite(b->getWorldTransform())) {
     state_->report("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
   } else {
@@ -99,6 +99,11 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
   }
   const btCollisionObject& object_a = *a->getCollisionObject();
   const btCollisionObject& object_b = *b->getCollisionObject();
+  // A law of the user's own on a body takes the place of ours.
+  if (((object_a.getCollisionFlags() | object_b.getCollisionFlags()) &
+       btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) != 0) {
+    options.response = Response::rigid;
+  }
   ContactLaw law(options, reducedMass(object_a, object_b), dispatch.m_timeStep,
                  sizeOf(*packing, *b->getCollisionShape()));
   law.weigh(*patches);

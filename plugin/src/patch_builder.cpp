@@ -3,6 +3,7 @@
 #include "innersphere/patch.hpp"
 #include "measured_points.hpp"
 #include "patch_moments.hpp"
+#include "point_selection.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -34,8 +35,8 @@ std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& pa
 
 }  // namespace
 
-void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge* gauge, btScalar spacing,
-                         const btMatrix3x3& reference, std::vector<ContactPatch>& result) {
+void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge* gauge, btScalar slack,
+                         btScalar spacing, const btMatrix3x3& reference, std::vector<ContactPatch>& result) {
   static thread_local std::vector<Patch> patches;
   static thread_local std::vector<std::vector<std::size_t>> members;
   static thread_local std::vector<std::uint64_t> old_ids;
@@ -52,18 +53,28 @@ void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge
   for (std::size_t i = 0; i < contacts.size(); ++i)
     members[bestPatch(contacts[i], patches, options)].push_back(i);
 
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    const PatchMoments moments = patchMoments(contacts, members[p], reference);
-    if (!(moments.area > 0)) continue;
-    ContactPatch patch;
-    patch.normal = moments.normal;
-    patch.centre = moments.centre;
-    patch.area = moments.area;
-    if (gauge != nullptr) {
-      measuredPoints({contacts, members[p], moments, old_ids, *gauge, spacing}, patch);
-    } else {
-      pointsFromMoments(moments, spacing, patch);
+  static thread_local std::vector<PatchMoments> moments;
+  moments.clear();
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    moments.push_back(patchMoments(contacts, members[p], reference));
+  if (gauge != nullptr) {
+    static thread_local std::vector<MeasuredPoint> found;
+    found.clear();
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      if (moments[p].area > 0)
+        measurePoints({contacts, members[p], moments[p], old_ids, *gauge, spacing}, found);
     }
+    selectPatches(found, old_ids, spacing, result);
+    if (!result.empty()) return;
+  }
+  // Bodies that are deep inside each other have no surface near; their overlap still says which way is out.
+  for (const PatchMoments& m : moments) {
+    if (!(m.area > 0)) continue;
+    ContactPatch patch;
+    patch.normal = m.normal;
+    patch.centre = m.centre;
+    patch.area = m.area;
+    pointsFromMoments(m, slack, spacing, patch);
     if (patch.count > 0) result.push_back(patch);
   }
 }

@@ -14,10 +14,10 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// whose depth was measured on the solids' surfaces: the deepest and those that span the patch, the old ones
 /// by preference. Without one, points are placed by the patch's moments, with the mean depth volume / area
 /// and its slope. Points closer than `spacing` [m] to each other are one, and those further apart from the
-/// other body than `spacing` are left out. `reference` are axes that turn with a body: points keep their
-/// places in them.
-void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge* gauge, btScalar spacing,
-                         const btMatrix3x3& reference, std::vector<ContactPatch>& patches);
+/// other body than `spacing` are left out. `slack` is by how much the spheres of both bodies were enlarged.
+/// `reference` are axes that turn with a body: points keep their places in them.
+void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge* gauge, btScalar slack,
+                         btScalar spacing, const btMatrix3x3& reference, std::vector<ContactPatch>& patches);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

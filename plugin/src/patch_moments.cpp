@@ -60,7 +60,10 @@ PatchMoments patchMoments(const std::vector<SphereContact>& contacts, const std:
   return m;
 }
 
-void pointsFromMoments(const PatchMoments& m, btScalar spacing, ContactPatch& patch) {
+void pointsFromMoments(const PatchMoments& m, btScalar slack, btScalar spacing, ContactPatch& patch) {
+  patch.count = 0;
+  const btScalar depth = m.volume / m.area - slack;
+  if (!(depth > 0)) return;
   // Symmetric square root of the spread: the corners move smoothly with it, without picking axes.
   const btScalar root_det = btSqrt(btMax(btScalar(0), m.spread[0] * m.spread[2] - m.spread[1] * m.spread[1]));
   const btScalar norm = btSqrt(m.spread[0] + m.spread[2] + 2 * root_det);
@@ -70,7 +73,6 @@ void pointsFromMoments(const PatchMoments& m, btScalar spacing, ContactPatch& pa
     r[1] = m.spread[1] / norm;
     r[2] = (m.spread[2] + root_det) / norm;
   }
-  const btScalar depth = m.volume / m.area;
   const btScalar root3 = btSqrt(btScalar(3));
   btScalar u[kPatchPoints], v[kPatchPoints], steepest = 0;
   for (int i = 0; i < kPatchPoints; ++i) {
@@ -81,7 +83,6 @@ void pointsFromMoments(const PatchMoments& m, btScalar spacing, ContactPatch& pa
   }
   // No corner is lifted out of the contact: the sum of the forces is then that of the volume.
   const btScalar tilt = steepest > depth ? depth / steepest : btScalar(1);
-  patch.count = 0;
   for (int corner = 0; corner < kPatchPoints; ++corner) {
     ContactPoint point;
     point.normal = m.normal;

@@ -42,15 +42,15 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
   patches_.clear();
   if (!surface_) return patches_;
   const Measure measure(options, packing_, other_);
-  const PackingBody a(packing_, packing, options.estimator, measure.slack_a);
+  const PackingBody a(packing_, packing, measure.estimator, measure.slack_a);
   touches.clear();
   surface_->touch(a, other, touches);
   contacts.clear();
   for (const Touch& touch : touches)
     contacts.push_back(cap(touch, a.centreOf(touch.sphere), a.reach(touch.sphere)));
   const SurfaceGauge gauge(a, touches);
-  buildContactPatches(contacts, measure.on_surfaces ? &gauge : nullptr, measure.spacing, packing.getBasis(),
-                      patches_);
+  buildContactPatches(contacts, measure.on_surfaces ? &gauge : nullptr, measure.slack_a, measure.spacing,
+                      packing.getBasis(), patches_);
   return patches_;
 }
 

@@ -1,0 +1,119 @@
+#include "point_selection.hpp"
+
+#include <algorithm>
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// A point of the step before is kept until another one spans this much more, or is this fraction of the
+/// spacing deeper.
+constexpr btScalar kKeepSpan = btScalar(1.3);
+constexpr btScalar kKeepDepth = btScalar(1e-3);
+/// Normals within 15 degrees of that of a group's deepest point belong to the group.
+constexpr btScalar kSameGroup = btScalar(0.966);
+/// More groups than this are merged.
+constexpr std::size_t kMaxGroups = 8;
+
+class Selection {
+ public:
+  Selection(const std::vector<ContactPoint>& found, const std::vector<std::uint64_t>& old_ids,
+            btScalar spacing, ContactPatch& patch)
+      : found_(found), old_ids_(old_ids), spacing_(spacing), patch_(patch) {}
+
+  void run() {
+    patch_.count = 0;
+    const auto deepest = [&](const ContactPoint& point) {
+      return point.depth + (isOld(point) ? kKeepDepth * spacing_ : btScalar(0));
+    };
+    const auto farthest = [&](const ContactPoint& point) { return keep(point) * point.on_b.distance(at(0)); };
+    const auto largest = [&](const ContactPoint& point) {
+      return keep(point) * btFabs(area(at(0), at(1), point.on_b));
+    };
+    // The fourth widens the triangle across one of its sides.
+    const auto widest = [&](const ContactPoint& point) {
+      const btScalar turn = area(at(0), at(1), at(2)) < 0 ? btScalar(-1) : btScalar(1);
+      btScalar most = 0;
+      for (int i = 0; i < 3; ++i) most = btMax(most, -turn * area(at(i), at((i + 1) % 3), point.on_b));
+      return keep(point) * most;
+    };
+    if (take(deepest) && take(farthest) && take(largest)) take(widest);
+  }
+
+ private:
+  template <typename Score>
+  bool take(const Score& score) {
+    const ContactPoint* best = nullptr;
+    btScalar best_score = 0;
+    for (const ContactPoint& point : found_) {
+      if (!apart(point)) continue;
+      const btScalar s = score(point);
+      if (best == nullptr || s > best_score) {
+        best = &point;
+        best_score = s;
+      }
+    }
+    if (best == nullptr) return false;
+    patch_.points[patch_.count++] = *best;
+    return true;
+  }
+  bool apart(const ContactPoint& point) const {
+    for (int i = 0; i < patch_.count; ++i) {
+      if (point.on_b.distance2(at(i)) <= spacing_ * spacing_) return false;
+    }
+    return true;
+  }
+  bool isOld(const ContactPoint& point) const {
+    return std::find(old_ids_.begin(), old_ids_.end(), point.id) != old_ids_.end();
+  }
+  btScalar keep(const ContactPoint& point) const { return isOld(point) ? kKeepSpan : btScalar(1); }
+  const btVector3& at(int i) const { return patch_.points[i].on_b; }
+  btScalar area(const btVector3& p, const btVector3& q, const btVector3& r) const {
+    return (q - p).cross(r - p).dot(patch_.normal);
+  }
+
+  const std::vector<ContactPoint>& found_;
+  const std::vector<std::uint64_t>& old_ids_;
+  btScalar spacing_;
+  ContactPatch& patch_;
+};
+
+}  // namespace
+
+void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uint64_t>& old_ids,
+                   btScalar spacing, std::vector<ContactPatch>& patches) {
+  static thread_local std::vector<std::vector<ContactPoint>> groups;
+  for (std::vector<ContactPoint>& group : groups) group.clear();
+  patches.clear();
+  std::stable_sort(found.begin(), found.end(), [](const MeasuredPoint& a, const MeasuredPoint& b) {
+    return a.point.depth > b.point.depth;
+  });
+  for (const MeasuredPoint& m : found) {
+    std::size_t best = patches.size();
+    btScalar cosine = patches.size() < kMaxGroups ? kSameGroup : btScalar(-2);
+    for (std::size_t g = 0; g < patches.size(); ++g) {
+      const btScalar c = groups[g].front().normal.dot(m.point.normal);
+      if (c > cosine) {
+        cosine = c;
+        best = g;
+      }
+    }
+    if (best == patches.size()) {
+      patches.emplace_back();
+      if (groups.size() < patches.size()) groups.emplace_back();
+    }
+    groups[best].push_back(m.point);
+    ContactPatch& patch = patches[best];
+    patch.area += m.area;
+    patch.normal += m.point.normal * m.area;
+    patch.centre += m.point.on_b * m.area;
+  }
+  for (std::size_t g = 0; g < patches.size(); ++g) {
+    patches[g].normal.normalize();
+    patches[g].centre /= patches[g].area;
+    Selection(groups[g], old_ids, spacing, patches[g]).run();
+  }
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

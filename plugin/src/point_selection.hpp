@@ -1,0 +1,21 @@
+// Which measured contacts become points of manifolds.
+#pragma once
+
+#include <vector>
+
+#include "contact_patch.hpp"
+#include "measured_points.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Groups points by their normals, wherever they are: rigid bodies feel only the wrench, and four points
+/// spread over everything that faces one way carry any load that all of them could. Each group becomes a
+/// patch with up to four points: the deepest, then those that span the largest area with it. Points with ids
+/// of the step before are preferred, so that the choice does not flicker; of points closer than `spacing` [m]
+/// to each other one is left. Reorders `found`.
+void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uint64_t>& old_ids,
+                   btScalar spacing, std::vector<ContactPatch>& patches);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

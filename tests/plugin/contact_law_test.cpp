@@ -1,0 +1,150 @@
+// How hard contacts push.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "test_packings.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+double restDepth(TestWorld& world, btRigidBody& cube, double seconds = 4) {
+  cube.setActivationState(DISABLE_DEACTIVATION);
+  world.run(seconds);
+  EXPECT_LT(cube.getLinearVelocity().length(), 0.01);
+  return 0.5 - cube.getWorldTransform().getOrigin().z();
+}
+
+TEST(ContactLaw, DefaultIsStiffWhateverMassAndStep) {
+  for (const double mass : {0.001, 1.0, 1000.0}) {
+    for (const double dt : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+      for (const Response response : {Response::compliant, Response::rigid}) {
+        ContactOptions options;
+        options.response = response;
+        TestWorld world(options);
+        world.addFloor();
+        btRigidBody& cube =
+            world.add(makeShape(latticeBox({1, 1, 1}, 8)), mass, btVector3(0, 0, btScalar(0.52)));
+        cube.setActivationState(DISABLE_DEACTIVATION);
+        world.run(2, dt);
+        EXPECT_NEAR(cube.getWorldTransform().getOrigin().z(), 0.5, 0.005) << mass << " kg, " << dt << " s";
+        EXPECT_LT(cube.getLinearVelocity().length(), 0.01);
+      }
+    }
+  }
+}
+
+// A stiffness K [N/m^3] makes the force K V. A lattice of touching balls at depth d loses the volume of their
+// caps: n^2 pi d^2 (3 r - d) / 3.
+TEST(ContactLaw, GivenStiffnessBalancesTheWeightByVolume) {
+  constexpr int kCells = 8;
+  constexpr double kRadius = 0.5 / kCells;
+  for (const double depth : {0.01, 0.03}) {
+    const double volume = kCells * kCells * M_PI * depth * depth * (3 * kRadius - depth) / 3;
+    ContactOptions options;
+    options.stiffness = 9.81 / volume;  // for 1 kg
+    TestWorld world(options);
+    world.addFloor();
+    btRigidBody& cube =
+        world.add(makeShape(latticeBox({1, 1, 1}, kCells)), 1, btVector3(0, 0, btScalar(0.5)));
+    EXPECT_NEAR(restDepth(world, cube), depth, 0.02 * depth);
+  }
+}
+
+// Bullet's split impulse takes contacts deeper than 0.04 m out of the velocity solver, and their spring with
+// them.
+TEST(ContactLaw, SoftContactDeeperThanTheSplitImpulseThreshold) {
+  constexpr int kCells = 4;
+  constexpr double kRadius = 0.5 / kCells, kDepth = 0.1;
+  const double volume = kCells * kCells * M_PI * kDepth * kDepth * (3 * kRadius - kDepth) / 3;
+  ContactOptions options;
+  options.stiffness = 9.81 / volume;
+  TestWorld world(options);
+  ASSERT_TRUE(world.world.getSolverInfo().m_splitImpulse);
+  world.addFloor();
+  btRigidBody& cube = world.add(makeShape(latticeBox({1, 1, 1}, kCells)), 1, btVector3(0, 0, btScalar(0.5)));
+  EXPECT_NEAR(restDepth(world, cube), kDepth, 0.02 * kDepth);
+}
+
+TEST(ContactLaw, BodiesThatStartInsideEachOtherPartGently) {
+  TestWorld world;
+  world.world.setGravity(btVector3(0, 0, 0));
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 8));
+  btRigidBody& a = world.add(shape, 1, btVector3(0, 0, 0));
+  btRigidBody& b = world.add(shape, 1, btVector3(0, 0, btScalar(0.8)));
+  double fastest = 0;
+  for (int i = 0; i < 60; ++i) {
+    world.run(1.0 / 60);
+    fastest = std::max(fastest, double(b.getLinearVelocity().length()));
+  }
+  EXPECT_GE(b.getWorldTransform().getOrigin().z() - a.getWorldTransform().getOrigin().z(), 0.99);
+  EXPECT_LT(fastest, 2);
+}
+
+TEST(ContactLaw, UsersOwnStiffnessIsKept) {
+  TestWorld world;
+  world.addFloor();
+  btRigidBody& cube = world.add(makeShape(latticeBox({1, 1, 1}, 8)), 1, btVector3(0, 0, btScalar(0.5)));
+  cube.setContactStiffnessAndDamping(100, 10);  // on each of four points
+  EXPECT_NEAR(restDepth(world, cube), 9.81 / 400, 2e-3);
+}
+
+TEST(ContactLaw, MaterialCallbackSeesEveryPoint) {
+  static int calls;
+  calls = 0;
+  gContactAddedCallback = [](btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) {
+    ++calls;
+    point.m_combinedFriction = 0;
+    return true;
+  };
+  TestWorld world;
+  world.addFloor();
+  btRigidBody& cube = world.add(makeShape(latticeBox({1, 1, 1}, 8)), 1, btVector3(0, 0, btScalar(0.5)));
+  cube.setCollisionFlags(cube.getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
+  cube.setLinearVelocity(btVector3(1, 0, 0));
+  world.run(1);
+  gContactAddedCallback = nullptr;
+  EXPECT_GE(calls, 4 * 59);
+  EXPECT_NEAR(cube.getLinearVelocity().x(), 1, 0.01);  // without friction it slides on
+}
+
+TEST(ContactLaw, FrictionStopsASlidingBodyAsCoulombSays) {
+  for (const bool on_packing : {false, true}) {
+    TestWorld world;
+    if (on_packing) {
+      world.add(makeShape(latticeBox({6, 6, 2}, 12)), 0, btVector3(0, 0, -1));
+    } else {
+      world.addFloor();
+    }
+    world.bodies[0]->setFriction(1);
+    btRigidBody& cube =
+        world.add(makeShape(latticeBox({1, 1, btScalar(0.2)}, 10)), 1, btVector3(0, 0, btScalar(0.1)));
+    cube.setFriction(btScalar(0.3));
+    world.run(0.25);
+    const btVector3 start = cube.getWorldTransform().getOrigin();
+    cube.setLinearVelocity(btVector3(2, 0, 0));
+    world.run(1.5, 1.0 / 240);
+    const double distance = cube.getWorldTransform().getOrigin().x() - start.x();
+    EXPECT_NEAR(distance, 4 / (2 * 0.3 * 9.81), 0.03) << (on_packing ? "packing" : "plane");
+  }
+}
+
+TEST(ContactLaw, RestitutionBounces) {
+  TestWorld world;
+  world.addFloor().setRestitution(1);
+  btRigidBody& ball = world.add(makeShape(singleBall(0.5)), 1, btVector3(0, 0, btScalar(1.5)));
+  ball.setRestitution(btScalar(0.8));
+  double highest = 0;
+  bool bounced = false;
+  for (int i = 0; i < 480; ++i) {
+    world.run(1.0 / 240, 1.0 / 240);
+    bounced = bounced || ball.getLinearVelocity().z() > 0;
+    if (bounced) highest = std::max(highest, double(ball.getWorldTransform().getOrigin().z()));
+  }
+  EXPECT_NEAR(highest, 0.5 + 0.64, 0.05);
+}
+
+}  // namespace
+}  // namespace innersphere::test

@@ -1,0 +1,113 @@
+// contactTest and contactPairTest: true contacts, and no side effects.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "test_packings.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+struct Collect : btCollisionWorld::ContactResultCallback {
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* object0, int, int,
+                           const btCollisionObjectWrapper* object1, int, int) override {
+    points.push_back(point);
+    first = object0->getCollisionObject();
+    second = object1->getCollisionObject();
+    return 0;
+  }
+  double deepest() const {
+    double depth = -1e9;
+    for (const btManifoldPoint& p : points) depth = std::max(depth, -double(p.getDistance()));
+    return depth;
+  }
+  std::vector<btManifoldPoint> points;
+  const btCollisionObject* first = nullptr;
+  const btCollisionObject* second = nullptr;
+};
+
+class ContactQuery : public testing::TestWithParam<bool> {
+ protected:
+  /// A unit cube 0.1 deep in the ground, which is the plane or another packing.
+  void build(bool on_packing) {
+    if (on_packing) {
+      ground = &world.add(makeShape(latticeBox({2, 2, 2}, 10)), 0, btVector3(0, 0, -1));
+    } else {
+      ground = &world.addFloor();
+    }
+    cube = &world.add(makeShape(latticeBox({1, 1, 1}, 8)), 1, btVector3(0, 0, btScalar(0.4)));
+    world.world.updateAabbs();
+  }
+  TestWorld world;
+  btRigidBody* ground = nullptr;
+  btRigidBody* cube = nullptr;
+};
+
+TEST_P(ContactQuery, PairTestFindsDepthAndDirectionInBothOrders) {
+  build(GetParam());
+  for (const bool swapped : {false, true}) {
+    Collect found;
+    world.world.contactPairTest(swapped ? ground : cube, swapped ? cube : ground, found);
+    ASSERT_FALSE(found.points.empty());
+    EXPECT_NEAR(found.deepest(), 0.1, 1e-3);
+    for (const btManifoldPoint& p : found.points) {
+      // From the second object, whatever the order, to the first.
+      const double up = found.first == cube ? 1 : -1;
+      EXPECT_NEAR(p.m_normalWorldOnB.z(), up, 1e-3);
+      const btVector3 on_cube = found.first == cube ? p.getPositionWorldOnA() : p.getPositionWorldOnB();
+      const btVector3 on_ground = found.first == cube ? p.getPositionWorldOnB() : p.getPositionWorldOnA();
+      EXPECT_NEAR(on_cube.z(), -0.1, 2e-3);
+      EXPECT_NEAR(on_ground.z(), 0, 2e-3);
+    }
+  }
+}
+
+TEST_P(ContactQuery, ContactTestFindsTheSame) {
+  build(GetParam());
+  Collect found;
+  world.world.contactTest(cube, found);
+  ASSERT_FALSE(found.points.empty());
+  EXPECT_NEAR(found.deepest(), 0.1, 1e-3);
+}
+
+TEST_P(ContactQuery, HasNoSideEffects) {
+  build(GetParam());
+  Collect found;
+  world.world.contactPairTest(cube, ground, found);
+  world.world.contactTest(cube, found);
+  EXPECT_EQ(world.dispatcher.getNumManifolds(), 0);
+  EXPECT_EQ(cube->getLinearVelocity().length2(), 0);
+  world.run(1.0 / 60);
+  const int manifolds = world.dispatcher.getNumManifolds();
+  const int contacts = world.contactCount();
+  for (int i = 0; i < 3; ++i) world.world.contactPairTest(cube, ground, found);
+  EXPECT_EQ(world.dispatcher.getNumManifolds(), manifolds);
+  EXPECT_EQ(world.contactCount(), contacts);
+}
+
+TEST_P(ContactQuery, InsideACompound) {
+  build(GetParam());
+  auto child = makeShape(latticeBox({1, 1, 1}, 8));
+  auto compound = std::make_shared<btCompoundShape>();
+  compound->addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 1)), child.get());
+  btRigidBody& body = world.add(compound, 1, btVector3(0, 0, btScalar(-0.65)));
+  world.world.updateAabbs();
+  Collect found;
+  world.world.contactPairTest(&body, ground, found);
+  EXPECT_NEAR(found.deepest(), 0.15, 1e-3);
+}
+
+TEST_P(ContactQuery, NothingTouchesNothingFound) {
+  build(GetParam());
+  cube->setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 2)));
+  Collect found;
+  world.world.contactPairTest(cube, ground, found);
+  EXPECT_TRUE(found.points.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Grounds, ContactQuery, testing::Bool(),
+                         [](const auto& info) { return info.param ? "packing" : "plane"; });
+
+}  // namespace
+}  // namespace innersphere::test

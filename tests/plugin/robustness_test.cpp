@@ -1,0 +1,223 @@
+// What must not happen whatever the user does.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+#include <LinearMath/btThreads.h>
+
+#include "innersphere/log.hpp"
+#include "test_packings.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+class CaptureLog {
+ public:
+  CaptureLog() {
+    setLogCallback([this](const std::string& message) { messages.push_back(message); });
+  }
+  ~CaptureLog() { setLogCallback(nullptr); }
+  std::vector<std::string> messages;
+};
+
+TEST(Robustness, ABodyAtNanIsSkippedAndReportedOnce) {
+  CaptureLog log;
+  TestWorld world;
+  world.addFloor();
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 6));
+  btRigidBody& lost = world.add(shape, 1, btVector3(0, 0, btScalar(0.5)));
+  btRigidBody& other = world.add(shape, 1, btVector3(0, 0, btScalar(1.5)));
+  world.run(0.1);
+  btTransform broken = lost.getWorldTransform();
+  broken.getOrigin().setX(std::numeric_limits<btScalar>::quiet_NaN());
+  lost.setWorldTransform(broken);
+  // Dispatch what the broadphase knew before, as when the body breaks in the middle of a step.
+  for (int i = 0; i < 3; ++i) {
+    world.dispatcher.dispatchAllCollisionPairs(world.broadphase.getOverlappingPairCache(),
+                                               world.world.getDispatchInfo(), &world.dispatcher);
+  }
+  EXPECT_EQ(log.messages.size(), 2u);  // with the floor and with the other box
+  for (int i = 0; i < world.dispatcher.getNumManifolds(); ++i) {
+    EXPECT_EQ(world.dispatcher.getManifoldByIndexInternal(i)->getNumContacts(), 0);
+  }
+  world.world.removeRigidBody(&lost);
+  world.run(3);
+  EXPECT_NEAR(other.getWorldTransform().getOrigin().z(), 0.5, 0.01);
+  world.world.addRigidBody(&lost);  // TestWorld removes it
+}
+
+TEST(Robustness, ChangedShapeOfALivingPair) {
+  TestWorld world;
+  world.addFloor();
+  btRigidBody& body = world.add(makeShape(latticeBox({1, 1, 1}, 6)), 1, btVector3(0, 0, btScalar(0.5)));
+  world.run(0.2);
+  const auto half = makeShape(latticeBox({btScalar(0.5), btScalar(0.5), btScalar(0.5)}, 6));
+  body.setCollisionShape(half.get());
+  body.activate();
+  world.run(2);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.25, 0.005);
+  btSphereShape sphere(btScalar(0.3));
+  body.setCollisionShape(&sphere);
+  world.run(0.1);  // the pair has no packing any more; nothing may crash
+  world.world.removeRigidBody(&body);
+  world.world.addRigidBody(&body);
+  body.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 1)));
+  body.activate();
+  world.run(2);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.3, 0.02);
+}
+
+TEST(Robustness, RemovedBodiesLeaveNothingBehind) {
+  TestWorld world;
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 6));
+  world.add(shape, 0, btVector3(0, 0, 0));
+  for (int i = 0; i < 3; ++i) world.add(shape, 1, btVector3(0, 0, btScalar(1.0 + i)));
+  world.run(0.2);
+  EXPECT_GT(world.dispatcher.getNumManifolds(), 0);
+  while (world.bodies.size() > 1) {
+    world.world.removeRigidBody(world.bodies.back().get());
+    world.bodies.pop_back();
+    world.run(0.05);
+  }
+  EXPECT_EQ(world.dispatcher.getNumManifolds(), 0);
+}
+
+TEST(Robustness, KinematicBodiesCarryOthers) {
+  TestWorld world;
+  const auto shape = makeShape(latticeBox({2, 2, 1}, 8));
+  btRigidBody& lift = world.add(shape, 0, btVector3(0, 0, 0));
+  lift.setCollisionFlags(lift.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+  lift.setActivationState(DISABLE_DEACTIVATION);
+  btRigidBody& cube = world.add(makeShape(latticeBox({1, 1, 1}, 6)), 1, btVector3(0, 0, btScalar(1.0)));
+  for (int i = 0; i < 120; ++i) {
+    lift.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(0.005 * i))));
+    world.run(1.0 / 60);
+  }
+  EXPECT_NEAR(cube.getWorldTransform().getOrigin().z(), 0.005 * 119 + 1, 0.01);
+}
+
+TEST(Robustness, SensorsReportButDoNotPush) {
+  TestWorld world;
+  btRigidBody& sensor = world.add(makeShape(latticeBox({1, 1, 1}, 6)), 0, btVector3(0, 0, 0));
+  sensor.setCollisionFlags(sensor.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  btRigidBody& cube = world.add(makeShape(latticeBox({1, 1, 1}, 6)), 1, btVector3(0, 0, btScalar(0.9)));
+  world.run(0.1);
+  EXPECT_GT(world.contactCount(), 0);
+  world.run(1);
+  EXPECT_LT(cube.getWorldTransform().getOrigin().z(), -2);
+}
+
+TEST(Robustness, GhostObjectsSeeOverlaps) {
+  btGhostPairCallback callback;
+  btPairCachingGhostObject ghost;
+  TestWorld world;
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 6));
+  ghost.setCollisionShape(shape.get());
+  ghost.setCollisionFlags(ghost.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  world.broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&callback);
+  world.world.addCollisionObject(&ghost);
+  world.add(shape, 1, btVector3(0, 0, btScalar(0.5)));
+  world.run(1.0 / 60);
+  EXPECT_EQ(ghost.getNumOverlappingObjects(), 1);
+  EXPECT_GT(world.contactCount(), 0);
+  world.world.removeCollisionObject(&ghost);
+}
+
+TEST(Robustness, SleepingBodiesSleepAndWake) {
+  TestWorld world;
+  world.addFloor();
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 6));
+  btRigidBody& lower = world.add(shape, 1, btVector3(0, 0, btScalar(0.5)));
+  world.add(shape, 1, btVector3(0, 0, btScalar(1.5)));
+  world.run(3);
+  EXPECT_FALSE(lower.isActive());
+  btRigidBody& hammer = world.add(shape, 1, btVector3(0, 0, btScalar(2.8)));
+  world.run(3);
+  EXPECT_NEAR(hammer.getWorldTransform().getOrigin().z(), 2.5, 0.01);
+}
+
+TEST(Robustness, MultithreadedDispatcher) {
+  btSetTaskScheduler(btGetSequentialTaskScheduler());
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcherMt dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  world.setGravity(btVector3(0, 0, -10));
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 6));
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  btRigidBody floor(0, nullptr, &plane);
+  world.addRigidBody(&floor);
+  btVector3 inertia;
+  shape->calculateLocalInertia(1, inertia);
+  std::vector<std::unique_ptr<btRigidBody>> bodies;
+  for (int i = 0; i < 3; ++i) {
+    bodies.push_back(std::make_unique<btRigidBody>(1, nullptr, shape.get(), inertia));
+    bodies.back()->setWorldTransform(
+        btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(0.55 + 1.05 * i))));
+    world.addRigidBody(bodies.back().get());
+  }
+  for (int i = 0; i < 180; ++i) world.stepSimulation(btScalar(1) / 60, 0);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(bodies[i]->getWorldTransform().getOrigin().z(), 0.5 + i, 0.01);
+  for (const auto& body : bodies) world.removeRigidBody(body.get());
+  world.removeRigidBody(&floor);
+}
+
+TEST(Robustness, MultiBodyLinks) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  btMultiBodyConstraintSolver solver;
+  btMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  world.setGravity(btVector3(0, 0, -10));
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  btRigidBody floor(0, nullptr, &plane);
+  world.addRigidBody(&floor);
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 6));
+  btVector3 inertia;
+  shape->calculateLocalInertia(1, inertia);
+  btMultiBody body(0, 1, inertia, false, false);
+  body.setBaseWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(0.6))));
+  body.finalizeMultiDof();
+  btMultiBodyLinkCollider collider(&body, -1);
+  collider.setCollisionShape(shape.get());
+  collider.setWorldTransform(body.getBaseWorldTransform());
+  body.setBaseCollider(&collider);
+  world.addCollisionObject(&collider, btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter);
+  world.addMultiBody(&body);
+  for (int i = 0; i < 120; ++i) world.stepSimulation(btScalar(1) / 60, 0);
+  EXPECT_NEAR(body.getBasePos().z(), 0.5, 0.005);
+  world.removeMultiBody(&body);
+  world.removeCollisionObject(&collider);
+  world.removeRigidBody(&floor);
+}
+
+TEST(Robustness, SameStepsSameBits) {
+  const auto positions = [] {
+    TestWorld world;
+    world.addFloor();
+    const auto shape = makeShape(latticeBox({1, 1, 1}, 6));
+    for (int i = 0; i < 4; ++i) {
+      world.add(shape, 1, btVector3(btScalar(0.1 * i), btScalar(0.03 * i), btScalar(0.6 + 1.1 * i)),
+                btQuaternion(btVector3(0, 0, 1), btScalar(0.2 * i)));
+    }
+    world.run(2);
+    std::vector<btVector3> result;
+    for (const auto& body : world.bodies) result.push_back(body->getWorldTransform().getOrigin());
+    return result;
+  };
+  EXPECT_EQ(positions(), positions());
+}
+
+}  // namespace
+}  // namespace innersphere::test

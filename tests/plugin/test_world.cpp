@@ -1,0 +1,77 @@
+#include "test_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace innersphere::test {
+
+TestWorld::TestWorld(const ContactOptions& options)
+    : dispatcher(&configuration), world(&dispatcher, &broadphase, &solver, &configuration) {
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher, options);
+  world.setGravity(btVector3(0, 0, btScalar(-9.81)));
+}
+
+TestWorld::~TestWorld() {
+  for (const auto& body : bodies) world.removeRigidBody(body.get());
+}
+
+btRigidBody& TestWorld::add(std::shared_ptr<btCollisionShape> shape, double mass, const btVector3& position,
+                            const btQuaternion& rotation) {
+  btVector3 inertia(0, 0, 0);
+  if (mass > 0) shape->calculateLocalInertia(btScalar(mass), inertia);
+  btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, shape.get(), inertia);
+  info.m_startWorldTransform = btTransform(rotation, position);
+  bodies.push_back(std::make_unique<btRigidBody>(info));
+  world.addRigidBody(bodies.back().get());
+  shapes_.push_back(std::move(shape));
+  return *bodies.back();
+}
+
+btRigidBody& TestWorld::addFloor() {
+  return add(std::make_shared<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)), 0, btVector3(0, 0, 0));
+}
+
+void TestWorld::run(double seconds, double dt) {
+  const int steps = static_cast<int>(std::lround(seconds / dt));
+  for (int i = 0; i < steps; ++i) world.stepSimulation(btScalar(dt), 0);
+}
+
+double TestWorld::kineticEnergy() const {
+  double energy = 0;
+  for (const auto& body : bodies) {
+    if (body->isStaticObject()) continue;
+    const btVector3 spin = body->getAngularVelocity();
+    const btVector3 momentum = body->getInvInertiaTensorWorld().inverse() * spin;
+    energy += 0.5 * (body->getLinearVelocity().length2() / body->getInvMass() + momentum.dot(spin));
+  }
+  return energy;
+}
+
+int TestWorld::contactCount() const {
+  int count = 0;
+  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+    count += dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
+  }
+  return count;
+}
+
+double TestWorld::deepestContact() const {
+  double deepest = 0;
+  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+      deepest = std::max(deepest, -double(manifold.getContactPoint(k).getDistance()));
+    }
+  }
+  return deepest;
+}
+
+double tiltDegrees(const btRigidBody& body) {
+  double cosine = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    cosine = std::max(cosine, std::fabs(double(body.getWorldTransform().getBasis()[2][axis])));
+  }
+  return std::acos(std::min(1.0, cosine)) * 180 / M_PI;
+}
+
+}  // namespace innersphere::test

@@ -1,0 +1,43 @@
+// A Bullet world with a floor for bodies to fall on.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <btBulletDynamicsCommon.h>
+
+#include "innersphere/packing_collision_algorithm.hpp"
+
+namespace innersphere::test {
+
+class TestWorld {
+ public:
+  explicit TestWorld(const ContactOptions& options = {});
+  ~TestWorld();
+
+  /// A body of mass 0 is static. The shape is kept alive by the world.
+  btRigidBody& add(std::shared_ptr<btCollisionShape> shape, double mass, const btVector3& position,
+                   const btQuaternion& rotation = btQuaternion::getIdentity());
+  btRigidBody& addFloor();  ///< the plane z = 0
+
+  void run(double seconds, double dt = 1.0 / 60);
+
+  double kineticEnergy() const;
+  int contactCount() const;
+  double deepestContact() const;  ///< [m], positive
+
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher;
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world;
+  std::vector<std::unique_ptr<btRigidBody>> bodies;
+
+ private:
+  std::vector<std::shared_ptr<btCollisionShape>> shapes_;
+};
+
+/// Angle between a body's axis that is nearest to the vertical and the vertical [degrees].
+double tiltDegrees(const btRigidBody& body);
+
+}  // namespace innersphere::test
