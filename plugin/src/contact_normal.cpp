@@ -46,25 +46,17 @@ ContactNormal::ContactNormal(const std::vector<Measured>& measured, bool trust_b
     const btScalar b = bend(measured, &Gap::normal_b, true) + kFlat;
     weight_a_ = b / (a + b);
   }
-  few_ = measured.size() < kFew;
   flat_a_ = bend(measured, &Gap::normal_a, false) < 10 * kFlat;
   flat_b_ = bend(measured, &Gap::normal_b, false) < 10 * kFlat;
 }
 
-bool ContactNormal::at(const Gap& gap, const btVector3& direction, btVector3& normal) const {
+btVector3 ContactNormal::at(const Gap& gap, const btVector3& direction) const {
   const btVector3 &a = gap.normal_a, &b = gap.normal_b;
-  if (opposed(gap)) {
-    normal = (a * weight_a_ + b * (1 - weight_a_)).normalized();
-    return true;
-  }
-  if (flat_a_ && flat_b_ && !few_) return false;
-  if (flat_a_ != flat_b_) {
-    normal = flat_a_ ? a : b;
-  } else {
-    normal = a.dot(direction) > b.dot(direction) ? a : b;
-    if (normal.dot(direction) < kFace) normal = direction;
-  }
-  return true;
+  if (opposed(gap)) return (a * weight_a_ + b * (1 - weight_a_)).normalized();
+  if (flat_a_ != flat_b_) return flat_a_ ? a : b;
+  const btVector3& nearest = a.dot(direction) > b.dot(direction) ? a : b;
+  const bool edges = !flat_a_ && nearest.dot(direction) < kFace;
+  return edges ? direction : nearest;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

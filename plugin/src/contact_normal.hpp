@@ -11,7 +11,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// A contact of a sphere, measured on the surfaces.
 struct Measured {
   Gap gap;
-  std::uint64_t id = 0;  ///< of the sphere
+  std::size_t index = 0;  ///< of the contact
+  std::uint64_t id = 0;   ///< of the sphere
 };
 
 /// How much the normal of A counts against that of B. Beside the deepest point both lean away from the normal
@@ -22,13 +23,11 @@ class ContactNormal {
   /// `trust_b`: where there are too few measurements to see a curvature, B's normal is the better one.
   ContactNormal(const std::vector<Measured>& measured, bool trust_b);
 
-  /// At a gap; `direction` is that of the overlap around. False if no contact is possible there: two flat
-  /// faces that do not oppose each other, as where the line leaves A through its side.
-  bool at(const Gap& gap, const btVector3& direction, btVector3& normal) const;
+  /// At a gap; `direction` is that of the overlap around.
+  btVector3 at(const Gap& gap, const btVector3& direction) const;
 
  private:
   btScalar weight_a_;  ///< where the surfaces oppose each other
-  bool few_;
   bool flat_a_;
   bool flat_b_;
 };

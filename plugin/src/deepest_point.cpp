@@ -4,6 +4,8 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
+/// No sphere has this id.
+constexpr std::uint64_t kClimbedId = ~std::uint64_t(0);
 constexpr int kSteps = 2;
 /// Slopes below this are flat enough.
 constexpr btScalar kLevel = btScalar(1e-3);
@@ -35,8 +37,8 @@ void appendDeepest(const Gauge& gauge, const btVector3& direction, std::vector<M
       start = &m;
   }
   if (start == nullptr) return;
-  Gap best = start->gap;
-  Place top = placeOf(best, direction);
+  Measured best{start->gap, start->index, kClimbedId};
+  Place top = placeOf(best.gap, direction);
   if (top.slope.length() < kLevel) return;
 
   // How fast the slope falls with distance, along itself; and how far the patch reaches.
@@ -52,20 +54,21 @@ void appendDeepest(const Gauge& gauge, const btVector3& direction, std::vector<M
   if (!(weight > 0) || !(fall > 0)) return;
   fall /= weight;
 
+  btVector3 shift(0, 0, 0);
   bool climbed = false;
   for (int i = 0; i < kSteps && top.slope.length() > kLevel; ++i) {
     btVector3 step = top.slope / fall;
     if (step.length() > reach) step *= reach / step.length();
     Gap gap;
-    if (!gauge.measureAt((best.on_a + best.on_b) / 2 + step, direction, gap) || !usable(gap, direction))
-      break;
+    if (!gauge.measure(best.index, direction, shift + step, gap) || !usable(gap, direction)) break;
     const Place place = placeOf(gap, direction);
     if (place.depth <= top.depth) break;
-    best = gap;
+    shift += step;
+    best.gap = gap;
     top = place;
     climbed = true;
   }
-  if (climbed) measured.push_back({best, kClimbedId});
+  if (climbed) measured.push_back(best);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -21,17 +21,15 @@ struct Gap {
   btVector3 normal_b{0, 0, 0};  ///< unit, into B: equal to normal_a where flat faces meet
 };
 
-/// Gauge::id() never returns this.
-constexpr std::uint64_t kClimbedId = ~std::uint64_t(0);
-
+/// Measures along a line through the centre of a sphere in contact.
 class Gauge {
  public:
   virtual ~Gauge() = default;
-  /// At contact `index` of the list that the gauge was made for, roughly along `direction` from A to B. False
-  /// if there is no surface where it is expected.
-  virtual bool measure(std::size_t index, const btVector3& direction, Gap& gap) const = 0;
-  /// The same at another point between the bodies. Only a gauge of two packings can do it.
-  virtual bool measureAt(const btVector3& p, const btVector3& direction, Gap& gap) const = 0;
+  /// At contact `index` of the list that the gauge was made for, along `direction` from A to B (a shape that
+  /// is no packing chooses its own), with the line moved sideways by `shift`. False if the line does not pass
+  /// both surfaces near there.
+  virtual bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
+                       Gap& gap) const = 0;
   /// Of the sphere behind a contact: the same from step to step.
   virtual std::uint64_t id(std::size_t index) const = 0;
   /// The normals of B do not come from triangles.
@@ -42,8 +40,8 @@ class Gauge {
 class SurfaceGauge : public Gauge {
  public:
   SurfaceGauge(const PackingBody& a, const std::vector<Touch>& touches) : a_(a), touches_(touches) {}
-  bool measure(std::size_t index, const btVector3& direction, Gap& gap) const override;
-  bool measureAt(const btVector3&, const btVector3&, Gap&) const override { return false; }
+  bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
+               Gap& gap) const override;
   std::uint64_t id(std::size_t index) const override { return touches_[index].sphere; }
   bool exactB() const override { return true; }
 
@@ -52,29 +50,22 @@ class SurfaceGauge : public Gauge {
   const std::vector<Touch>& touches_;
 };
 
-/// Contacts of two packings: those of the first `count_a` are of A's spheres, the others of B's.
+/// Contacts of two packings: the first `count_a` are of A's spheres, the others of B's.
 class PackingGauge : public Gauge {
  public:
   PackingGauge(const PackingBody& a, const PackingBody& b, const std::vector<SphereContact>& contacts,
-               std::size_t count_a);
-  bool measure(std::size_t index, const btVector3& direction, Gap& gap) const override;
-  bool measureAt(const btVector3& p, const btVector3& direction, Gap& gap) const override;
+               std::size_t count_a)
+      : a_(a), b_(b), contacts_(contacts), count_a_(count_a) {}
+  bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
+               Gap& gap) const override;
   std::uint64_t id(std::size_t index) const override;
   bool exactB() const override { return false; }
 
  private:
-  struct Side {
-    const PackingBody* body;
-    btVector3 offset;  ///< of its origin from the origin of A
-    std::size_t first;
-    std::size_t last;
-  };
-  std::size_t sphereOn(const Side& side, const btVector3& p, const btVector3& direction) const;
-  bool measure(std::size_t i, std::size_t j, const btVector3& p, const btVector3& direction, Gap& gap) const;
-
+  const PackingBody& a_;
+  const PackingBody& b_;
   const std::vector<SphereContact>& contacts_;
-  Side a_;
-  Side b_;
+  std::size_t count_a_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -60,15 +60,14 @@ void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found)
   pick(from, picked);
   measured.clear();
   for (std::size_t i : picked) {
-    Measured m{{}, from.gauge.id(i)};
-    if (from.gauge.measure(i, direction, m.gap)) measured.push_back(m);
+    Measured m{{}, i, from.gauge.id(i)};
+    if (from.gauge.measure(i, direction, btVector3(0, 0, 0), m.gap)) measured.push_back(m);
   }
   appendDeepest(from.gauge, direction, measured);
   const ContactNormal normals(measured, from.gauge.exactB());
   const std::size_t first = found.size();
   for (const Measured& m : measured) {
-    btVector3 normal;
-    if (!normals.at(m.gap, direction, normal)) continue;
+    const btVector3 normal = normals.at(m.gap, direction);
     const btScalar depth = (m.gap.on_a - m.gap.on_b).dot(normal);
     if (depth > -from.spacing) found.push_back({{m.gap.on_b, normal, depth, m.id}, 0});
   }
