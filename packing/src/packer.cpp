@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <sstream>
@@ -22,10 +23,8 @@ constexpr double kBallVolume = 4.0 / 3.0 * std::numbers::pi;
 // A solid filled to this fraction counts as full: a ball, after its first sphere.
 constexpr double kFull = 1 - 1e-6;
 
-[[noreturn]] void noSphereFits(const Solid& solid) {
-  throw Error(ErrorCode::no_sphere_fits,
-              "no sphere of the smallest allowed radius fits into '" + solid.name() + "'; lower min_radius");
-}
+// The first prefix with volume-true radii of its own; the next ones double.
+constexpr std::size_t kFirstPrefix = 64;
 
 void require(bool condition, const char* message) {
   if (!condition) throw Error(ErrorCode::bad_argument, message);
@@ -42,6 +41,7 @@ void checkOptions(const PackOptions& options) {
 
 std::string commandLine(const PackOptions& options) {
   std::ostringstream line;
+  line.precision(std::numeric_limits<double>::max_digits10);
   line << "--spheres " << options.spheres;
   if (options.min_radius > 0) line << " --min-radius " << options.min_radius;
   if (options.density > 0) line << " --density " << options.density;
@@ -50,126 +50,139 @@ std::string commandLine(const PackOptions& options) {
   return line.str();
 }
 
-double diagonal(const Bounds& box) {
-  return std::hypot(box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]);
-}
-
 double volumeOf(const Ball& ball) {
-  return kBallVolume * std::pow(ball.radius, 3);
+  return kBallVolume * ball.radius * ball.radius * ball.radius;
 }
 
-/// The spheres of a packing in the making, sorted by falling radius.
-struct Sorted {
-  std::vector<Ball> balls;
-  std::vector<float> top;  ///< for each: nothing larger was possible after those before it
+/// The solid and the limits in the packer's coordinates.
+struct Task {
+  Task(const Solid& solid, const PackOptions& wishes, const MassProperties& mass, const Surface& surface)
+      : container(solid), options(wishes), samples(surface, container) {
+    const double side = container.side();
+    volume = mass.volume / (side * side * side);
+    enough = std::min(options.density > 0 ? options.density : 1.0, kFull) * volume;
+    gap = options.gap / side;
+    const Bounds box = solid.bounds();
+    const double diagonal =
+        std::hypot(box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]);
+    const double asked = options.min_radius > 0 ? options.min_radius : 1e-4 * diagonal;
+    // A sphere loses up to the coarseness when its centre is rounded.
+    smallest = std::max({asked / side + container.coarseness(), 4 * container.coarseness(), 1e-5});
+  }
+
+  Container container;
+  const PackOptions& options;
+  SurfaceSamples samples;
+  double volume, enough, gap, smallest;
 };
 
-Sorted sortByRadius(const Rounds::Placed& placed) {
+/// Calls the user back, and ends the work if the user wants that.
+class Reporter {
+ public:
+  Reporter(const Progress& progress, const std::string& name) : progress_(progress), name_(name) {}
+  void operator()(const char* stage, double fraction) const {
+    if (progress_ && !progress_(stage, std::clamp(fraction, 0.0, 1.0))) {
+      throw Error(ErrorCode::cancelled, "packing '" + name_ + "' was cancelled");
+    }
+  }
+
+ private:
+  const Progress& progress_;
+  const std::string name_;
+};
+
+Rounds::Placed place(const Task& task, tbb::task_arena& arena, const Reporter& report) {
+  const PackOptions& options = task.options;
+  double filled = 0;
+  std::size_t uncovered = 0;
+  const auto stop = [&](const Rounds::Placed& now) {
+    filled += volumeOf(now.grid.balls().back());
+    return now.top.size() == options.spheres || filled >= task.enough;
+  };
+  const auto pause = [&](const Rounds::Placed& now, double bound) {
+    // The number of spheres that fit grows with this power of their radius.
+    const double by_radius = std::pow(task.smallest / bound, 2.5);
+    const double by_count =
+        options.spheres > 0 ? static_cast<double>(now.top.size()) / static_cast<double>(options.spheres) : 0;
+    const double by_density = options.density > 0 ? std::pow(filled / task.enough, 10) : 0;
+    report("packing", std::max({by_radius, by_count, by_density}));
+    return options.gap > 0 && task.samples.covered(now.grid, task.gap, uncovered);
+  };
+  return Rounds(task.container, options.delta, task.smallest).run(arena, stop, pause);
+}
+
+/// The spheres by falling radius, as many as the limits ask for, and what is certain about them.
+struct Chosen {
+  std::vector<Ball> balls;
+  double filled = 0;
+  double delta = 0;
+  double largest_missing = 0;
+};
+
+Chosen choose(const Task& task, const Rounds::Placed& placed) {
   std::vector<std::size_t> order(placed.top.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::vector<Ball>& balls = placed.grid.balls();
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return balls[a].radius > balls[b].radius; });
-  Sorted sorted;
-  for (std::size_t i : order) {
-    sorted.balls.push_back(balls[i]);
-    sorted.top.push_back(placed.top[i]);
-  }
-  // A bound holds once everything that was placed before it is there, wherever sorting has put that.
-  for (std::size_t i = sorted.top.size(); i-- > 1;)
-    sorted.top[i - 1] = std::max(sorted.top[i - 1], sorted.top[i]);
-  return sorted;
-}
+  // A sphere's bound holds once everything that was placed before it is there, wherever sorting has put that.
+  std::vector<double> top(order.size() + 1, placed.largest_missing);
+  for (std::size_t i = order.size(); i-- > 0;) top[i] = std::max<double>(top[i + 1], placed.top[order[i]]);
 
-/// The first spheres that fill a fraction of the volume, or all.
-std::size_t prefixFilling(const std::vector<Ball>& balls, double volume) {
-  double filled = 0;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    filled += volumeOf(balls[i]);
-    if (filled >= volume) return i + 1;
+  Chosen chosen;
+  for (std::size_t i : order) chosen.balls.push_back(balls[i]);
+  if (task.options.gap > 0) {
+    const SphereGrid grid(chosen.balls);
+    if (const auto count = task.samples.prefixWithin(grid, task.gap)) chosen.balls.resize(*count);
   }
-  return balls.size();
+  std::size_t count = 0;
+  while (count < chosen.balls.size() && chosen.filled < task.enough) {
+    chosen.delta = std::max(chosen.delta, top[count] / chosen.balls[count].radius - 1);
+    chosen.filled += volumeOf(chosen.balls[count++]);
+  }
+  chosen.balls.resize(count);
+  const double room = std::max(0.0, task.volume - chosen.filled);
+  chosen.largest_missing = std::min(top[count], std::cbrt(room / kBallVolume));
+  return chosen;
 }
 
 }  // namespace
 
 Packing pack(const Solid& solid, const PackOptions& options, const Progress& progress) {
   checkOptions(options);
-  const Container container(solid);
   Packing packing;
   packing.solid = solid.massProperties();
   require(packing.solid.volume > 0, "the solid's mass properties must have a volume greater than 0");
   packing.surface = solid.surface();
   packing.provenance = {solid.name(), solid.hash(), commandLine(options), INNERSPHERE_VERSION};
-  const SurfaceSamples samples(packing.surface, container);
-  require(options.gap == 0 || !samples.empty(), "a gap can only be asked for if the solid has a surface");
+  const Task task(solid, options, packing.solid, packing.surface);
+  require(options.gap == 0 || !task.samples.empty(),
+          "a gap can only be asked for if the solid has a surface");
 
-  const double side = container.side();
-  const double volume = packing.solid.volume / (side * side * side);
-  const double gap = options.gap / side;
-  // Below this, single precision could not hold a centre.
-  const double smallest =
-      std::max((options.min_radius > 0 ? options.min_radius : 1e-4 * diagonal(solid.bounds())) / side +
-                   container.coarseness(),
-               4 * container.coarseness());
-  const double enough = std::min(options.density > 0 ? options.density : 1.0, kFull) * volume;
-  const auto report = [&](const char* stage, double fraction) {
-    if (progress && !progress(stage, std::clamp(fraction, 0.0, 1.0))) {
-      throw Error(ErrorCode::cancelled, "packing '" + solid.name() + "' was cancelled");
-    }
-  };
-
+  const Reporter report(progress, solid.name());
   tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
-  double filled = 0;
-  std::size_t uncovered = 0;
-  const auto stop = [&](const Rounds::Placed& now) {
-    filled += volumeOf(now.grid.balls().back());
-    return now.top.size() == options.spheres || filled >= enough;
-  };
-  const auto pause = [&](const Rounds::Placed& now, float threshold) {
-    const double count = static_cast<double>(now.top.size());
-    const double by_count = options.spheres > 0 ? count / static_cast<double>(options.spheres) : 0;
-    const double by_radius = std::pow(smallest / threshold, 2.5);  // the number of spheres grows like this
-    report("packing",
-           std::max({by_count, by_radius, options.density > 0 ? std::pow(filled / enough, 10) : 0}));
-    return gap > 0 && samples.covered(now.grid, gap, uncovered);
-  };
-  if (smallest >= 0.5) noSphereFits(solid);
-  const Rounds::Placed placed = Rounds(container, options.delta, smallest).run(arena, stop, pause);
-  if (placed.top.empty()) noSphereFits(solid);
-
-  Sorted sorted = sortByRadius(placed);
-  std::size_t count = prefixFilling(sorted.balls, enough);
-  if (gap > 0) count = std::min(count, samples.prefixWithin(SphereGrid(sorted.balls), gap).value_or(count));
-  const double missing = count < sorted.balls.size() ? sorted.top[count] : placed.largest_missing;
-  sorted.balls.resize(count);
-
-  filled = 0;
-  packing.certificate.delta = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    packing.spheres.push_back(container.toSphere(sorted.balls[i]));
-    packing.certificate.delta =
-        std::max(packing.certificate.delta, sorted.top[i] / sorted.balls[i].radius - 1);
-    filled += volumeOf(sorted.balls[i]);
+  const Chosen chosen = choose(task, place(task, arena, report));
+  if (chosen.balls.empty()) {
+    throw Error(ErrorCode::no_sphere_fits, "no sphere of the smallest allowed radius fits into '" +
+                                               solid.name() + "'; ask for a smaller min_radius");
   }
-  // Nothing larger than the space that is left.
-  packing.certificate.largest_missing_radius =
-      side * std::min(missing, std::cbrt(std::max(0.0, volume - filled) / kBallVolume));
+  const double side = task.container.side();
+  for (const Ball& ball : chosen.balls) packing.spheres.push_back(task.container.toSphere(ball));
+  packing.certificate = {chosen.delta, side * chosen.largest_missing};
 
-  const SphereGrid grid(sorted.balls);
   report("quality", 0);
-  arena.execute([&] { packing.quality = samples.measure(grid); });
-  packing.quality.density = filled / volume;
-  for (double* length : {&packing.quality.gap_mean, &packing.quality.gap_p95, &packing.quality.gap_max})
-    *length *= side;
+  arena.execute([&] { packing.quality = task.samples.measure(SphereGrid(chosen.balls)); });
+  packing.quality.density = chosen.filled / task.volume;
+  packing.quality.gap_mean *= side;
+  packing.quality.gap_p95 *= side;
+  packing.quality.gap_max *= side;
 
-  for (std::size_t prefix = 64;; prefix *= 2) {
-    prefix = std::min(prefix, count);
-    report("shares", static_cast<double>(prefix) / static_cast<double>(count) / 2);
-    arena.execute([&] {
-      packing.volume_true.push_back(
-          findVolumeTrueRadii(container, std::span(sorted.balls).first(prefix), volume));
-    });
+  const std::size_t count = chosen.balls.size();
+  for (std::size_t prefix = std::min(kFirstPrefix, count);; prefix = std::min(2 * prefix, count)) {
+    report("shares", static_cast<double>(prefix) / static_cast<double>(2 * count));
+    const auto balls = std::span(chosen.balls).first(prefix);
+    arena.execute(
+        [&] { packing.volume_true.push_back(findVolumeTrueRadii(task.container, balls, task.volume)); });
     if (prefix == count) break;
   }
   report("shares", 1);

@@ -128,4 +128,41 @@ class TestTorus : public AnalyticSolid {
   double unitVolume() const override { return 2 * std::numbers::pi * std::numbers::pi * kTube * kTube; }
 };
 
+/// The cube of edge 1 without a ball of radius 0.4 about one of its corners.
+class BittenCube : public AnalyticSolid {
+ public:
+  explicit BittenCube(double size = 1, const Vec3d& place = {}) : AnalyticSolid(size, place) {}
+  std::string name() const override { return "test bitten cube"; }
+
+ protected:
+  static constexpr double kBite = 0.4;
+  static Vec3d fromCorner(const Vec3d& p) { return {p[0] - 0.5, p[1] - 0.5, p[2] - 0.5}; }
+  static double norm(const Vec3d& v) { return std::hypot(v[0], v[1], v[2]); }
+
+  // Exact from inside; from outside the nearest of either surface, a lower bound.
+  Vec3d nearest(const Vec3d& p) const override {
+    Vec3d wall = p;
+    int axis = 0;
+    double least = 1e30;
+    for (int k = 0; k < 3; ++k) {
+      const double away = std::abs(0.5 - std::abs(p[k]));
+      if (away < least) {
+        least = away;
+        axis = k;
+      }
+    }
+    wall[axis] = p[axis] < 0 ? -0.5 : 0.5;
+    const Vec3d v = fromCorner(p);
+    const double length = norm(v);
+    if (length == 0) return {0.5 - kBite, 0.5, 0.5};
+    if (std::abs(length - kBite) > least) return wall;
+    return {0.5 + v[0] / length * kBite, 0.5 + v[1] / length * kBite, 0.5 + v[2] / length * kBite};
+  }
+  bool inside(const Vec3d& p) const override {
+    return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) < 0.5 && norm(fromCorner(p)) > kBite;
+  }
+  Vec3d halfSize() const override { return {0.5, 0.5, 0.5}; }
+  double unitVolume() const override { return 1 - std::numbers::pi / 6 * kBite * kBite * kBite; }
+};
+
 }  // namespace innersphere::test

@@ -1,67 +1,20 @@
-// The half of CellSearch that looks at single points: radii, and the way up to a local maximum.
+// The part of CellSearch that finds the way up to a local maximum.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include "packer/cell_search.hpp"
 
 namespace innersphere {
-namespace {
 
-Point direction(const Point& from, const Point& to) {
-  const Point way = to - from;
-  const double length = way.norm();
-  return length > 0 ? Point(way / length) : Point(Point::UnitX());
-}
-
-}  // namespace
-
-CellSearch::Probe CellSearch::nearestBall(const Point& x, std::size_t begin, std::size_t end) const {
-  double best = std::numeric_limits<double>::infinity();
-  std::size_t nearest = end;
-  for (std::size_t i = begin; i < end; ++i) {
-    const double reach = best + balls_[i].radius;
-    const double squared = (x - balls_[i].centre).squaredNorm();
-    if (reach > 0 && squared < reach * reach) {
-      best = std::sqrt(squared) - balls_[i].radius;
-      nearest = i;
-    }
-  }
-  if (nearest == end) return {best, Point::Zero(), {}};
-  return {best, direction(balls_[nearest].centre, x), balls_[nearest]};
-}
-
-CellSearch::Probe CellSearch::probe(const Point& x, std::size_t begin, std::size_t end, double enough,
-                                    double negligible) {
-  const Probe ball = nearestBall(x, begin, end);
-  if (ball.value <= enough) return ball;
-  if (const Soundings::Sounding* known = soundings_.around(x)) {
-    if (known->distance < 0) {
-      const Ball empty{known->at, -known->distance};
-      return {empty.distance(x), direction(empty.centre, x), empty};
-    }
-    if (known->clearance(x) >= ball.value) return ball;
-  }
-  const Container::Nearest surface = container_.closest(x, ball.value);
-  const double distance = std::min(surface.distance, ball.value);
-  const Probe wall{distance, direction(surface.point, x), {surface.point, 0}};
-  if (distance <= negligible) return wall;
-  int side = soundings_.side(x, distance);
-  if (side == 0) side = container_.contains(x) ? 1 : -1;
-  soundings_.add(x, side * distance);
-  if (side < 0) return {-distance, direction(x, surface.point), {x, distance}};
-  return distance == ball.value ? ball : wall;
-}
-
-bool CellSearch::climb(Point x) {
+void CellSearch::climb(Point x) {
   const Point start = x;
   Probe best = probe(x, 0, brick_balls_, 0, 0);
   double half = 0.5 * best.value;
   while (half > 1e-4 * best.value) {
-    // As long as the cube keeps to the ball about x, all of it lies inside the solid.
-    half = std::min({half, 0.55 * best.value});
-    if ((x - start).norm() + 1.75 * half > threshold_) break;
+    // The linear programme is trusted within a cube. As long as that keeps to the ball about x, all of it
+    // lies inside the solid.
+    half = std::min({half, 0.55 * best.value, (kWander * wanted_ - (x - start).norm()) / 1.75});
     const double before = best.value;
     const Point centre = x;
     MaxMin program(half);
@@ -89,15 +42,13 @@ bool CellSearch::climb(Point x) {
   }
   const Point snapped = container_.snap(x);
   const Ball ball = container_.fit(snapped, probe(snapped, 0, brick_balls_, 0, 0).value);
-  if (!(ball.radius > 0)) return false;
+  assert(ball.radius > 0);
   for (const Candidate& other : result_.candidates) {
-    if (other.ball.distance(ball.centre) < ball.radius) return true;
+    if (other.ball.distance(ball.centre) < ball.radius) return;
   }
-  Cell place;
-  place.level = 20;
-  for (int k = 0; k < 3; ++k) place.at[k] = static_cast<std::uint32_t>(std::ldexp(ball.centre[k], 20));
-  result_.candidates.push_back({ball, mortonCode(place, 20)});
-  return true;
+  Cell place{{}, 0, 20};
+  for (int k = 0; k < 3; ++k) place.at[k] = static_cast<std::uint32_t>(ball.centre[k] / place.side());
+  result_.candidates.push_back({ball, mortonCode(place, place.level)});
 }
 
 }  // namespace innersphere

@@ -8,20 +8,32 @@ namespace {
 
 constexpr double kSqrt3 = 1.7320508075688773;
 
-// How far a climb may leave its cell, in thresholds. Larger: better maxima, longer lists of balls.
-constexpr double kWander = 1.0;
+// In a cell whose half is larger than this many wanted radii, only the centre is looked at.
+constexpr double kLarge = 4;
 
-// A cell so small that it holds nothing but one maximum; its bound is then the threshold within this part of
-// it.
-constexpr double kFloor = 1e-3;
+// Points at which a cell is looked at before it is divided.
+constexpr int kProbes = 12;
 
-double farthestDistance(const Ball& ball, const Point& centre, double half) {
-  return ((centre - ball.centre).array().abs() + half).matrix().norm() - ball.radius;
-}
+// Radius of the balls put behind walls, in wanted radii. Larger: less curved, but they find less room.
+constexpr double kBehind = 8;
 
-double nearestDistance(const Ball& ball, const Point& centre, double half) {
-  return ((centre - ball.centre).array().abs() - half).max(0.0).matrix().norm() - ball.radius;
-}
+/// A cube, and the distances from a ball to its nearest and farthest points.
+struct Cube {
+  Point centre;
+  double half;
+
+  double farthest(const Ball& ball) const {
+    return ((centre - ball.centre).array().abs() + half).matrix().norm() - ball.radius;
+  }
+  bool within(const Ball& ball, double distance) const {
+    const double reach = distance + ball.radius;
+    return ((centre - ball.centre).array().abs() + half).matrix().squaredNorm() < reach * reach;
+  }
+  bool near(const Ball& ball, double distance) const {
+    const double reach = distance + ball.radius;
+    return ((centre - ball.centre).array().abs() - half).max(0.0).matrix().squaredNorm() < reach * reach;
+  }
+};
 
 float roundUp(double x) {
   const float rounded = static_cast<float>(x);
@@ -44,7 +56,7 @@ void CellSearch::gather(std::span<const Cell> cells) {
     upper = upper.cwiseMax(cell.centre() + Point::Constant(half));
   }
   const Point centre = (lower + upper) / 2, half = (upper - lower) / 2;
-  const double reach = top_ + kWander * threshold_;
+  const double reach = top_ + kWander * wanted_;
   placed_.visitNear(lower, upper, reach, [&](std::uint32_t i) {
     const Ball& ball = placed_.balls()[i];
     const double distance = ((centre - ball.centre).cwiseAbs() - half).cwiseMax(0.0).norm() - ball.radius;
@@ -54,31 +66,35 @@ void CellSearch::gather(std::span<const Cell> cells) {
 }
 
 void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end) {
-  const Point centre = cell.centre();
   const double half = cell.side() / 2;
+  const Cube cube{cell.centre(), half};
   Cell now = cell;
   double upper = cell.upper;
-  for (std::size_t i = begin; i < end; ++i)
-    upper = std::min(upper, farthestDistance(balls_[i], centre, half));
+  for (std::size_t i = begin; i < end; ++i) {
+    if (cube.within(balls_[i], upper)) upper = cube.farthest(balls_[i]);
+  }
   now.upper = std::min(cell.upper, roundUp(upper));
-  if (now.upper <= threshold_) {
+  if (now.upper <= bound_) {
     if (now.upper > 0) result_.cells.push_back(now);
     return;
   }
   for (const Candidate& candidate : result_.candidates) {
-    if (farthestDistance(candidate.ball, centre, half) <= threshold_) {
+    if (cube.within(candidate.ball, bound_)) {
       result_.cells.push_back(now);  // to be looked at again if the candidate fails
       return;
     }
   }
   const std::size_t mine = balls_.size();
   for (std::size_t i = begin; i < end; ++i) {
-    if (nearestDistance(balls_[i], centre, half) < now.upper) balls_.push_back(Ball(balls_[i]));
+    if (cube.near(balls_[i], now.upper))
+      balls_.push_back(Ball(balls_[i]));  // copied first: the stack may move
   }
   const Verdict verdict = bound(now, mine);
-  const bool small = kSqrt3 * half < kFloor * threshold_ || now.level == Cell::kDeepest;
-  if (verdict == Verdict::undecided && small) now.upper = threshold_;
-  if (verdict == Verdict::below || small || (verdict == Verdict::found && half < 0.5 * threshold_)) {
+  // A cell not larger than the sphere found in it waits for the next look. The deepest level is never
+  // reached, unless the solid's distances contradict each other.
+  if (now.level == Cell::kDeepest) now.upper = std::min(now.upper, roundUp(bound_));
+  if (now.level == Cell::kDeepest || verdict == Verdict::below ||
+      (verdict == Verdict::found && half < 0.5 * wanted_)) {
     if (now.upper > 0) result_.cells.push_back(now);
   } else {
     const std::size_t last = balls_.size();
@@ -91,36 +107,51 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
   const Point centre = cell.centre();
   const double half = cell.side() / 2;
   MaxMin program(half);
-  std::vector<Ball> cuts;
-  // In a cell larger than the spheres sought the linear programme says little.
-  const int most = half > threshold_ ? 1 : 12;
+  std::vector<Probe> cuts;
+  const auto prove = [&] {
+    cell.upper = std::min(cell.upper, roundUp(provenBound(program, cuts, centre, half)));
+    return cell.upper <= bound_;
+  };
   Point x = centre;
-  for (int k = 0; k < most; ++k) {
-    const Probe p = probe(x, begin, balls_.size(), threshold_, k == 0 ? threshold_ - kSqrt3 * half : 0);
-    if (p.value > threshold_ && climb(x)) return Verdict::found;
-    program.add(p.value - p.gradient.dot(x - centre), p.gradient);
-    cuts.push_back(p.ball);
-    if (program.optimum() <= threshold_ || k == 0) {
-      const double proven = provenBound(program, cuts, centre, half);
-      cell.upper = std::min(cell.upper, roundUp(proven));
-      if (cell.upper <= threshold_) return Verdict::below;
-      if (program.optimum() <= threshold_) break;
+  for (int k = 0; k < (half > kLarge * wanted_ ? 1 : kProbes); ++k) {
+    const Probe p = probe(x, begin, balls_.size(), wanted_, k == 0 ? bound_ - kSqrt3 * half : 0);
+    if (p.value > wanted_) {
+      climb(x);
+      return Verdict::found;
     }
+    program.add(p.value - p.gradient.dot(x - centre), p.gradient);
+    cuts.push_back(p);
+    const bool low = program.optimum() <= bound_;
+    if ((low || k == 0) && prove()) return Verdict::below;
+    // Then only the balls' curvature is in the way.
+    if (low) return flatten(program, half, cuts) && prove() ? Verdict::below : Verdict::undecided;
     x = centre + program.argmax();
   }
   return Verdict::undecided;
 }
 
-double CellSearch::provenBound(const MaxMin& program, std::span<const Ball> balls, const Point& centre,
+bool CellSearch::flatten(const MaxMin& program, double half, std::vector<Probe>& cuts) {
+  bool flatter = false;
+  program.forWeights([&](int k, double) {
+    if (!cuts[k].at_wall) return;
+    const Ball behind = ballBehind(cuts[k].wall, -cuts[k].gradient, kBehind * std::max(half, wanted_));
+    if (behind.radius <= cuts[k].ball.radius) return;
+    cuts[k].ball = behind;
+    flatter = true;
+  });
+  return flatter;
+}
+
+double CellSearch::provenBound(const MaxMin& program, std::span<const Probe> cuts, const Point& centre,
                                double half) const {
   double corners[8] = {};
   program.forWeights([&](int k, double weight) {
     for (int corner = 0; corner < 8; ++corner) {
       const Point v = centre + half * Point(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-      corners[corner] += weight * balls[k].distance(v);
+      corners[corner] += weight * cuts[k].ball.distance(v);
     }
   });
-  return *std::max_element(corners, corners + 8) + 1e-15;
+  return *std::max_element(corners, corners + 8) + 4e-15;
 }
 
 }  // namespace innersphere

@@ -12,15 +12,16 @@
 
 namespace innersphere {
 
-/// Finds, in a group of neighbouring cells, centres of spheres larger than a threshold, or proves that there
-/// are none.
+/// Finds, in a group of neighbouring cells, centres of spheres larger than a given radius, or proves that
+/// there are none.
 ///
-/// The largest radius at x is f(x) = min(distance to the surface, distances to the placed spheres). Each
-/// distance is bounded from above by the distance to a ball (see Ball), a convex function. In a cell, the
-/// balls' linearisations at a few points give a linear programme (Kelley's cutting planes). Its optimum is
-/// the next point to try; its dual weights w prove the bound  f <= max over the corners of sum w_i
-/// distance_i,  because a convex function is largest at a corner. That bound is tight to second order in the
-/// cell's size, so cells need not become small.
+/// The largest radius at x is f(x) = min(distance to the surface, distances to the placed spheres). Each of
+/// these is at most the distance to some ball (see Ball), a convex function. In a cell, the balls'
+/// linearisations at a few points give a linear programme (Kelley's cutting planes). Its optimum is the next
+/// point to try, and its dual weights w prove
+///   f <= max over the cell's corners of sum w_i distance_i,
+/// because a convex function is largest at a corner. This bound is tight to second order in the cell's size,
+/// where the usual Lipschitz bound is tight to first order: cells need not become small.
 class CellSearch {
  public:
   struct Candidate {
@@ -30,42 +31,73 @@ class CellSearch {
 
   struct Result {
     std::vector<Cell> cells;            ///< the live leaves, with their bounds
-    std::vector<Candidate> candidates;  ///< disjoint within this brick, larger than the threshold
+    std::vector<Candidate> candidates;  ///< disjoint within this brick, larger than `wanted`
   };
 
-  /// `top`: no sphere larger than this fits. `threshold`: the smallest radius of interest.
-  CellSearch(const Container& container, const SphereGrid& placed, float top, float threshold)
-      : container_(container), placed_(placed), top_(top), threshold_(threshold) {}
+  /// `top`: no sphere larger than this fits. `wanted`: spheres larger than this are looked for. `bound`: a
+  /// cell that holds none larger than this is done. As bound > wanted, a cell is decided before it is much
+  /// smaller than their difference.
+  CellSearch(const Container& container, const SphereGrid& placed, double top, double bound, double wanted)
+      : container_(container), placed_(placed), top_(top), bound_(bound), wanted_(wanted) {}
 
   Result search(std::span<const Cell> cells);
 
  private:
+  // How far a climb may leave its cell, in wanted radii. Larger: better maxima, longer lists of balls.
+  static constexpr double kWander = 1;
+
   enum class Verdict { below, found, undecided };
 
+  /// The obstacle that determines the radius at a point x.
   struct Probe {
-    double value;    ///< radius possible at the point, or more where that is below the threshold
-    Point gradient;  ///< of the ball's distance
-    Ball ball;       ///< the obstacle that determines it
+    double value;          ///< about x, a sphere has at most this radius; exactly this if it exceeds `enough`
+    Point gradient;        ///< of value, away from the obstacle
+    Ball ball;             ///< the obstacle
+    bool at_wall = false;  ///< it stands for the surface, nearest at `wall`
+    Point wall{};
   };
 
   void gather(std::span<const Cell> cells);
-  void visit(const Cell& cell, std::size_t begin, std::size_t end);
-  Verdict bound(Cell& cell, std::size_t begin);
-  double provenBound(const MaxMin& program, std::span<const Ball> balls, const Point& centre,
-                     double half) const;
-  bool climb(Point x);
 
-  Probe nearestBall(const Point& x, std::size_t begin, std::size_t end) const;
+  /// Decides a cell, or divides it. The balls that can matter in it are among balls_[begin, end).
+  void visit(const Cell& cell, std::size_t begin, std::size_t end);
+
+  /// Lowers the cell's bound. The balls that can matter in it are balls_[begin, ...).
+  Verdict bound(Cell& cell, std::size_t begin);
+
+  /// The bound proven by the programme's dual variables. Cut k of the programme is cuts[k].
+  double provenBound(const MaxMin& program, std::span<const Probe> cuts, const Point& centre,
+                     double half) const;
+
+  /// Puts larger balls behind the walls that hold the optimum down, for they curve less; false if there are
+  /// none.
+  bool flatten(const MaxMin& program, double half, std::vector<Probe>& cuts);
+
+  /// The largest empty ball, up to `radius`, that touches the surface at `wall` from outside; or just the
+  /// point.
+  Ball ballBehind(const Point& wall, const Point& normal, double radius);
+
+  /// Moves up from x, where a sphere that is wanted fits, to a local maximum, and makes it a candidate.
+  void climb(Point x);
+
+  /// Looks at balls_[begin, end) and, if those leave more than `enough`, at the surface. The side of a point
+  /// that is no farther than `negligible` from the surface does not matter.
   Probe probe(const Point& x, std::size_t begin, std::size_t end, double enough, double negligible);
+  Probe nearestBall(const Point& x, std::size_t begin, std::size_t end) const;
+
+  /// True if x, which is `distance` away from the surface, is inside.
+  bool isInside(const Point& x, double distance);
+
+  static Point direction(const Point& from, const Point& to);
 
   const Container& container_;
   const SphereGrid& placed_;
-  const float top_;
-  const float threshold_;
+  const double top_, bound_, wanted_;
   Result result_;
   Soundings soundings_;
-  std::vector<Ball> balls_;  // a stack: those that matter in the brick, then those that matter in the cell
-                             // being visited, ...
+  // A stack: the balls that can matter in the brick, those of them that can matter in its cell being visited,
+  // and so on.
+  std::vector<Ball> balls_;
   std::size_t brick_balls_ = 0;
 };
 

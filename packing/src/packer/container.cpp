@@ -44,6 +44,9 @@ Point Container::fromWorld(const Vec3d& p) const {
 Container::Nearest Container::closest(const Point& x, double cutoff) const {
   const ClosestPoint hit = solid_.closestPoint(toWorld(x), cutoff * side_);
   if (std::isinf(hit.distance)) return {hit.distance, x};
+  if (!std::isfinite(hit.distance + hit.point[0] + hit.point[1] + hit.point[2])) {
+    throw Error(ErrorCode::not_finite, "'" + solid_.name() + "' has a closest point that is not a number");
+  }
   return {hit.distance / side_, fromWorld(hit.point)};
 }
 

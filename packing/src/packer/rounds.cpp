@@ -14,16 +14,20 @@ namespace {
 constexpr std::size_t kTightSpheres = 300;
 constexpr double kTightDelta = 0.01;
 
-// Side of a brick, in thresholds, at least. Larger bricks: fewer look-ups of spheres, longer lists of them.
-constexpr double kBrick = 8;
+// The part of delta that is left between the radii wanted and the bound to be proven. Smaller: fewer rounds;
+// more work where the solid is equally thick everywhere.
+constexpr double kUndecided = 0.25;
+
+// Side of a brick, in wanted radii, at least. Larger bricks: fewer look-ups of spheres, longer lists of them.
+constexpr double kBrick = 4;
 
 struct Active {
   std::uint64_t brick;
   Cell cell;
 };
 
-int brickLevel(float threshold) {
-  return std::clamp(static_cast<int>(std::floor(-std::log2(kBrick * threshold))), 0, 20);
+int brickLevel(double wanted) {
+  return std::clamp(static_cast<int>(std::floor(-std::log2(kBrick * wanted))), 0, 20);
 }
 
 // Active cells in the order of bricks, and where each brick begins.
@@ -49,39 +53,45 @@ std::vector<std::size_t> sortIntoBricks(std::vector<Active>& active, int level) 
 }  // namespace
 
 Rounds::Placed Rounds::run(tbb::task_arena& arena, const std::function<bool(const Placed&)>& stop,
-                           const std::function<bool(const Placed&, float)>& pause) {
-  const double delta = delta_ * (1 - 1e-4);
-  const auto tight_steps = static_cast<std::size_t>(std::ceil(std::log1p(delta) / std::log1p(kTightDelta)));
-  const Ladder ladder(0.5, min_radius_, std::exp(std::log1p(delta) / static_cast<double>(tight_steps)));
+                           const std::function<bool(const Placed&, double)>& pause) {
+  // The ladder's rungs are the bounds of rounds with the tight delta; a round with a larger delta takes
+  // several at once.
+  const double tight = std::min(kTightDelta, delta_);
+  const auto strides = static_cast<std::size_t>(std::log1p(delta_) / std::log1p(tight) + 1e-9);
+  if (min_radius_ >= 0.5) return {};
+  const Ladder ladder(1, min_radius_ * std::pow(1 + tight, kUndecided),
+                      std::pow(1 + tight, 1 - kUndecided));
   CellQueue queue(ladder);
-  queue.push(Cell{{0, 0, 0}, 0.5f, 0});
+  queue.push(Cell{});
   Placed placed;
   SphereGrid& grid = placed.grid;
 
   while (!queue.empty()) {
     const std::size_t rung = queue.top();
-    const std::size_t next = rung + (grid.balls().size() < kTightSpheres ? 1 : tight_steps);
-    const float top = ladder[rung], threshold = ladder[next];
+    const bool early = placed.top.size() < kTightSpheres;
+    const std::size_t next = rung + (early ? 1 : strides);
+    const float top = ladder[rung], bound = ladder[next];
+    const double wanted = std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_);
     placed.largest_missing = top;
     std::vector<Active> active;
     for (const Cell& cell : queue.takeAbove(next)) active.push_back({0, cell});
     while (!active.empty()) {
-      if (pause(placed, threshold)) return placed;
+      if (pause(placed, bound)) return placed;
       std::vector<CellSearch::Result> results;
       arena.execute([&] {
-        const std::vector<std::size_t> begins = sortIntoBricks(active, brickLevel(threshold));
+        const std::vector<std::size_t> begins = sortIntoBricks(active, brickLevel(wanted));
         results.resize(begins.size() - 1);
         tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t brick) {
           std::vector<Cell> cells;
           for (std::size_t i = begins[brick]; i < begins[brick + 1]; ++i) cells.push_back(active[i].cell);
-          results[brick] = CellSearch(container_, grid, top, threshold).search(cells);
+          results[brick] = CellSearch(container_, grid, top, bound, wanted).search(cells);
         });
       });
       active.clear();
       std::vector<CellSearch::Candidate> candidates;
       for (const CellSearch::Result& result : results) {
         for (const Cell& cell : result.cells) {
-          if (cell.upper > threshold) {
+          if (cell.upper > bound) {
             active.push_back({0, cell});
           } else {
             queue.push(cell);
@@ -100,7 +110,7 @@ Rounds::Placed Rounds::run(tbb::task_arena& arena, const std::function<bool(cons
         if (stop(placed)) return placed;
       }
     }
-    placed.largest_missing = threshold;
+    placed.largest_missing = bound;
   }
   placed.largest_missing = ladder[ladder.size() - 1];
   return placed;

@@ -10,11 +10,11 @@
 
 namespace innersphere {
 
-/// Inserts spheres greedily, in rounds. A round with bounds top and threshold knows that no sphere larger
-/// than `top` fits, and inserts spheres larger than `threshold` until none of these fits either; that makes
-/// the next top. Within a round all bricks of the octree that may hold such a sphere are searched in
-/// parallel. Of the candidates that overlap, the larger one wins, or the one that comes first along the
-/// Z-order curve, so the result does not depend on threads.
+/// Inserts spheres greedily, in rounds. A round starts from the certainty that no sphere larger than `top`
+/// fits. It inserts spheres larger than top / (1 + delta), until no sphere larger than `bound` fits, a little
+/// above that; this is the next round's top. All bricks of the octree that may hold such a sphere are
+/// searched in parallel. Of candidates that overlap, the larger one wins, or the one that comes first along
+/// the Z-order curve, so the result does not depend on threads.
 class Rounds {
  public:
   /// What has been placed, in the order of placing.
@@ -27,10 +27,11 @@ class Rounds {
   Rounds(const Container& container, double delta, double min_radius)
       : container_(container), delta_(delta), min_radius_(min_radius) {}
 
-  /// `stop` is asked after every sphere; `pause` between the parallel parts, from this thread, with the
-  /// threshold, and it may throw. Both end the packing by returning true. Searches run in `arena`.
+  /// `stop` is asked after every sphere; `pause`, with the bound, between the parallel parts, and it may
+  /// throw. Both are called from this thread and end the packing by returning true. The searches run in
+  /// `arena`.
   Placed run(tbb::task_arena& arena, const std::function<bool(const Placed&)>& stop,
-             const std::function<bool(const Placed&, float)>& pause);
+             const std::function<bool(const Placed&, double)>& pause);
 
  private:
   const Container& container_;

@@ -20,7 +20,13 @@ class Soundings {
     double clearance(const Point& x) const { return std::abs(distance) - (x - at).norm() * (1 + 1e-9); }
   };
 
-  void add(const Point& at, double distance) { soundings_.push_back({at, distance}); }
+  void add(const Point& at, double distance) {
+    if (soundings_.size() < kKept) {
+      soundings_.push_back({at, distance});
+    } else {
+      soundings_[oldest_++ % kKept] = {at, distance};
+    }
+  }
 
   /// The sounding with the largest clearance at x, or null if none reaches x.
   const Sounding* around(const Point& x) const {
@@ -41,14 +47,18 @@ class Soundings {
   /// 1 inside, -1 outside, 0 unknown; `clear` is the distance of x from the surface. If that empty ball meets
   /// the empty ball of a sounding, both are on the same side.
   int side(const Point& x, double clear) const {
-    for (auto it = soundings_.rbegin(); it != soundings_.rend(); ++it) {
-      if (it->clearance(x) + clear > 0) return it->distance > 0 ? 1 : -1;
+    for (const Sounding& sounding : soundings_) {
+      if (sounding.clearance(x) + clear > 0) return sounding.distance > 0 ? 1 : -1;
     }
     return 0;
   }
 
  private:
+  // The search moves through neighbouring cells, so the last soundings are the near ones.
+  static constexpr std::size_t kKept = 64;
+
   std::vector<Sounding> soundings_;
+  std::size_t oldest_ = 0;
 };
 
 }  // namespace innersphere

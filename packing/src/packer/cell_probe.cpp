@@ -1,0 +1,76 @@
+// The part of CellSearch that looks at single points.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "packer/cell_search.hpp"
+
+namespace innersphere {
+
+Point CellSearch::direction(const Point& from, const Point& to) {
+  const Point way = to - from;
+  const double length = way.norm();
+  return length > 0 ? Point(way / length) : Point(Point::UnitX());
+}
+
+CellSearch::Probe CellSearch::nearestBall(const Point& x, std::size_t begin, std::size_t end) const {
+  double best = std::numeric_limits<double>::infinity();
+  std::size_t nearest = end;
+  for (std::size_t i = begin; i < end; ++i) {
+    const double reach = best + balls_[i].radius;
+    const double squared = (x - balls_[i].centre).squaredNorm();
+    if (reach > 0 && squared < reach * reach) {
+      best = std::sqrt(squared) - balls_[i].radius;
+      nearest = i;
+    }
+  }
+  if (nearest == end) return {best, Point::Zero(), {}};
+  return {best, direction(balls_[nearest].centre, x), balls_[nearest]};
+}
+
+CellSearch::Probe CellSearch::probe(const Point& x, std::size_t begin, std::size_t end, double enough,
+                                    double negligible) {
+  const Probe ball = nearestBall(x, begin, end);
+  if (ball.value <= enough) return ball;
+  if (const Soundings::Sounding* known = soundings_.around(x)) {
+    if (known->distance < 0) {
+      const Ball empty{known->at, -known->distance};
+      return {empty.distance(x), direction(empty.centre, x), empty};
+    }
+    if (known->clearance(x) >= ball.value) return ball;
+  }
+  const Container::Nearest wall = container_.closest(x, ball.value);
+  const double distance = std::min(wall.distance, ball.value);
+  if (distance <= negligible) return {distance, direction(wall.point, x), {wall.point, 0}};
+  if (!isInside(x, distance))
+    return {-distance, direction(x, wall.point), {x, distance}, std::isfinite(wall.distance), wall.point};
+  if (distance == ball.value) return ball;
+  return {distance, direction(wall.point, x), {wall.point, 0}, true, wall.point};
+}
+
+bool CellSearch::isInside(const Point& x, double distance) {
+  int side = soundings_.side(x, distance);
+  if (side == 0) side = container_.contains(x) ? 1 : -1;
+  soundings_.add(x, side * distance);
+  return side > 0;
+}
+
+Ball CellSearch::ballBehind(const Point& wall, const Point& normal, double radius) {
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const Point centre = wall + radius * normal;
+    const double empty = radius * (1 - 1e-6);
+    const Container::Nearest hit = container_.closest(centre, empty);
+    if (std::isinf(hit.distance)) {
+      if (isInside(centre, empty)) break;  // a sheet without thickness
+      return {centre, empty};
+    }
+    // The ball through both points, and a little less, as there may be a third.
+    const Point way = hit.point - wall;
+    const double next = 0.8 * way.squaredNorm() / (2 * way.dot(normal));
+    if (!(next > 0.5 * wanted_ && next < radius)) break;
+    radius = next;
+  }
+  return {wall, 0};
+}
+
+}  // namespace innersphere

@@ -1,0 +1,56 @@
+// The packer's claims about what does not fit, tried by random search.
+#include <gtest/gtest.h>
+
+#include "analytic_solids.hpp"
+#include "innersphere/packer.hpp"
+#include "packer_oracles.hpp"
+
+namespace innersphere::test {
+namespace {
+
+template <class T>
+class PackerCertificate : public testing::Test {};
+using Solids = testing::Types<Cube, TestTorus, BittenCube>;
+TYPED_TEST_SUITE(PackerCertificate, Solids);
+
+TYPED_TEST(PackerCertificate, NothingLargerFits) {
+  const TypeParam solid;
+  for (double delta : {0.01, 0.1, 0.5}) {
+    PackOptions options;
+    options.spheres = 400;
+    options.delta = delta;
+    const Packing packing = pack(solid, options);
+    EXPECT_LE(packing.certificate.delta, delta);
+    EXPECT_GE(packing.certificate.largest_missing_radius, packing.spheres.back().radius / (1 + delta));
+    EXPECT_LE(largestRoom(solid, packing, packing.spheres.size(), 100000),
+              packing.certificate.largest_missing_radius);
+  }
+}
+
+TYPED_TEST(PackerCertificate, EveryPrefixIsGreedy) {
+  const TypeParam solid;
+  PackOptions options;
+  options.spheres = 200;
+  const Packing packing = pack(solid, options);
+  for (std::size_t count : {1, 2, 5, 20, 70, 199}) {
+    EXPECT_LE(largestRoom(solid, packing, count, 40000),
+              packing.spheres[count].radius * (1 + packing.certificate.delta))
+        << count;
+  }
+}
+
+// The search is not blind: the largest sphere of an empty cube is known, and so is the next one.
+TEST(PackerCertificate, TheFirstSpheresOfACube) {
+  const Cube cube;
+  PackOptions options;
+  options.spheres = 9;
+  const Packing packing = pack(cube, options);
+  EXPECT_NEAR(largestRoom(cube, packing, 0, 40000), 0.5, 1e-3);
+  EXPECT_NEAR(packing.spheres[0].radius, 0.5, 1e-6);
+  const double corner = 0.5 * (std::sqrt(3.0) - 1) / (std::sqrt(3.0) + 1);
+  EXPECT_NEAR(largestRoom(cube, packing, 1, 40000), corner, 1e-3);
+  for (std::size_t i = 1; i < 9; ++i) EXPECT_NEAR(packing.spheres[i].radius, corner, 1e-5);
+}
+
+}  // namespace
+}  // namespace innersphere::test
