@@ -44,10 +44,18 @@ enum class View {
   split  ///< surfaces on the left of the picture, spheres on the right
 };
 
+/// Direction from which to look; the distance follows from what has to be seen.
+struct Viewpoint {
+  double azimuth = 0.6;        ///< [rad] about the z axis, 0: from -y
+  double elevation = 0.45;     ///< [rad] above the horizon
+  double field_of_view = 0.5;  ///< [rad] vertical
+};
+
 /// A recording. The z axis points up.
 struct Film {
   std::string title;
   std::string caption;  ///< one line below the title
+  Viewpoint viewpoint;
   std::vector<Shape> shapes;
   std::vector<Actor> actors;
   std::vector<Pose> poses;        ///< of all actors in the first frame, then in the second, ...

@@ -55,7 +55,8 @@ Fit fitAlong(const std::vector<Blob>& blobs, const Vector3f& target, const Vecto
 
 }  // namespace
 
-Camera frameCamera(const Film& film, std::size_t frame, const Viewpoint& view, double aspect) {
+Camera frameCamera(const Film& film, std::size_t frame, double aspect) {
+  const Viewpoint& view = film.viewpoint;
   Camera camera;
   const auto a = static_cast<float>(view.azimuth);
   const auto e = static_cast<float>(view.elevation);

@@ -7,13 +7,6 @@
 
 namespace innersphere::demo {
 
-/// Direction from which to look; the distance follows from what has to be seen.
-struct Viewpoint {
-  double azimuth = 0.6;        ///< [rad] about the z axis, 0: from -y
-  double elevation = 0.45;     ///< [rad] above the horizon
-  double field_of_view = 0.5;  ///< [rad] vertical
-};
-
 /// A pinhole camera.
 struct Camera {
   Eigen::Vector3f eye;
@@ -30,7 +23,7 @@ struct Camera {
   }
 };
 
-/// A camera that shows all actors of a frame, as large as the picture allows.
-Camera frameCamera(const Film& film, std::size_t frame, const Viewpoint& view, double aspect);
+/// A camera at the film's viewpoint that shows all actors of a frame, as large as the picture allows.
+Camera frameCamera(const Film& film, std::size_t frame, double aspect);
 
 }  // namespace innersphere::demo

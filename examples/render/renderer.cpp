@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "camera.hpp"
 #include "innersphere/error.hpp"
 #include "sampler.hpp"
 #include "stage.hpp"
@@ -141,10 +142,8 @@ float rightOfSplit(float x, float y, const RenderOptions& options) {
 
 }  // namespace
 
-Image render(const Film& film, std::size_t frame, const Viewpoint& viewpoint, const RenderOptions& options,
-             const Progress& progress) {
-  const Camera camera =
-      frameCamera(film, frame, viewpoint, static_cast<double>(options.width) / options.height);
+Image render(const Film& film, std::size_t frame, const RenderOptions& options, const Progress& progress) {
+  const Camera camera = frameCamera(film, frame, static_cast<double>(options.width) / options.height);
   std::unique_ptr<Stage> surfaces;
   std::unique_ptr<Stage> spheres;
   if (options.view != View::spheres) surfaces = std::make_unique<Stage>(film, frame, View::surface);

@@ -1,7 +1,6 @@
 // Draws a frame of a film on the CPU.
 #pragma once
 
-#include "camera.hpp"
 #include "film/film.hpp"
 #include "image.hpp"
 #include "innersphere/progress.hpp"
@@ -17,7 +16,7 @@ struct RenderOptions {
 
 /// A picture with soft shadows and one bounce of indirect light. The same bytes for any number of threads.
 /// Throws Error cancelled.
-Image render(const Film& film, std::size_t frame, const Viewpoint& viewpoint, const RenderOptions& options,
+Image render(const Film& film, std::size_t frame, const RenderOptions& options,
              const Progress& progress = {});
 
 }  // namespace innersphere::demo

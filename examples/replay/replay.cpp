@@ -9,6 +9,7 @@
 #include "embedded_files.hpp"
 #include "film/creases.hpp"
 #include "film/palette.hpp"
+#include "render/camera.hpp"
 
 namespace innersphere::demo {
 namespace {
@@ -52,23 +53,23 @@ json shapeJson(const Shape& shape, bool colour_by_radius) {
   return result;
 }
 
-json cameraJson(const Film& film, const Viewpoint& viewpoint) {
-  const Camera camera = frameCamera(film, film.frames() - 1, viewpoint, kAspect);
+json cameraJson(const Film& film) {
+  const Camera camera = frameCamera(film, film.frames() - 1, kAspect);
   const Eigen::Vector3f target = camera.eye + camera.distance * camera.forward;
   const Eigen::Vector3f eye = target - 1.2f * camera.distance * camera.forward;
   constexpr double kDegrees = 57.29577951308232;
   return {{"eye", {eye.x(), eye.y(), eye.z()}},
           {"target", {target.x(), target.y(), target.z()}},
-          {"field_of_view", viewpoint.field_of_view * kDegrees},
+          {"field_of_view", film.viewpoint.field_of_view * kDegrees},
           {"aspect", kAspect}};
 }
 
-std::string filmJson(const Film& film, const Viewpoint& viewpoint) {
+std::string filmJson(const Film& film) {
   json result = {{"title", film.title},
                  {"caption", film.caption},
                  {"frame_rate", film.frame_rate},
                  {"ground", film.has_ground ? json(film.ground) : json(nullptr)},
-                 {"camera", cameraJson(film, viewpoint)}};
+                 {"camera", cameraJson(film)}};
   for (int i = 0; i < kRampSteps; ++i) {
     result["ramp"].push_back(cssColour(rampColour(static_cast<float>(i) / (kRampSteps - 1))));
   }
@@ -87,8 +88,8 @@ std::string filmJson(const Film& film, const Viewpoint& viewpoint) {
 
 }  // namespace
 
-std::string replayPage(const Film& film, const Viewpoint& viewpoint) {
-  const std::string data = filmJson(film, viewpoint);
+std::string replayPage(const Film& film) {
+  const std::string data = filmJson(film);
   const std::pair<std::string_view, std::string_view> parts[] = {{"{{css}}", kPageCss},
                                                                  {"{{three}}", kThreeJs},
                                                                  {"{{controls}}", kOrbitControlsJs},

@@ -1,0 +1,122 @@
+#include "world.hpp"
+
+#include "innersphere/packer.hpp"
+#include "innersphere/packing_collision_algorithm.hpp"
+#include "scaled_solid.hpp"
+
+namespace innersphere::demo {
+namespace {
+
+constexpr btScalar kGravity = btScalar(9.81);           // [m/s^2]
+constexpr btScalar kFriction = btScalar(0.8);           // of each body; Bullet multiplies the two of a pair
+constexpr btScalar kRollingFriction = btScalar(0.005);  // [m] lever of the resistance against rolling
+
+std::array<float, 3> moved(const btTransform& t, float x, float y, float z) {
+  const btVector3 p = t * btVector3(btScalar(x), btScalar(y), btScalar(z));
+  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
+// A packing as it is drawn: in the frame of the body.
+Shape lookOf(const std::string& name, const Packing& packing, const btTransform& to_body) {
+  Shape look{name, packing.surface, packing.spheres};
+  for (auto& v : look.surface.vertices) v = moved(to_body, v[0], v[1], v[2]);
+  for (Sphere& s : look.spheres) {
+    const auto centre = moved(to_body, s.x, s.y, s.z);
+    s = {centre[0], centre[1], centre[2], s.radius};
+  }
+  return look;
+}
+
+Surface boxSurface(const btVector3& half) {
+  Surface surface;
+  for (int corner = 0; corner < 8; ++corner) {
+    std::array<float, 3> v;
+    for (int axis = 0; axis < 3; ++axis)
+      v[axis] = static_cast<float>((corner >> axis & 1) ? half[axis] : -half[axis]);
+    surface.vertices.push_back(v);
+  }
+  surface.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                       {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return surface;
+}
+
+}  // namespace
+
+SceneWorld::SceneWorld(const ContactOptions& options) {
+  world_.setGravity(btVector3(0, 0, -kGravity));
+  // Runs repeat exactly, whatever order the broad phase finds pairs in.
+  world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher_, options);
+}
+
+SceneWorld::~SceneWorld() {
+  for (const SceneBody& body : bodies_) world_.removeRigidBody(body.body.get());
+  if (ground_) world_.removeRigidBody(ground_.get());
+}
+
+std::size_t SceneWorld::addSolid(const Solid& solid, std::size_t spheres, const Progress& progress) {
+  PackOptions options;
+  options.spheres = spheres;
+  SceneSolid& entry = solids_.emplace_back();
+  entry.packing = std::make_shared<Packing>(pack(solid, options, progress));
+  entry.shape = std::make_unique<PackingShape>(std::make_shared<CollisionModel>(entry.packing));
+  const Bounds box = solid.bounds();
+  entry.size = diagonalOf(box);
+  for (int k = 0; k < 3; ++k) entry.centre[k] = btScalar((box.min[k] + box.max[k]) / 2);
+  entry.look = static_cast<std::uint32_t>(film.shapes.size());
+  film.shapes.push_back(lookOf(solid.name(), *entry.packing, entry.shape->principalTransform()));
+  return solids_.size() - 1;
+}
+
+btRigidBody& SceneWorld::add(std::string name, btCollisionShape& shape, double mass, const btTransform& place,
+                             double size) {
+  btVector3 inertia(0, 0, 0);
+  if (mass > 0) shape.calculateLocalInertia(btScalar(mass), inertia);
+  btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, &shape, inertia);
+  info.m_startWorldTransform = place;
+  info.m_friction = kFriction;
+  info.m_rollingFriction = kRollingFriction;
+  auto body = std::make_unique<btRigidBody>(info);
+  if (mass > 0) body->setActivationState(DISABLE_DEACTIVATION);
+  world_.addRigidBody(body.get());
+  return *bodies_.emplace_back(SceneBody{std::move(name), std::move(body), size}).body;
+}
+
+btRigidBody& SceneWorld::addBody(std::size_t solid, double density, const btTransform& place,
+                                 const Colour& colour) {
+  const SceneSolid& entry = solids_[solid];
+  film.actors.push_back({entry.look, colour});
+  return add(film.shapes[entry.look].name, *entry.shape, density * entry.packing->solid.volume,
+             place * btTransform(btQuaternion::getIdentity(), -entry.centre) *
+                 entry.shape->principalTransform().inverse(),
+             entry.size);
+}
+
+btRigidBody& SceneWorld::addFixedBox(const btVector3& half_size, const btTransform& place,
+                                     const Colour& colour) {
+  film.actors.push_back({static_cast<std::uint32_t>(film.shapes.size()), colour});
+  film.shapes.push_back({"fixed box", boxSurface(half_size), {}});
+  bullet_shapes_.push_back(std::make_unique<btBoxShape>(half_size));
+  return add("fixed box", *bullet_shapes_.back(), 0, place, 2 * half_size.length());
+}
+
+void SceneWorld::addGround(double height) {
+  bullet_shapes_.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(height)));
+  ground_ = std::make_unique<btRigidBody>(0, nullptr, bullet_shapes_.back().get());
+  ground_->setFriction(kFriction);
+  world_.addRigidBody(ground_.get());
+  film.has_ground = true;
+  film.ground = static_cast<float>(height);
+}
+
+Pose SceneWorld::poseOf(const btRigidBody& body) {
+  const btVector3& p = body.getWorldTransform().getOrigin();
+  const btQuaternion q = body.getWorldTransform().getRotation();
+  Pose pose;
+  for (int k = 0; k < 3; ++k) pose.position[k] = static_cast<float>(p[k]);
+  pose.rotation = {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
+                   static_cast<float>(q.w())};
+  return pose;
+}
+
+}  // namespace innersphere::demo

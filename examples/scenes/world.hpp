@@ -1,0 +1,83 @@
+// A stock Bullet world, the bodies in it, and what they look like.
+#pragma once
+
+#include <btBulletDynamicsCommon.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "film/film.hpp"
+#include "innersphere/contact_options.hpp"
+#include "innersphere/packing_shape.hpp"
+#include "innersphere/progress.hpp"
+#include "innersphere/solid.hpp"
+
+namespace innersphere::demo {
+
+/// A solid that was packed for a scene.
+struct SceneSolid {
+  std::shared_ptr<const Packing> packing;
+  std::unique_ptr<PackingShape> shape;
+  std::uint32_t look = 0;  ///< index into Film::shapes
+  btVector3 centre;        ///< of its bounding box, in the solid's own frame [m]
+  double size = 0;         ///< diagonal of its bounding box [m]
+};
+
+/// A body of a scene; the actor with the same index shows it.
+struct SceneBody {
+  std::string name;
+  std::unique_ptr<btRigidBody> body;
+  double size = 0;  ///< diagonal of its bounding box [m]
+
+  bool moves() const { return !body->isStaticObject(); }
+};
+
+/// Owns a btDiscreteDynamicsWorld with Bullet's default parts. The z axis points up; gravity is 9.81 m/s^2.
+/// Bodies never go to sleep, so that nothing seems to rest only because Bullet froze it.
+class SceneWorld {
+ public:
+  explicit SceneWorld(const ContactOptions& options);
+  ~SceneWorld();
+  SceneWorld(const SceneWorld&) = delete;
+  SceneWorld& operator=(const SceneWorld&) = delete;
+
+  btDiscreteDynamicsWorld& bullet() { return world_; }
+  const std::vector<SceneSolid>& solids() const { return solids_; }
+  const std::vector<SceneBody>& bodies() const { return bodies_; }
+
+  /// Packs a solid; the result is an index for addBody().
+  std::size_t addSolid(const Solid& solid, std::size_t spheres, const Progress& progress);
+
+  /// A homogeneous body of a packed solid; `place` is where the centre of its bounding box goes. Density 0
+  /// [kg/m^3]: it never moves.
+  btRigidBody& addBody(std::size_t solid, double density, const btTransform& place, const Colour& colour);
+
+  /// A fixed box of Bullet's own.
+  btRigidBody& addFixedBox(const btVector3& half_size, const btTransform& place, const Colour& colour);
+
+  /// A fixed horizontal plane, which the film shows as its ground.
+  void addGround(double height);
+
+  /// What the film of this world starts with: shapes, actors, viewpoint, no frames yet.
+  Film film;
+
+  /// Where the actor of a body is.
+  static Pose poseOf(const btRigidBody& body);
+
+ private:
+  btRigidBody& add(std::string name, btCollisionShape& shape, double mass, const btTransform& place,
+                   double size);
+
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btSequentialImpulseConstraintSolver solver_;
+  btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  std::vector<SceneSolid> solids_;
+  std::vector<std::unique_ptr<btCollisionShape>> bullet_shapes_;
+  std::unique_ptr<btRigidBody> ground_;
+  std::vector<SceneBody> bodies_;
+};
+
+}  // namespace innersphere::demo

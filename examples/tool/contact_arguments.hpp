@@ -1,0 +1,27 @@
+// Names of the library's choices on the command line.
+#pragma once
+
+#include "choice.hpp"
+#include "innersphere/contact_options.hpp"
+
+namespace innersphere::tool {
+
+inline void addBackendOption(CLI::App& command, Backend& backend) {
+  addChoice<Backend>(command, "--backend", backend,
+                     {{"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}},
+                     "Where overlaps are computed; auto chooses by the amount of work");
+}
+
+inline void addEstimatorOption(CLI::App& command, Estimator& estimator) {
+  addChoice<Estimator>(command, "--estimator", estimator,
+                       {{"raw", Estimator::raw}, {"volume-true", Estimator::volume_true}},
+                       "Radii of the spheres: as packed (raw), or so that they stand for the whole solid");
+}
+
+inline void addResponseOption(CLI::App& command, Response& response) {
+  addChoice<Response>(command, "--response", response,
+                      {{"compliant", Response::compliant}, {"rigid", Response::rigid}},
+                      "How overlap becomes contact: implicit springs, or the solver removes it");
+}
+
+}  // namespace innersphere::tool

@@ -1,0 +1,204 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "contact_arguments.hpp"
+#include "innersphere/error.hpp"
+#include "innersphere/packer.hpp"
+#include "innersphere/query.hpp"
+#include "inputs.hpp"
+#include "outputs.hpp"
+#include "pose_table.hpp"
+#include "terminal.hpp"
+
+namespace innersphere::tool {
+namespace {
+
+constexpr std::size_t kBatch = 256;  // poses queried at once: bounds the memory for their contacts
+
+// Which force the table holds.
+enum class Force {
+  by_estimator,  ///< gradient for volume-true, volume for raw
+  gradient,      ///< sum pi a^2 n: minus the gradient of the overlap volume
+  volume         ///< sum V n: the paper's
+};
+
+struct Arguments {
+  std::string a;
+  std::string b;
+  std::string poses;
+  std::string output;
+  std::size_t spheres = 0;
+  QueryOptions query;
+  QueryContextOptions context;
+  Force force_law = Force::by_estimator;
+  bool force = false;
+};
+
+Vec3d plus(const Vec3d& a, const Vec3d& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+Vec3d minus(const Vec3d& a, const Vec3d& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Vec3d cross(const Vec3d& a, const Vec3d& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+template <typename T>
+Vec3d wide(const std::array<T, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
+
+// Centre of the bounding box of a solid, or of its spheres if the file has no surface.
+Vec3d boxCentre(const Packing& packing) {
+  Vec3d low{1e300, 1e300, 1e300};
+  Vec3d high{-1e300, -1e300, -1e300};
+  const auto include = [&](const Vec3d& p, double radius) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k] - radius);
+      high[k] = std::max(high[k], p[k] + radius);
+    }
+  };
+  for (const auto& v : packing.surface.vertices) include(wide(v), 0);
+  if (packing.surface.vertices.empty()) {
+    for (const Sphere& s : packing.spheres) include({s.x, s.y, s.z}, s.radius);
+  }
+  return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
+}
+
+Vec3d placed(const Placement& placement, const Vec3d& p) {
+  Vec3d result = placement.translation;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) result[i] += placement.rotation[3 * i + j] * p[j];
+  }
+  return result;
+}
+
+struct Wrench {
+  Vec3d force{};
+  Vec3d torque{};
+};
+
+// A is not moved, so points of the result are in A's coordinates.
+Wrench volumeWrench(const Overlap& overlap, const Placement& b, const Vec3d& reference) {
+  return {overlap.force, plus(overlap.torque, cross(minus(b.translation, reference), overlap.force))};
+}
+
+Wrench gradientWrench(const QueryResult& result, std::size_t query, const Vec3d& reference) {
+  Wrench wrench;
+  wrench.force = result.overlaps[query].area;
+  const auto& contacts = result.contacts_a;
+  for (std::size_t i = contacts.first[query]; i < contacts.first[query + 1]; ++i) {
+    const SphereContact& contact = contacts.items[i];
+    wrench.torque = plus(wrench.torque, cross(minus(wide(contact.centroid), reference), wide(contact.area)));
+  }
+  return wrench;
+}
+
+void appendRow(std::string& table, const std::string& name, const Overlap& overlap, const Wrench& wrench) {
+  table += name;
+  const auto number = [&table](double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, ",%.12g", value);
+    table += text;
+  };
+  number(overlap.volume);
+  for (const double x : overlap.centroid) number(x);
+  for (const double x : wrench.force) number(x);
+  for (const double x : wrench.torque) number(x);
+  number(overlap.stiffness);
+  table += ',' + std::to_string(overlap.pair_count) + '\n';
+}
+
+std::uint32_t prefixOf(const Arguments& arguments, const Packing& packing, const std::string& name) {
+  if (arguments.spheres <= packing.spheres.size()) return static_cast<std::uint32_t>(arguments.spheres);
+  say(name + " has only " + std::to_string(packing.spheres.size()) + " spheres: all of them are used");
+  return 0;
+}
+
+std::shared_ptr<const CollisionModel> modelOf(const std::string& source, std::size_t spheres) {
+  const std::size_t to_pack = spheres > 0 ? spheres : PackOptions().spheres;
+  return std::make_shared<CollisionModel>(std::make_shared<Packing>(loadOrPack(source, to_pack)));
+}
+
+void run(Arguments& arguments) {
+  checkOutput(arguments.output, arguments.force);
+  const std::vector<NamedPose> poses = readPoses(arguments.poses);
+  QueryContext context(arguments.context);
+  const auto a = modelOf(arguments.a, arguments.spheres);
+  const auto b = arguments.b == arguments.a ? a : modelOf(arguments.b, arguments.spheres);
+  clearProgressBar();
+
+  const Vec3d centre = boxCentre(b->packing());
+  const bool gradient =
+      arguments.force_law == Force::gradient ||
+      (arguments.force_law == Force::by_estimator && arguments.query.estimator == Estimator::volume_true);
+  arguments.query.want = gradient ? Want::contacts : Want::wrench;
+  PairQuery query;
+  query.a = a.get();
+  query.b = b.get();
+  query.prefix_a = prefixOf(arguments, a->packing(), arguments.a);
+  query.prefix_b = prefixOf(arguments, b->packing(), arguments.b);
+
+  std::string table = "pose,volume,cx,cy,cz,fx,fy,fz,tx,ty,tz,stiffness,pairs\n";
+  QueryResult result;
+  const Progress progress = progressBar();
+  for (std::size_t first = 0; first < poses.size(); first += kBatch) {
+    std::vector<PairQuery> queries(std::min(kBatch, poses.size() - first), query);
+    for (std::size_t i = 0; i < queries.size(); ++i) queries[i].placement_b = poses[first + i].placement;
+    context.run(queries.data(), queries.size(), arguments.query, result);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const Placement& place = queries[i].placement_b;
+      const Vec3d reference = placed(place, centre);
+      appendRow(table, poses[first + i].name, result.overlaps[i],
+                gradient ? gradientWrench(result, i, reference)
+                         : volumeWrench(result.overlaps[i], place, reference));
+    }
+    if (!progress("querying",
+                  static_cast<double>(first + queries.size()) / static_cast<double>(poses.size()))) {
+      throw Error(ErrorCode::cancelled, "the query was cancelled");
+    }
+  }
+  clearProgressBar();
+  writeTextOutput(arguments.output, arguments.force, table);
+}
+
+}  // namespace
+
+void addOverlapCommand(CLI::App& app, Session&) {
+  CLI::App* command = app.add_subcommand("overlap", "Measure the overlap of two packings in many poses");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("A", arguments->a, "Packing file, mesh file or name of a solid; not moved")->required();
+  command->add_option("B", arguments->b, "The same for the body that is moved")->required();
+  command
+      ->add_option(
+          "--poses", arguments->poses,
+          "CSV file with the columns m00 to m23: the 3x4 matrix that takes B's coordinates to its place")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "CSV file to write")->required();
+  command->add_option("--spheres", arguments->spheres, "Use the largest ones only; 0: all")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  addEstimatorOption(*command, arguments->query.estimator);
+  addBackendOption(*command, arguments->context.backend);
+  addChoice<Force>(
+      *command, "--force-law", arguments->force_law,
+      {{"by-estimator", Force::by_estimator}, {"gradient", Force::gradient}, {"volume", Force::volume}},
+      "Force of the table: minus the gradient of the overlap volume (sum pi a^2 n), or the paper's "
+      "(sum V n); by-estimator: gradient for volume-true, volume for raw");
+  command->add_flag("--force", arguments->force, "Replace an existing output");
+  command->footer(
+      "One row a pose: pose, volume [m^3], centroid cx cy cz [m], force on B fx fy fz, its torque tx ty tz "
+      "about the centre\n"
+      "of B's bounding box, stiffness (sum pi a^2) [m^2], overlapping sphere pairs. Forces are per unit of "
+      "pressure (gradient,\n"
+      "[m^2]) or of force density (volume, [m^3]). Everything is in A's coordinates.\n"
+      "Example:\n"
+      "  innersphere overlap cow.cbor cow.cbor --poses poses.csv --spheres 4000 -o overlap.csv");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace innersphere::tool

@@ -1,0 +1,22 @@
+// Poses from a CSV file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "innersphere/placement.hpp"
+
+namespace innersphere::tool {
+
+struct NamedPose {
+  std::string name;  ///< column "pose", or the number of the row, from 0
+  Placement placement;
+};
+
+/// Reads a table with a header row and the columns m00, m01, ..., m23: the 3x4 matrix of a rigid transform,
+/// row by row. Other columns, empty lines and lines that start with # are passed over. Throws Error
+/// file_not_found, bad_format (also for a matrix that is not a rotation), not_finite, empty_input; the
+/// message names the line.
+std::vector<NamedPose> readPoses(const std::string& path);
+
+}  // namespace innersphere::tool

@@ -1,0 +1,25 @@
+// Talk with the person at the terminal: all of it on stderr, data alone goes to stdout.
+#pragma once
+
+#include <string>
+
+#include "innersphere/progress.hpp"
+
+namespace innersphere::tool {
+
+/// From now on Ctrl-C asks running work to stop; a second Ctrl-C ends the program.
+void catchInterrupts();
+
+/// Keeps notes and progress off stderr.
+void setQuiet(bool quiet);
+
+/// A line on stderr, unless quiet.
+void say(const std::string& line);
+
+/// Shows a bar on stderr while the work runs, if that is a terminal, and cancels the work after Ctrl-C.
+Progress progressBar();
+
+/// Removes the bar, before other output. Does nothing if there is none.
+void clearProgressBar();
+
+}  // namespace innersphere::tool

@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "film/palette.hpp"
+#include "innersphere/packer.hpp"
+#include "inputs.hpp"
+#include "pictures.hpp"
+#include "report.hpp"
+
+namespace innersphere::tool {
+namespace {
+
+struct Arguments {
+  std::string source;
+  std::size_t spheres = 2000;
+  PictureArguments pictures;
+  bool force = false;
+};
+
+demo::Film filmOf(const Packing& packing, const std::string& title) {
+  demo::Film film;
+  film.title = title;
+  film.caption = std::to_string(packing.spheres.size()) + " spheres fill " +
+                 percent(packing.quality.density) + "; colour: radius, " +
+                 number(packing.spheres.back().radius) + " to " + number(packing.spheres.front().radius, "m");
+  film.colour_by_radius = true;
+  film.shapes.push_back({title, packing.surface, packing.spheres});
+  film.actors.push_back({0, demo::paletteColour(1)});
+  film.poses.push_back({});
+  film.ground = packing.spheres.front().z;
+  for (const Sphere& s : packing.spheres) film.ground = std::min(film.ground, s.z - s.radius);
+  for (const auto& v : packing.surface.vertices) film.ground = std::min(film.ground, v[2]);
+  return film;
+}
+
+void run(Arguments& arguments) {
+  PictureArguments& pictures = arguments.pictures;
+  const std::string stem = std::filesystem::path(arguments.source).stem().string();
+  if (pictures.png.empty() && pictures.html.empty()) {
+    pictures.png = stem + ".png";
+    pictures.html = stem + ".html";
+  }
+  checkPictures(pictures, arguments.force);
+  writePictures(filmOf(loadOrPack(arguments.source, arguments.spheres), stem), pictures, arguments.force);
+}
+
+}  // namespace
+
+void addViewCommand(CLI::App& app, Session&) {
+  CLI::App* command =
+      app.add_subcommand("view", "Show a packing: its surface, and its spheres coloured by radius");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("FILE", arguments->source, "Packing file, or a mesh or a solid's name to pack first")
+      ->required();
+  command->add_option("--spheres", arguments->spheres, "Of what is packed first")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  addPictureOptions(*command, arguments->pictures);
+  command->add_flag("--force", arguments->force, "Replace existing outputs");
+  command->footer(
+      "Without --png and --html both are written to the current folder, named after FILE.\nExamples:\n"
+      "  innersphere view bunny.cbor\n"
+      "  innersphere view gear --html gear.html");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace innersphere::tool

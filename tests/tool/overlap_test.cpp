@@ -1,0 +1,168 @@
+// The overlap table, against closed forms and against brute force over the exported spheres.
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "meshes.hpp"
+#include "tool_runner.hpp"
+
+namespace innersphere::test {
+namespace {
+
+using Real = long double;
+using Vector = std::array<Real, 3>;
+
+const std::string kHeader = "pose,m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23\n";
+
+struct Row {
+  std::string pose;
+  double volume;
+  Vector centroid, force, torque;
+  double stiffness;
+  long pairs;
+};
+
+std::vector<Row> readTable(const std::string& text) {
+  const auto rows = readCsv(text);
+  EXPECT_EQ(text.substr(0, text.find('\n')), "pose,volume,cx,cy,cz,fx,fy,fz,tx,ty,tz,stiffness,pairs");
+  std::vector<Row> table;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].size(), 13u);
+    const auto number = [&](int column) { return std::stod(rows[i][static_cast<std::size_t>(column)]); };
+    const auto vector = [&](int column) {
+      return Vector{number(column), number(column + 1), number(column + 2)};
+    };
+    table.push_back(
+        {rows[i][0], number(1), vector(2), vector(5), vector(8), number(11), std::lround(number(12))});
+  }
+  return table;
+}
+
+class Overlap : public ToolTest {};
+
+TEST_F(Overlap, VolumeTrueMeetsTheCylinder) {
+  succeed("pack cylinder --spheres 1000 -o cylinder.cbor");
+  // Shifted along its axis, and turned about it so that the two packings are not the same sphere by sphere.
+  writeFile(path("poses.csv"), "# a comment\n" + kHeader + "half,0.6,-0.8,0,0,0.8,0.6,0,0,0,0,1,0.5\n" +
+                                   "quarter,0.6,-0.8,0,0,0.8,0.6,0,0,0,0,1,0.75\n" +
+                                   "apart,0.6,-0.8,0,0,0.8,0.6,0,0,0,0,1,1.5\n");
+  succeed("overlap cylinder.cbor cylinder.cbor --poses poses.csv -o out.csv");
+  const auto table = readTable(readFile(path("out.csv")));
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table[0].pose, "half");
+  const double area = M_PI * 0.3 * 0.3;
+  const double shares[2] = {0.5, 0.25};
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_NEAR(table[i].volume / (shares[i] * area), 1, 0.04);
+    EXPECT_NEAR(static_cast<double>(table[i].centroid[2]), 0.5 - shares[i] / 2, 0.02);
+    // The gradient of the volume is the area of the contact face, and pushes B along the axis.
+    EXPECT_NEAR(static_cast<double>(table[i].force[2]) / area, 1, 0.2);
+    EXPECT_NEAR(static_cast<double>(table[i].force[0]) / area, 0, 0.1);
+    EXPECT_NEAR(static_cast<double>(table[i].force[1]) / area, 0, 0.1);
+  }
+  EXPECT_EQ(table[2].volume, 0);
+  EXPECT_EQ(table[2].pairs, 0);
+}
+
+// The sums of the paper over all pairs of spheres, B's centres moved by `place`, the torque about
+// `reference`.
+Row bruteForce(const std::string& xyzr, const std::array<Real, 12>& m, const Vector& reference) {
+  std::vector<std::array<Real, 4>> spheres;
+  std::stringstream stream(xyzr);
+  for (std::string line; std::getline(stream, line);) {
+    std::stringstream numbers(line);
+    double x, y, z, r;
+    if (numbers >> x >> y >> z >> r) spheres.push_back({x, y, z, r});
+  }
+  EXPECT_GT(spheres.size(), 10u);
+  const Real pi = std::acos(Real(-1));
+  Row sum{"", 0, {}, {}, {}, 0, 0};
+  Real volume = 0, stiffness = 0;
+  for (const auto& a : spheres) {
+    for (const auto& b : spheres) {
+      Vector centre, n;
+      for (int i = 0; i < 3; ++i)
+        centre[i] = m[4 * i] * b[0] + m[4 * i + 1] * b[1] + m[4 * i + 2] * b[2] + m[4 * i + 3];
+      for (int i = 0; i < 3; ++i) n[i] = centre[i] - a[i];
+      const Real r1 = a[3], r2 = b[3];
+      const Real d = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+      if (d >= r1 + r2) continue;
+      ++sum.pairs;
+      for (Real& x : n) x /= d;
+      Real v,
+          rim = 0,
+          along;  // volume, squared radius of the rim, place of the lens' centroid on the line from a to b
+      if (d <= std::abs(r1 - r2)) {
+        v = 4 * pi / 3 * std::pow(std::min(r1, r2), 3);
+        along = r1 < r2 ? 0 : d;
+      } else {
+        // Caps of heights h1 and h2; a cap's centroid is 3 (2r - h)^2 / (4 (3r - h)) from its sphere's
+        // centre.
+        const Real x = (d * d + r1 * r1 - r2 * r2) / (2 * d);
+        const Real h1 = r1 - x, h2 = r2 - (d - x);
+        const Real v1 = pi * h1 * h1 * (3 * r1 - h1) / 3, v2 = pi * h2 * h2 * (3 * r2 - h2) / 3;
+        const Real c1 = 3 * (2 * r1 - h1) * (2 * r1 - h1) / (4 * (3 * r1 - h1));
+        const Real c2 = d - 3 * (2 * r2 - h2) * (2 * r2 - h2) / (4 * (3 * r2 - h2));
+        v = v1 + v2;
+        rim = r1 * r1 - x * x;
+        along = (v1 * c1 + v2 * c2) / v;
+      }
+      Vector arm;
+      for (int i = 0; i < 3; ++i) {
+        const Real point = a[i] + along * n[i];
+        sum.centroid[i] += v * point;
+        sum.force[i] += v * n[i];
+        arm[i] = point - reference[i];
+      }
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        sum.torque[i] += v * (arm[j] * n[k] - arm[k] * n[j]);
+      }
+      volume += v;
+      stiffness += pi * rim;
+    }
+  }
+  for (Real& x : sum.centroid) x /= volume;
+  sum.volume = static_cast<double>(volume);
+  sum.stiffness = static_cast<double>(stiffness);
+  return sum;
+}
+
+TEST_F(Overlap, RawMeetsBruteForce) {
+  writeFile(path("tetra.obj"), kTetrahedron);
+  succeed("pack tetra.obj --spheres 200 -o tetra.cbor");
+  succeed("convert tetra.cbor tetra.xyzr");
+  // A turn by 0.6 and 0.8 (exact) and a shift.
+  writeFile(path("poses.csv"), kHeader + "7,0.6,-0.8,0,0.5,0.8,0.6,0,-0.125,0,0,1,0.0625\n");
+  succeed("overlap tetra.cbor tetra.cbor --estimator raw --poses poses.csv -o out.csv");
+  const auto table = readTable(readFile(path("out.csv")));
+  ASSERT_EQ(table.size(), 1u);
+  EXPECT_EQ(table[0].pose, "7");
+
+  // The centre of the box around the mesh, (0.5, 0.5, 0.5), goes to (0.4, 0.575, 0.5625).
+  const std::array<Real, 12> m{0.6L, -0.8L, 0, 0.5L, 0.8L, 0.6L, 0, -0.125L, 0, 0, 1, 0.0625L};
+  const Row expected = bruteForce(readFile(path("tetra.xyzr")), m, {0.4L, 0.575L, 0.5625L});
+  EXPECT_EQ(table[0].pairs, expected.pairs);
+  EXPECT_NEAR(table[0].volume / expected.volume, 1, 1e-4);
+  EXPECT_NEAR(table[0].stiffness / expected.stiffness, 1, 1e-4);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(static_cast<double>(table[0].centroid[i]), static_cast<double>(expected.centroid[i]), 1e-5);
+    EXPECT_NEAR(static_cast<double>(table[0].force[i] - expected.force[i]) / expected.volume, 0, 1e-4);
+    EXPECT_NEAR(static_cast<double>(table[0].torque[i] - expected.torque[i]) / expected.volume, 0, 1e-4);
+  }
+}
+
+TEST_F(Overlap, FewerSpheresAreThePrefix) {
+  succeed("pack box --spheres 200 -o box.cbor");
+  writeFile(path("poses.csv"), kHeader + "0,1,0,0,0.3,0,1,0,0.1,0,0,1,0\n");
+  succeed("overlap box.cbor box.cbor --poses poses.csv --spheres 64 -o few.csv");
+  succeed("overlap box.cbor box.cbor --poses poses.csv -o all.csv");
+  EXPECT_LT(readTable(readFile(path("few.csv")))[0].pairs, readTable(readFile(path("all.csv")))[0].pairs);
+  const Outcome outcome = run("overlap box.cbor box.cbor --poses poses.csv --spheres 500 -o more.csv");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.err.find("200"), std::string::npos) << "says nothing about the missing spheres";
+  EXPECT_EQ(readFile(path("more.csv")), readFile(path("all.csv")));
+}
+
+}  // namespace
+}  // namespace innersphere::test

@@ -1,0 +1,105 @@
+// Scenes, as the tool runs and records them.
+#include <cmath>
+#include <map>
+
+#include "meshes.hpp"
+#include "tool_runner.hpp"
+
+namespace innersphere::test {
+namespace {
+
+// A recording by column.
+std::map<std::string, std::vector<double>> columns(const std::string& csv) {
+  const auto rows = readCsv(csv);
+  std::map<std::string, std::vector<double>> result;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].size(), rows[0].size());
+    for (std::size_t k = 0; k < rows[0].size(); ++k) result[rows[0][k]].push_back(std::stod(rows[i][k]));
+  }
+  return result;
+}
+
+class SceneRun : public ToolTest {};
+
+TEST_F(SceneRun, StackIsRecorded) {
+  const auto summary = json("scene run stack --spheres 100 --seconds 0.25 --dt 0.0125 --csv stack.csv");
+  EXPECT_EQ(summary["scene"], "stack");
+  EXPECT_EQ(summary["bodies"], 5);
+  EXPECT_EQ(summary["steps"], 20);
+  EXPECT_NEAR(summary["seconds"].get<double>(), 0.25, 1e-9);
+  EXPECT_EQ(summary["solids"][0]["spheres"], 100);
+  EXPECT_LE(summary["step_ms"]["median"], summary["step_ms"]["p99"]);
+  EXPECT_LE(summary["step_ms"]["p99"], summary["step_ms"]["worst"]);
+
+  auto recording = columns(readFile(path("stack.csv")));
+  ASSERT_EQ(recording["time_s"].size(), 21u) << "the start and 20 steps";
+  for (std::size_t i = 0; i < 21; ++i)
+    EXPECT_NEAR(recording["time_s"][i], 0.0125 * static_cast<double>(i), 1e-9);
+  // Five boxes of 125 kg at heights 0.25, 0.75, ... 2.25 m.
+  EXPECT_NEAR(recording["potential_J"][0], 125 * 9.81 * 6.25, 0.5);
+  EXPECT_EQ(recording["kinetic_J"][0], 0);
+  EXPECT_EQ(recording.count("body4_qw"), 1u);
+  EXPECT_EQ(recording.count("body5_qw"), 0u);
+  for (std::size_t i = 0; i < 21; ++i) {
+    for (int body = 0; body < 5; ++body) {
+      double square = 0;
+      for (const char* part : {"_qx", "_qy", "_qz", "_qw"}) {
+        square += std::pow(recording["body" + std::to_string(body) + part][i], 2);
+      }
+      EXPECT_NEAR(square, 1, 1e-5);
+      EXPECT_NEAR(recording["body" + std::to_string(body) + "_z"][i], 0.25 + 0.5 * body, 0.05)
+          << "the stack stands";
+    }
+    EXPECT_TRUE(std::isfinite(recording["angular_momentum_x"][i]));
+    EXPECT_GE(recording["deepest_overlap_m"][i], 0);
+  }
+}
+
+TEST_F(SceneRun, ChainFallsAsAPendulumBeforeItsLinksPull) {
+  // In the first step every link that is not held falls freely: its speed is g dt, and 9 links of m = 1000 *
+  // 2 pi^2 R r^2 have that momentum. The links touch already, so they are allowed to pull a little.
+  json("scene run chain --spheres 100 --seconds 0.01 --dt 0.0025 --csv chain.csv");
+  auto recording = columns(readFile(path("chain.csv")));
+  const double mass = 1000 * 2 * M_PI * M_PI * 0.2 * 0.05 * 0.05;
+  EXPECT_NEAR(recording["momentum_z"][1], -9 * mass * 9.81 * 0.0025, 0.1 * mass * 9.81 * 0.0025 * 9);
+  EXPECT_EQ(recording["body0_z"].front(), recording["body0_z"].back()) << "the first link is held";
+}
+
+TEST_F(SceneRun, PileRepeatsToTheLastBit) {
+  const std::string options =
+      " --spheres 40 --seconds 0.4 --dt 0.0166667 --mesh box --mesh torus --quiet --csv ";
+  succeed("scene run pile --seed 3" + options + "one.csv");
+  succeed("scene run pile --seed 3" + options + "two.csv");
+  succeed("scene run pile --seed 4" + options + "other.csv");
+  auto one = columns(readFile(path("one.csv")));
+  auto two = columns(readFile(path("two.csv")));
+  auto other = columns(readFile(path("other.csv")));
+  one.erase("step_ms");
+  two.erase("step_ms");
+  EXPECT_EQ(one, two);
+  EXPECT_NE(one["body5_qx"], other["body5_qx"]);
+  EXPECT_GT(one["contacts"].back(), 0) << "the first layer has landed";
+}
+
+TEST_F(SceneRun, PileOfAUsersMeshWithPictureAndReplay) {
+  writeFile(path("tetra.obj"), kTetrahedron);
+  const auto summary = json(
+      "scene run pile --mesh tetra.obj --spheres 30 --seconds 0.1 --dt 0.02 "
+      "--png pile.png --html pile.html --width 64 --height 48 --samples 2");
+  EXPECT_EQ(summary["solids"].size(), 1u);
+  EXPECT_EQ(summary["bodies"], 24);
+  EXPECT_NEAR(summary["solids"][0]["size"].get<double>(), 0.7, 1e-6) << "scaled to the scene";
+  EXPECT_EQ(readFile(path("pile.png")).substr(1, 3), "PNG");
+  EXPECT_NE(readFile(path("pile.html")).find("24 moving bodies"), std::string::npos);
+  EXPECT_EQ(files(), (std::set<std::string>{"tetra.obj", "pile.png", "pile.html"}));
+}
+
+TEST_F(SceneRun, SummaryForPeople) {
+  const std::string out = succeed("scene run stack --spheres 50 --seconds 0.05").out;
+  for (const char* word : {"density", "median", "worst", "backend", "deepest overlap", "at rest", "energy"}) {
+    EXPECT_NE(out.find(word), std::string::npos) << word;
+  }
+}
+
+}  // namespace
+}  // namespace innersphere::test
