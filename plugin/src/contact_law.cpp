@@ -8,7 +8,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// Default stiffness in units of m / dt^2.
-constexpr btScalar kStiffness = 16;
+constexpr btScalar kStiffness = 64;
 /// Contacts deeper than 0.04 m lose their spring to Bullet's split impulse by default; stay above.
 constexpr btScalar kSplitImpulseDepth = btScalar(0.03);
 /// The default law pushes no harder than at this depth, in units of the body's size, so that bodies which

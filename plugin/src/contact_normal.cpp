@@ -14,10 +14,6 @@ constexpr btScalar kFlat = btScalar(1e-4);
 /// Fewer measurements than this do not show whether a surface bends.
 constexpr int kFew = 3;
 
-bool opposed(const Gap& gap) {
-  return gap.normal_a.dot(gap.normal_b) > kOpposed;
-}
-
 /// Root mean square of the deviation of normals from their mean [rad].
 btScalar bend(const std::vector<Measured>& measured, btVector3 Gap::*normal, bool only_opposed) {
   btVector3 sum(0, 0, 0);
@@ -50,13 +46,24 @@ ContactNormal::ContactNormal(const std::vector<Measured>& measured, bool trust_b
   flat_b_ = bend(measured, &Gap::normal_b, false) < 10 * kFlat;
 }
 
-btVector3 ContactNormal::at(const Gap& gap, const btVector3& direction) const {
-  const btVector3 &a = gap.normal_a, &b = gap.normal_b;
-  if (opposed(gap)) return (a * weight_a_ + b * (1 - weight_a_)).normalized();
+btVector3 ContactNormal::at(const Measured& m) const {
+  const btVector3 &a = m.gap.normal_a, &b = m.gap.normal_b;
+  if (opposed(m.gap)) return (a * weight_a_ + b * (1 - weight_a_)).normalized();
   if (flat_a_ != flat_b_) return flat_a_ ? a : b;
-  const btVector3& nearest = a.dot(direction) > b.dot(direction) ? a : b;
-  const bool edges = !flat_a_ && nearest.dot(direction) < kFace;
-  return edges ? direction : nearest;
+  const btVector3& nearest = a.dot(m.direction) > b.dot(m.direction) ? a : b;
+  const bool edges = !flat_a_ && nearest.dot(m.direction) < kFace;
+  return edges ? m.direction : nearest;
+}
+
+bool opposed(const Gap& gap) {
+  return gap.normal_a.dot(gap.normal_b) > kOpposed;
+}
+
+btVector3 normalAlone(const Gap& gap, const btVector3& direction) {
+  if (opposed(gap)) return (gap.normal_a + gap.normal_b).normalized();
+  const btVector3& nearest =
+      gap.normal_a.dot(direction) > gap.normal_b.dot(direction) ? gap.normal_a : gap.normal_b;
+  return nearest.dot(direction) < kFace ? direction : nearest;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

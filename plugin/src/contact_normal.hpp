@@ -11,9 +11,16 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// A contact of a sphere, measured on the surfaces.
 struct Measured {
   Gap gap;
-  std::size_t index = 0;  ///< of the contact
-  std::uint64_t id = 0;   ///< of the sphere
+  btVector3 direction{0, 0, 0};  ///< of the line, unit, from A to B
+  std::size_t index = 0;         ///< of the contact
+  std::uint64_t id = 0;          ///< of the sphere
 };
+
+/// The surfaces lie on each other: their normals differ by less than 20 degrees.
+bool opposed(const Gap& gap);
+
+/// A first estimate from one measurement alone: where a line across the contact should point.
+btVector3 normalAlone(const Gap& gap, const btVector3& direction);
 
 /// How much the normal of A counts against that of B. Beside the deepest point both lean away from the normal
 /// of contact, each in proportion to its curvature, so the flatter surface counts for more; a flat one counts
@@ -23,8 +30,7 @@ class ContactNormal {
   /// `trust_b`: where there are too few measurements to see a curvature, B's normal is the better one.
   ContactNormal(const std::vector<Measured>& measured, bool trust_b);
 
-  /// At a gap; `direction` is that of the overlap around.
-  btVector3 at(const Gap& gap, const btVector3& direction) const;
+  btVector3 at(const Measured& measured) const;
 
  private:
   btScalar weight_a_;  ///< where the surfaces oppose each other

@@ -27,17 +27,22 @@ bool usable(const Gap& gap, const btVector3& direction) {
   return gap.normal_a.dot(direction) > btScalar(0.5) && gap.normal_b.dot(direction) > btScalar(0.5);
 }
 
+btScalar depthOf(const Measured& m) {
+  return (m.gap.on_a - m.gap.on_b).dot(m.direction);
+}
+
 }  // namespace
 
-void appendDeepest(const Gauge& gauge, const btVector3& direction, std::vector<Measured>& measured) {
+void appendDeepest(const Gauge& gauge, std::vector<Measured>& measured) {
   const Measured* start = nullptr;
   for (const Measured& m : measured) {
-    if (!usable(m.gap, direction)) continue;
-    if (start == nullptr || placeOf(m.gap, direction).depth > placeOf(start->gap, direction).depth)
-      start = &m;
+    if (!usable(m.gap, m.direction)) continue;
+    if (start == nullptr || depthOf(m) > depthOf(*start)) start = &m;
   }
   if (start == nullptr) return;
-  Measured best{start->gap, start->index, kClimbedId};
+  Measured best = *start;
+  best.id = kClimbedId;
+  const btVector3 direction = best.direction;
   Place top = placeOf(best.gap, direction);
   if (top.slope.length() < kLevel) return;
 

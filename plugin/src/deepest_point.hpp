@@ -11,7 +11,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// Spheres sample a contact at places of their own; where curved solids touch, the deepest point lies between
 /// them. Climbs there from the deepest of `measured`, by the slope of the depth that the normals tell, and
 /// appends what it finds.
-void appendDeepest(const Gauge& gauge, const btVector3& direction, std::vector<Measured>& measured);
+void appendDeepest(const Gauge& gauge, std::vector<Measured>& measured);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -10,23 +10,47 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Directions in which the outermost contacts of a patch are measured, and how many of the deepest and of the
-/// others.
+/// Directions in which the outermost contacts of a patch are measured, and how many of the most facing and of
+/// the others.
 constexpr int kDirections = 8;
-constexpr std::size_t kDeepest = 6;
+constexpr std::size_t kFacing = 6;
 constexpr std::size_t kOthers = 6;
+/// In units of the spacing: how much less deep than the deepest a contact may be.
+constexpr btScalar kBelow = 2;
+/// A sphere whose overlap points within 60 degrees of the patch's direction has a direction of its own.
+constexpr btScalar kOwnDirection = btScalar(0.5);
+/// A line within 5 degrees of the normal is not drawn again.
+constexpr btScalar kAligned = btScalar(0.996);
+/// Keeps the direction of nothing finite.
+constexpr btScalar kTiny = btScalar(1e-30);
 
 bool isOld(const PatchContacts& from, std::uint64_t id) {
   return std::find(from.old_ids.begin(), from.old_ids.end(), id) != from.old_ids.end();
 }
 
-/// Those of the step before, those that span the patch, the deepest, and some of the others.
+/// Contacts far less deep than the deepest only touch because they were enlarged. A cap's depth is about
+/// twice its volume over its area.
+void dropFar(const PatchContacts& from, std::vector<std::size_t>& near) {
+  const auto depth = [&](std::size_t i) {
+    return 2 * from.contacts[i].volume / (toBullet(from.contacts[i].area).length() + kTiny);
+  };
+  btScalar deepest = 0;
+  for (std::size_t i : near) deepest = btMax(deepest, depth(i));
+  near.erase(std::remove_if(near.begin(), near.end(),
+                            [&](std::size_t i) { return depth(i) < deepest - kBelow * from.spacing; }),
+             near.end());
+}
+
+/// Those of the step before, those that span the patch, those that face the other body most, and some of the
+/// others.
 void pick(const PatchContacts& from, std::vector<std::size_t>& picked) {
-  const std::vector<std::size_t>& indices = from.indices;
-  picked = indices;
-  if (indices.size() <= kDirections + kDeepest + kOthers) return;
+  static thread_local std::vector<std::size_t> near;
+  near = from.indices;
+  if (from.gauge.exactB()) dropFar(from, near);
+  picked = near;
+  if (near.size() <= kDirections + kFacing + kOthers) return;
   picked.clear();
-  for (std::size_t i : indices) {
+  for (std::size_t i : near) {
     if (isOld(from, from.gauge.id(i))) picked.push_back(i);
   }
   for (int k = 0; k < kDirections; ++k) {
@@ -34,21 +58,45 @@ void pick(const PatchContacts& from, std::vector<std::size_t>& picked) {
     const btVector3 direction =
         from.moments.tangent[0] * btCos(angle) + from.moments.tangent[1] * btSin(angle);
     const auto along = [&](std::size_t i) { return direction.dot(toBullet(from.contacts[i].centroid)); };
-    picked.push_back(*std::max_element(indices.begin(), indices.end(),
+    picked.push_back(*std::max_element(near.begin(), near.end(),
                                        [&](std::size_t i, std::size_t j) { return along(i) < along(j); }));
   }
-  static thread_local std::vector<std::size_t> by_depth;
-  by_depth = indices;
-  const auto depth = [&](std::size_t i) {
-    return from.contacts[i].volume /
-           (toBullet(from.contacts[i].area).length() + SIMD_EPSILON * from.moments.area);
-  };
-  std::partial_sort(by_depth.begin(), by_depth.begin() + kDeepest, by_depth.end(),
-                    [&](std::size_t i, std::size_t j) { return depth(i) > depth(j); });
-  picked.insert(picked.end(), by_depth.begin(), by_depth.begin() + kDeepest);
-  for (std::size_t k = 0; k < kOthers; ++k) picked.push_back(indices[k * indices.size() / kOthers]);
+  for (std::size_t k = 0; k < kOthers; ++k) picked.push_back(near[k * near.size() / kOthers]);
+  const auto facing = [&](std::size_t i) { return from.moments.normal.dot(toBullet(from.contacts[i].area)); };
+  std::partial_sort(near.begin(), near.begin() + kFacing, near.end(),
+                    [&](std::size_t i, std::size_t j) { return facing(i) > facing(j); });
+  picked.insert(picked.end(), near.begin(), near.begin() + kFacing);
   std::sort(picked.begin(), picked.end());
   picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
+}
+
+/// Along the direction of the patch, or, where the surfaces do not oppose each other there, of the sphere's
+/// own overlap; then along the normal that the surfaces show.
+bool measure(const PatchContacts& from, std::size_t i, Measured& m) {
+  const btVector3 still(0, 0, 0);
+  m.index = i;
+  m.id = from.gauge.id(i);
+  m.direction = from.moments.normal;
+  bool found = from.gauge.measure(i, m.direction, still, m.gap);
+  if (!found || !opposed(m.gap)) {
+    const btVector3 area = toBullet(from.contacts[i].area);
+    const btVector3 own = area / (area.length() + kTiny);
+    Gap gap;
+    if (own.dot(m.direction) > kOwnDirection && from.gauge.measure(i, own, still, gap) &&
+        (!found || opposed(gap))) {
+      m.direction = own;
+      m.gap = gap;
+      found = true;
+    }
+  }
+  if (!found) return false;
+  const btVector3 normal = normalAlone(m.gap, m.direction);
+  Gap gap;
+  if (normal.dot(m.direction) < kAligned && from.gauge.measure(i, normal, still, gap)) {
+    m.direction = normal;
+    m.gap = gap;
+  }
+  return true;
 }
 
 }  // namespace
@@ -56,18 +104,17 @@ void pick(const PatchContacts& from, std::vector<std::size_t>& picked) {
 void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found) {
   static thread_local std::vector<std::size_t> picked;
   static thread_local std::vector<Measured> measured;
-  const btVector3& direction = from.moments.normal;
   pick(from, picked);
   measured.clear();
   for (std::size_t i : picked) {
-    Measured m{{}, i, from.gauge.id(i)};
-    if (from.gauge.measure(i, direction, btVector3(0, 0, 0), m.gap)) measured.push_back(m);
+    Measured m;
+    if (measure(from, i, m)) measured.push_back(m);
   }
-  appendDeepest(from.gauge, direction, measured);
+  appendDeepest(from.gauge, measured);
   const ContactNormal normals(measured, from.gauge.exactB());
   const std::size_t first = found.size();
   for (const Measured& m : measured) {
-    const btVector3 normal = normals.at(m.gap, direction);
+    const btVector3 normal = normals.at(m);
     const btScalar depth = (m.gap.on_a - m.gap.on_b).dot(normal);
     if (depth > -from.spacing) found.push_back({{m.gap.on_b, normal, depth, m.id}, 0});
   }

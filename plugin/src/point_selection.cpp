@@ -10,6 +10,8 @@ namespace {
 /// spacing deeper.
 constexpr btScalar kKeepSpan = btScalar(1.3);
 constexpr btScalar kKeepDepth = btScalar(1e-3);
+/// Points that are less deep than the deepest by this fraction of the spacing are worth 1/e of it.
+constexpr btScalar kTouching = btScalar(0.1);
 /// Normals within 15 degrees of that of a group's deepest point belong to the group.
 constexpr btScalar kSameGroup = btScalar(0.966);
 /// More groups than this are merged.
@@ -26,16 +28,18 @@ class Selection {
     const auto deepest = [&](const ContactPoint& point) {
       return point.depth + (isOld(point) ? kKeepDepth * spacing_ : btScalar(0));
     };
-    const auto farthest = [&](const ContactPoint& point) { return keep(point) * point.on_b.distance(at(0)); };
+    const auto farthest = [&](const ContactPoint& point) {
+      return worth(point) * point.on_b.distance(at(0));
+    };
     const auto largest = [&](const ContactPoint& point) {
-      return keep(point) * btFabs(area(at(0), at(1), point.on_b));
+      return worth(point) * btFabs(area(at(0), at(1), point.on_b));
     };
     // The fourth widens the triangle across one of its sides.
     const auto widest = [&](const ContactPoint& point) {
       const btScalar turn = area(at(0), at(1), at(2)) < 0 ? btScalar(-1) : btScalar(1);
       btScalar most = 0;
       for (int i = 0; i < 3; ++i) most = btMax(most, -turn * area(at(i), at((i + 1) % 3), point.on_b));
-      return keep(point) * most;
+      return worth(point) * most;
     };
     if (take(deepest) && take(farthest) && take(largest)) take(widest);
   }
@@ -66,7 +70,11 @@ class Selection {
   bool isOld(const ContactPoint& point) const {
     return std::find(old_ids_.begin(), old_ids_.end(), point.id) != old_ids_.end();
   }
-  btScalar keep(const ContactPoint& point) const { return isOld(point) ? kKeepSpan : btScalar(1); }
+  /// Of a point that widens the patch: less the farther it is from touching, compared with the deepest.
+  btScalar worth(const ContactPoint& point) const {
+    const btScalar above = (patch_.points[0].depth - point.depth) / (kTouching * spacing_);
+    return (isOld(point) ? kKeepSpan : btScalar(1)) * btExp(-above);
+  }
   const btVector3& at(int i) const { return patch_.points[i].on_b; }
   btScalar area(const btVector3& p, const btVector3& q, const btVector3& r) const {
     return (q - p).cross(r - p).dot(patch_.normal);
