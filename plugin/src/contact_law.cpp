@@ -11,9 +11,8 @@ namespace {
 constexpr btScalar kStiffness = 64;
 /// Contacts deeper than 0.04 m lose their spring to Bullet's split impulse by default; stay above.
 constexpr btScalar kSplitImpulseDepth = btScalar(0.03);
-/// The default law pushes no harder than at this depth, in units of the body's size, so that bodies which
-/// start inside each other part at walking pace.
-constexpr btScalar kDeepest = btScalar(0.02);
+/// Fastest push of the default law, in sizes of the body per second.
+constexpr btScalar kFastest = 1;
 
 btScalar inverseMass(const btCollisionObject& object) {
   if (object.isStaticOrKinematicObject()) return 0;
@@ -27,47 +26,65 @@ btScalar inverseMass(const btCollisionObject& object) {
   return 0;
 }
 
+btVector3 velocityAt(const btCollisionObject& object, const btVector3& point) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (body == nullptr) return btVector3(0, 0, 0);
+  return body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition());
+}
+
 }  // namespace
 
 ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step,
                        btScalar size)
-    : options_(options),
+    : rigid_(options.response == Response::rigid),
+      given_stiffness_(btScalar(options.stiffness)),
+      damping_ratio_(btScalar(options.damping)),
       mass_(reduced_mass > 0 ? reduced_mass : btScalar(1)),
       time_step_(time_step > 0 ? time_step : btScalar(1) / 60),
-      deepest_(btMin(kSplitImpulseDepth, kDeepest * size)) {}
+      fastest_(kFastest * size) {}
 
-void ContactLaw::weigh(const std::vector<ContactPatch>& patches) {
-  laws_.clear();
-  if (options_.response == Response::rigid) return;
-  for (const ContactPatch& patch : patches) {
-    btScalar area = 0;
-    for (const ContactPatch& other : patches)
-      area += other.area * btMax(btScalar(0), patch.normal.dot(other.normal));
-    const btScalar stiffness = options_.stiffness > 0 ? btScalar(options_.stiffness) * area
-                                                      : kStiffness * mass_ / (time_step_ * time_step_);
-    const btScalar damping = btScalar(options_.damping) * 2 * btSqrt(stiffness * mass_);
-    const btScalar share = area > 0 ? patch.area / (area * btScalar(patch.count)) : btScalar(0);
-    laws_.push_back({stiffness * share, damping * share});
-  }
+ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std::size_t index) const {
+  const ContactPatch& patch = patches[index];
+  btScalar area = 0;
+  for (const ContactPatch& other : patches)
+    area += other.area * btMax(btScalar(0), patch.normal.dot(other.normal));
+  const btScalar stiffness =
+      given_stiffness_ > 0 ? given_stiffness_ * area : kStiffness * mass_ / (time_step_ * time_step_);
+  const btScalar share = area > 0 ? patch.area / (area * btScalar(patch.count)) : btScalar(0);
+  OfPatch law;
+  law.law_ = this;
+  law.stiffness_ = stiffness * share;
+  law.damping_ = damping_ratio_ * 2 * btSqrt(stiffness * mass_) * share;
+  return law;
 }
 
-PointLaw ContactLaw::point(std::size_t index, btScalar depth) const {
+PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   PointLaw law;
   law.depth = depth;
-  if (options_.response == Response::rigid) return law;
+  if (law_->rigid_) return law;
   law.spring = true;
-  law.stiffness = laws_[index].stiffness;
-  law.damping = laws_[index].damping;
-  if (options_.stiffness > 0) {
+  law.stiffness = stiffness_;
+  law.damping = damping_;
+  // Fraction of the depth that the solver removes in one step.
+  const btScalar spring = law_->time_step_ * stiffness_;
+  const btScalar rate = spring > 0 ? spring / (spring + damping_) / law_->time_step_ : btScalar(0);
+  if (law_->given_stiffness_ > 0) {
     // The same force from a smaller depth.
     if (depth > kSplitImpulseDepth) {
       law.stiffness *= depth / kSplitImpulseDepth;
       law.depth = kSplitImpulseDepth;
     }
   } else {
-    law.depth = btMin(depth, deepest_);
+    law.depth = btMin(depth, kSplitImpulseDepth);
+    if (law.depth * rate > law_->fastest_) law.depth = law_->fastest_ / rate;
   }
+  law.push = law.depth * rate;
   return law;
+}
+
+btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
+                       const btVector3& normal) {
+  return (velocityAt(a, point) - velocityAt(b, point)).dot(normal);
 }
 
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b) {

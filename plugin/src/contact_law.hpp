@@ -17,38 +17,49 @@ struct PointLaw {
   btScalar depth = 0;      ///< to report [m]
   btScalar stiffness = 0;  ///< [N/m]
   btScalar damping = 0;    ///< [N s/m]
+  btScalar push = 0;       ///< speed at which the depth alone would drive the bodies apart [m/s]
 };
 
 /// The law of one pair of bodies in one step. A contact with stiffness k and damping c is, in Bullet's
 /// solver, exactly a backward-Euler spring-damper: any stiffness is stable.
 ///
 /// With m the reduced mass of the pair, dt the step, and T = sum A max(0, n n') the area that pushes along n:
-///   stiffness along n   K = options.stiffness T,  or by default  K = 16 m / dt^2, for which a body that lies
-///   still under
-///                       gravity g sinks by g dt^2 / 16 (0.17 mm at 1/60 s), whatever its size and mass;
+///   stiffness along n   K = options.stiffness T;  default: K = 64 m / dt^2, for which a body that lies on a
+///   fixed one under
+///                       gravity g sinks by g dt^2 / 64 (0.04 mm at 1/60 s), whatever its size and mass;
 ///   damping along n     C = options.damping 2 sqrt(K m).
-/// Each patch takes the share A / T of both and divides it among its points.
+/// Each patch takes the share A / T of both and divides it among its points. The default law drives bodies
+/// that are inside each other apart no faster than the size of the smaller one in a second.
 class ContactLaw {
  public:
-  /// `size` [m] of the smaller body bounds the speed at which the default law drives bodies apart.
+  /// `size` [m] is that of the smaller body.
   ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step, btScalar size);
 
-  /// To be called once a step.
-  void weigh(const std::vector<ContactPatch>& patches);
-  /// A point of patch `index` of those.
-  PointLaw point(std::size_t index, btScalar depth) const;
+  /// For the points of one patch.
+  class OfPatch {
+   public:
+    PointLaw at(btScalar depth) const;
+
+   private:
+    friend class ContactLaw;
+    const ContactLaw* law_;
+    btScalar stiffness_;
+    btScalar damping_;
+  };
+  OfPatch of(const std::vector<ContactPatch>& patches, std::size_t index) const;
 
  private:
-  struct PatchLaw {
-    btScalar stiffness;  ///< of each point
-    btScalar damping;
-  };
-  const ContactOptions& options_;
+  bool rigid_;
+  btScalar given_stiffness_;
+  btScalar damping_ratio_;
   btScalar mass_;
   btScalar time_step_;
-  btScalar deepest_;
-  std::vector<PatchLaw> laws_;
+  btScalar fastest_;
 };
+
+/// Speed at which two bodies approach each other at a point of the world along `normal`, from a to b [m/s].
+btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
+                       const btVector3& normal);
 
 /// 1 / (1/m_a + 1/m_b), static and kinematic bodies counting as infinitely heavy; 0 if both are.
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b);

@@ -66,32 +66,37 @@ btManifoldPoint* pointAt(btPersistentManifold& manifold, const btVector3& on_b) 
 
 /// Stiffness, damping and the depth they act on, unless the user has set a law of their own, through the
 /// bodies or in a material callback. The callback has seen the true depth.
-void setLaw(btManifoldPoint& point, const NewPoint& from, const btTransform& a) {
+void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObject& a,
+            const btCollisionObject& b) {
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
                             BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   if (!from.law.spring || (point.m_contactPointFlags & kUsersOwn) != 0) return;
   point.m_combinedContactStiffness1 = from.law.stiffness;
   point.m_combinedContactDamping1 = from.law.damping;
   point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
-  point.m_distance1 = -from.law.depth;
-  point.m_positionWorldOnA = from.on_b + from.normal * from.law.depth;
-  point.m_localPointA = a.invXform(point.m_positionWorldOnA);
+  // A bounce starts from the surface: the depth that was reached within the step must not add to it.
+  btScalar depth = from.law.depth;
+  if (depth > 0 && point.m_combinedRestitution * approachSpeed(a, b, from.on_b, from.normal) > from.law.push)
+    depth = 0;
+  point.m_distance1 = -depth;
+  point.m_positionWorldOnA = from.on_b + from.normal * depth;
+  point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
 }
 
 /// The points of one patch into the manifold that `result` holds.
-void writePatch(const btCollisionObject* a, const btVector3& origin, const ContactPatch& patch,
-                std::size_t index, const ContactLaw& law, btManifoldResult* result) {
+void writePatch(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
+                const ContactPatch& patch, const ContactLaw::OfPatch& law, btManifoldResult* result) {
   btPersistentManifold& manifold = *result->getPersistentManifold();
   std::array<NewPoint, kPatchPoints> points;
   int count = 0;
   for (int i = 0; i < patch.count; ++i) {
     NewPoint& point = points[count];
     point.depth = patch.points[i].depth;
-    point.law = law.point(index, point.depth);
+    point.law = law.at(point.depth);
     if (-point.depth > manifold.getContactBreakingThreshold()) continue;
     point.normal = patch.points[i].normal;
     point.on_b = origin + patch.points[i].on_b;
-    point.local_a = a->getWorldTransform().invXform(point.on_b + point.normal * point.depth);
+    point.local_a = a.getWorldTransform().invXform(point.on_b + point.normal * point.depth);
     ++count;
   }
   PointIndices match = matchPoints(manifold, points.data(), count);
@@ -108,7 +113,7 @@ void writePatch(const btCollisionObject* a, const btVector3& origin, const Conta
     }
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
     if (btManifoldPoint* added = pointAt(manifold, point.on_b)) {
-      setLaw(*added, point, a->getWorldTransform());
+      setLaw(*added, point, a, b);
     } else if (match[i] >= 0) {
       manifold.getContactPoint(match[i]).m_localPointA = before;  // kept by a friction anchor
     }
@@ -186,7 +191,7 @@ void ManifoldSet::write(const btCollisionObject* a, const btCollisionObject* b, 
     entries_[e].normal = patch.normal * a->getWorldTransform().getBasis();
     entries_[e].centre = patch.centre * a->getWorldTransform().getBasis();
     result->setPersistentManifold(entries_[e].manifold);
-    writePatch(a, origin, patch, static_cast<std::size_t>(owner_[e]), law, result);
+    writePatch(*a, *b, origin, patch, law.of(patches, static_cast<std::size_t>(owner_[e])), result);
   }
   result->setPersistentManifold(before);
 }

@@ -7,9 +7,11 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-Measure::Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b)
+Measure::Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b,
+                 btScalar separated)
     : spacing(btMin(a.getContactBreakingThreshold(gContactBreakingThreshold),
-                    b.getContactBreakingThreshold(gContactBreakingThreshold))) {
+                    b.getContactBreakingThreshold(gContactBreakingThreshold))),
+      separation(btMax(spacing, separated)) {
   const PackingShape* packing_b = PackingShape::from(&b);
   on_surfaces = options.stiffness == 0 && a.impl().hasSurface() &&
                 (packing_b == nullptr || packing_b->impl().hasSurface());
@@ -17,7 +19,7 @@ Measure::Measure(const ContactOptions& options, const PackingShape& a, const btC
     estimator = options.estimator;
     return;
   }
-  slack_a = spacing + a.impl().recess() * a.getLocalScaling().x();
+  slack_a = separation + a.impl().recess() * a.getLocalScaling().x();
   if (packing_b != nullptr) slack_b = packing_b->impl().recess() * b.getLocalScaling().x();
 }
 

@@ -8,14 +8,20 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 struct Measure {
-  Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b);
+  /// `separation` [m]: bodies that are not further apart than this still have a contact, if the surfaces are
+  /// measured. At least the distance at which Bullet drops contacts.
+  Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b,
+          btScalar separation);
+
+  btScalar slack() const { return slack_a + slack_b; }
 
   /// On the surfaces of the solids; else volume over area, which a given stiffness (force per volume) asks
   /// for, and a packing without a surface.
   bool on_surfaces = false;
   Estimator estimator = Estimator::raw;  ///< radii of the spheres
-  btScalar spacing;                      ///< of points, and the largest separation of a contact [m]
-  btScalar slack_a = 0;                  ///< how far beyond their radii spheres look for contacts [m]
+  btScalar spacing;                      ///< points closer to each other are one [m]
+  btScalar separation;
+  btScalar slack_a = 0;  ///< how far beyond their radii spheres look for contacts [m]
   btScalar slack_b = 0;
 };
 

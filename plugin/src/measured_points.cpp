@@ -36,9 +36,10 @@ void dropFar(const PatchContacts& from, std::vector<std::size_t>& near) {
   };
   btScalar deepest = 0;
   for (std::size_t i : near) deepest = btMax(deepest, depth(i));
-  near.erase(std::remove_if(near.begin(), near.end(),
-                            [&](std::size_t i) { return depth(i) < deepest - kBelow * from.spacing; }),
-             near.end());
+  near.erase(
+      std::remove_if(near.begin(), near.end(),
+                     [&](std::size_t i) { return depth(i) < deepest - kBelow * from.measure.spacing; }),
+      near.end());
 }
 
 /// Those of the step before, those that span the patch, those that face the other body most, and some of the
@@ -116,7 +117,7 @@ void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found)
   for (const Measured& m : measured) {
     const btVector3 normal = normals.at(m);
     const btScalar depth = (m.gap.on_a - m.gap.on_b).dot(normal);
-    if (depth > -from.spacing) found.push_back({{m.gap.on_b, normal, depth, m.id}, 0});
+    if (depth > -from.measure.separation) found.push_back({{m.gap.on_b, normal, depth, m.id}, 0});
   }
   for (std::size_t i = first; i < found.size(); ++i) {
     found[i].area = from.moments.area / btScalar(found.size() - first);

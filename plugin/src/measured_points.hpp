@@ -5,6 +5,7 @@
 
 #include "contact_patch.hpp"
 #include "gauge.hpp"
+#include "measure.hpp"
 #include "patch_moments.hpp"
 
 namespace innersphere {
@@ -16,7 +17,7 @@ struct PatchContacts {
   const PatchMoments& moments;
   const std::vector<std::uint64_t>& old_ids;  ///< points of the step before
   const Gauge& gauge;
-  btScalar spacing;
+  const Measure& measure;
 };
 
 /// A point and the part of the patch's area that it stands for.

@@ -62,11 +62,12 @@ void OverlapBatch::remove(PackingContact* contact) {
 }
 
 const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, const PackingSide& a,
-                                                      const PackingSide& b) {
+                                                      const PackingSide& b, btScalar separation) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!contact.valid || !(contact.a == a) || !(contact.b == b)) {
+  if (!contact.valid || !(contact.a == a) || !(contact.b == b) || contact.separation != separation) {
     contact.a = a;
     contact.b = b;
+    contact.separation = separation;
     gatherStale(contact);
     try {
       runStale();
@@ -107,7 +108,7 @@ void OverlapBatch::query(Estimator estimator) {
   queried_.clear();
   queries_.clear();
   for (PackingContact* contact : stale_) {
-    const Measure measure(options_, *contact->a.shape, *contact->b.shape);
+    const Measure measure = measureOf(*contact);
     if (measure.estimator != estimator) continue;
     queried_.push_back(contact);
     queries_.push_back(makeQuery(*contact, measure));
@@ -118,13 +119,17 @@ void OverlapBatch::query(Estimator estimator) {
   for (std::size_t i = 0; i < queried_.size(); ++i) takeResult(i, *queried_[i]);
 }
 
+Measure OverlapBatch::measureOf(const PackingContact& contact) const {
+  return Measure(options_, *contact.a.shape, *contact.b.shape, contact.separation);
+}
+
 PairQuery OverlapBatch::makeQuery(const PackingContact& contact, const Measure& measure) const {
   PairQuery query;
   query.a = &contact.a.shape->model();
   query.b = &contact.b.shape->model();
   query.placement_a = PackingBody(*contact.a.shape, contact.a.transform, measure.estimator, 0).placement();
   query.placement_b = PackingBody(*contact.b.shape, contact.b.transform, measure.estimator, 0).placement();
-  query.margin = measure.slack_a + measure.slack_b + contact.a.margin + contact.b.margin;
+  query.margin = measure.slack() + contact.a.margin + contact.b.margin;
   return query;
 }
 
@@ -143,12 +148,11 @@ void OverlapBatch::takeResult(std::size_t index, PackingContact& contact) {
   const std::size_t count_a = contacts_.size();
   append(result_.contacts_b);
 
-  const Measure measure(options_, *contact.a.shape, *contact.b.shape);
+  const Measure measure = measureOf(contact);
   const PackingBody a(*contact.a.shape, contact.a.transform, measure.estimator, measure.slack_a);
   const PackingBody b(*contact.b.shape, contact.b.transform, measure.estimator, measure.slack_b);
   const PackingGauge gauge(a, b, contacts_, count_a);
-  buildContactPatches(contacts_, measure.on_surfaces ? &gauge : nullptr, measure.slack_a + measure.slack_b,
-                      measure.spacing, contact.a.transform.getBasis(), contact.patches);
+  buildContactPatches(contacts_, gauge, measure, contact.a.transform.getBasis(), contact.patches);
   contact.valid = true;
 }
 

@@ -39,6 +39,7 @@ struct PackingContact {
 
   PackingSide a;
   PackingSide b;
+  btScalar separation = 0;  ///< see Measure
   std::vector<ContactPatch> patches;
   bool valid = false;   ///< patches belong to the transforms in a and b
   bool wanted = false;  ///< asked for since the last batch
@@ -57,13 +58,14 @@ class OverlapBatch {
 
   /// Brings `contact` up to date for two sides and returns its patches. It need not have been added; then it
   /// is queried alone. Throws Error from the query.
-  const std::vector<ContactPatch>& update(PackingContact& contact, const PackingSide& a,
-                                          const PackingSide& b);
+  const std::vector<ContactPatch>& update(PackingContact& contact, const PackingSide& a, const PackingSide& b,
+                                          btScalar separation);
 
  private:
   void gatherStale(PackingContact& asked);
   void runStale();
   void query(Estimator estimator);
+  Measure measureOf(const PackingContact& contact) const;
   PairQuery makeQuery(const PackingContact& contact, const Measure& measure) const;
   void takeResult(std::size_t index, PackingContact& contact);
 

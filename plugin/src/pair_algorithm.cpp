@@ -29,7 +29,8 @@ struct PairAlgorithm::State {
   ~State() { forget(); }
 
   /// Contact of A, a packing, with B.
-  const std::vector<ContactPatch>& update(const ContactOptions& options, const Wrapper& a, const Wrapper& b) {
+  const std::vector<ContactPatch>& update(const ContactOptions& options, const Wrapper& a, const Wrapper& b,
+                                          btScalar separation) {
     const PackingShape& packing = *PackingShape::from(a.getCollisionShape());
     if (a.getCollisionShape() != shape_a || b.getCollisionShape() != shape_b) {
       forget();
@@ -42,10 +43,10 @@ struct PairAlgorithm::State {
         packings.emplace(side_a, side_b);
         if (!closest) registration->batch().add(&*packings);
       }
-      return registration->batch().update(*packings, side_a, side_b);
+      return registration->batch().update(*packings, side_a, side_b, separation);
     }
     if (!surface) surface.emplace(packing, *shape_b);
-    return surface->update(options, a.getWorldTransform(), b.getWorldTransform());
+    return surface->update(options, a.getWorldTransform(), b.getWorldTransform(), separation);
   }
 
   void forget() {
@@ -92,7 +93,7 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
     state_->report("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
   } else {
     try {
-      patches = &state_->update(options, *a, *b);
+      patches = &state_->update(options, *a, *b, result->m_closestPointDistanceThreshold);
     } catch (const Error& error) {
       state_->report(std::string("Contacts of a pair of bodies are skipped: ") + error.what());
     }
@@ -104,9 +105,8 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
        btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) != 0) {
     options.response = Response::rigid;
   }
-  ContactLaw law(options, reducedMass(object_a, object_b), dispatch.m_timeStep,
-                 sizeOf(*packing, *b->getCollisionShape()));
-  law.weigh(*patches);
+  const ContactLaw law(options, reducedMass(object_a, object_b), dispatch.m_timeStep,
+                       sizeOf(*packing, *b->getCollisionShape()));
   const btVector3 origin = packing->impl().toWorld(a->getWorldTransform()).getOrigin();
   if (state_->closest) {
     state_->manifolds.report(&object_a, &object_b, origin, *patches, result);

@@ -35,8 +35,9 @@ std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& pa
 
 }  // namespace
 
-void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge* gauge, btScalar slack,
-                         btScalar spacing, const btMatrix3x3& reference, std::vector<ContactPatch>& result) {
+void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge& gauge,
+                         const Measure& measure, const btMatrix3x3& reference,
+                         std::vector<ContactPatch>& result) {
   static thread_local std::vector<Patch> patches;
   static thread_local std::vector<std::vector<std::size_t>> members;
   static thread_local std::vector<std::uint64_t> old_ids;
@@ -57,14 +58,14 @@ void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge
   moments.clear();
   for (std::size_t p = 0; p < patches.size(); ++p)
     moments.push_back(patchMoments(contacts, members[p], reference));
-  if (gauge != nullptr) {
+  if (measure.on_surfaces) {
     static thread_local std::vector<MeasuredPoint> found;
     found.clear();
     for (std::size_t p = 0; p < patches.size(); ++p) {
       if (moments[p].area > 0)
-        measurePoints({contacts, members[p], moments[p], old_ids, *gauge, spacing}, found);
+        measurePoints({contacts, members[p], moments[p], old_ids, gauge, measure}, found);
     }
-    selectPatches(found, old_ids, spacing, result);
+    selectPatches(found, old_ids, measure.spacing, result);
     if (!result.empty()) return;
   }
   // Bodies that are deep inside each other have no surface near; their overlap still says which way is out.
@@ -74,7 +75,7 @@ void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge
     patch.normal = m.normal;
     patch.centre = m.centre;
     patch.area = m.area;
-    pointsFromMoments(m, slack, spacing, patch);
+    pointsFromMoments(m, measure.slack(), measure.spacing, patch);
     if (patch.count > 0) result.push_back(patch);
   }
 }

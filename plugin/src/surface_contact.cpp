@@ -35,13 +35,13 @@ SurfaceContact::SurfaceContact(const PackingShape& packing, const btCollisionSha
     : packing_(packing), other_(other), surface_(makeOtherSurface(other)) {}
 
 const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& options,
-                                                        const btTransform& packing,
-                                                        const btTransform& other) {
+                                                        const btTransform& packing, const btTransform& other,
+                                                        btScalar separation) {
   static thread_local std::vector<Touch> touches;
   static thread_local std::vector<SphereContact> contacts;
   patches_.clear();
   if (!surface_) return patches_;
-  const Measure measure(options, packing_, other_);
+  const Measure measure(options, packing_, other_, separation);
   const PackingBody a(packing_, packing, measure.estimator, measure.slack_a);
   touches.clear();
   surface_->touch(a, other, touches);
@@ -49,8 +49,7 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
   for (const Touch& touch : touches)
     contacts.push_back(cap(touch, a.centreOf(touch.sphere), a.reach(touch.sphere)));
   const SurfaceGauge gauge(a, touches);
-  buildContactPatches(contacts, measure.on_surfaces ? &gauge : nullptr, measure.slack_a, measure.spacing,
-                      packing.getBasis(), patches_);
+  buildContactPatches(contacts, gauge, measure, packing.getBasis(), patches_);
   return patches_;
 }
 

@@ -21,7 +21,7 @@ class SurfaceContact {
 
   /// A is the packing.
   const std::vector<ContactPatch>& update(const ContactOptions& options, const btTransform& packing,
-                                          const btTransform& other);
+                                          const btTransform& other, btScalar separation);
 
  private:
   const PackingShape& packing_;

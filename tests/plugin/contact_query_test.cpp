@@ -106,6 +106,20 @@ TEST_P(ContactQuery, NothingTouchesNothingFound) {
   EXPECT_TRUE(found.points.empty());
 }
 
+TEST_P(ContactQuery, FindsBodiesThatAreAsFarApartAsAskedFor) {
+  build(GetParam());
+  cube->setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(0.75))));
+  Collect near;
+  near.m_closestDistanceThreshold = btScalar(0.3);
+  world.world.contactPairTest(cube, ground, near);
+  ASSERT_FALSE(near.points.empty());
+  EXPECT_NEAR(near.deepest(), -0.25, 1e-3);
+  Collect nearer;
+  nearer.m_closestDistanceThreshold = btScalar(0.2);
+  world.world.contactPairTest(cube, ground, nearer);
+  EXPECT_TRUE(nearer.points.empty());
+}
+
 INSTANTIATE_TEST_SUITE_P(Grounds, ContactQuery, testing::Bool(),
                          [](const auto& info) { return info.param ? "packing" : "plane"; });
 

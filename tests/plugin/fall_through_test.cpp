@@ -108,7 +108,7 @@ TEST_P(FallThrough, ComesToRest) {
   EXPECT_NEAR(at.z(), ground.top + 0.5, bare ? 0.04 : 0.005);
   EXPECT_LT(body->getLinearVelocity().length(), round ? 0.1 : 0.05);
   if (!(round && body_name == "ball"))
-    EXPECT_LT(at.x() * at.x() + at.y() * at.y(), round ? 0.05 * 0.05 : 0.01 * 0.01);
+    EXPECT_LT(at.x() * at.x() + at.y() * at.y(), round ? 0.05 * 0.05 : 0.02 * 0.02);
   if (body_name != "ball") EXPECT_LT(tiltDegrees(*body), 1);
 }
 

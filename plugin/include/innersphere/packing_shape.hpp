@@ -27,7 +27,8 @@ class PackingShape : public btConcaveShape {
 
   const CollisionModel& model() const;
 
-  /// From the packing's frame to the shape's: graphics are drawn at bodyTransform * principalTransform() * x.
+  /// From the packing's frame to the shape's, for scale 1: graphics are drawn at
+  /// bodyTransform * (scale * (principalTransform() * x)).
   const btTransform& principalTransform() const;
 
   /// The shape behind a btCollisionShape, or null if it is none of ours, whatever its type number.
