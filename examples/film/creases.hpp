@@ -17,6 +17,6 @@ struct ShadedSurface {
 };
 
 /// Triangles that meet at less than `crease_angle` [rad] are shaded as one smooth surface.
-ShadedSurface splitCreases(const Surface& surface, double crease_angle = 0.6);
+ShadedSurface splitCreases(const Surface& surface, double crease_angle = 0.8);
 
 }  // namespace innersphere::demo

@@ -98,17 +98,17 @@ class Painter {
     return hit->albedo.cwiseProduct(keyLight(point, hit->normal, to_key) * light_.key_colour + ambient);
   }
 
-  // A thin clear coat: a highlight of the key light and a rim that mirrors the surroundings (Schlick's
-  // Fresnel term).
+  // A thin clear coat: a highlight of the key light and a rim that mirrors the surroundings, after Schlick's
+  // Fresnel term but held back at grazing angles, where interpolated normals are poor.
   Vector3f gloss(const Hit& hit, const Vector3f& direction, const Vector3f& to_key, float key,
                  const Vector3f& indirect) const {
     const float facing = std::clamp(-hit.normal.dot(direction), 0.0f, 1.0f);
-    const float fresnel = 0.04f + 0.96f * std::pow(1 - facing, 5.0f);
+    const float fresnel = 0.04f + 0.6f * std::pow(1 - facing, 5.0f);
     Vector3f result = 0.5f * fresnel * indirect;
     if (key > 0) {
       const Vector3f half = (to_key - direction).normalized();
       const float peak = std::pow(std::max(0.0f, hit.normal.dot(half)), 60.0f);
-      result += 0.5f * peak * light_.key_colour;
+      result += 0.4f * peak * light_.key_colour;
     }
     return result;
   }
@@ -126,12 +126,13 @@ class Painter {
   const float lift_;  // [m] keeps rays off the surface they start from
 };
 
-std::uint8_t encode(float linear) {
+// `dither`, from 0 to 1, hides the steps between neighbouring values.
+std::uint8_t encode(float linear, float dither) {
   // A soft shoulder above 0.8 keeps highlights from burning out.
   if (linear > 0.8f) linear = 0.8f + 0.2f * (1 - std::exp(-(linear - 0.8f) / 0.2f));
   const float srgb =
       linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(std::max(linear, 0.0f), 1 / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(std::lround(std::clamp(srgb, 0.0f, 1.0f) * 255));
+  return static_cast<std::uint8_t>(std::clamp(srgb * 255 + dither, 0.0f, 255.0f));
 }
 
 // The line between the two halves of a split picture leans a little; positive on the right of it. [pixels]
@@ -168,7 +169,10 @@ Image render(const Film& film, std::size_t frame, const RenderOptions& options, 
       const Vector3f direction = camera.direction(2 * x / options.width - 1, 1 - 2 * y / options.height);
       sum += (side < 0 ? left : right).radiance(direction, random).cwiseMin(4.0f);
     }
-    for (int k = 0; k < 3; ++k) image.pixel(px, py)[k] = encode(sum[k] / static_cast<float>(options.samples));
+    const auto dither = sampler.sample(options.samples);
+    for (int k = 0; k < 3; ++k) {
+      image.pixel(px, py)[k] = encode(sum[k] / static_cast<float>(options.samples), dither[k]);
+    }
   };
 
   constexpr int kBand = 8;  // rows between two reports

@@ -113,20 +113,22 @@ struct Stage::Impl {
     Hit hit;
     hit.distance = ray.ray.tfar;
     hit.albedo = prop.sphere_colours.empty() ? colours[actor] : prop.sphere_colours[primitive];
-    Vector3f normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
     const Vector3f direction(ray.ray.dir_x, ray.ray.dir_y, ray.ray.dir_z);
-    const bool from_behind = (rotations[actor] * normal).dot(direction) > 0;
-    if (!prop.as_spheres) {
-      const auto& corners = prop.surface.triangles[primitive];
-      const float weights[3] = {1 - ray.hit.u - ray.hit.v, ray.hit.u, ray.hit.v};
-      normal.setZero();
-      for (int k = 0; k < 3; ++k) {
-        const auto& n = prop.surface.normals[corners[k]];
-        normal += weights[k] * Vector3f(n[0], n[1], n[2]);
-      }
+    const Vector3f facet =
+        (rotations[actor] * Vector3f(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z)).normalized();
+    const float side = facet.dot(direction) > 0 ? -1.0f : 1.0f;  // -1: seen from behind
+    hit.normal = side * facet;
+    if (prop.as_spheres) return hit;
+    const auto& corners = prop.surface.triangles[primitive];
+    const float weights[3] = {1 - ray.hit.u - ray.hit.v, ray.hit.u, ray.hit.v};
+    Vector3f smooth = Vector3f::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const auto& n = prop.surface.normals[corners[k]];
+      smooth += weights[k] * Vector3f(n[0], n[1], n[2]);
     }
-    hit.normal = (rotations[actor] * normal).normalized();
-    if (from_behind) hit.normal = -hit.normal;
+    smooth = side * (rotations[actor] * smooth).normalized();
+    // Near its outline a facet can face the viewer while its interpolated normal does not.
+    if (smooth.dot(direction) < 0) hit.normal = smooth;
     return hit;
   }
 };

@@ -88,6 +88,15 @@
   const fine = new Ball(1, 36, 24);
   const coarse = new Icosahedron(1, 2);
 
+  // Every set of instances needs a geometry of its own: where the geometry stays the same from one draw call to the next,
+  // old versions of three.js keep the instances, too.
+  function sameGeometry(original) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.index = original.index;
+    geometry.attributes = original.attributes;
+    return geometry;
+  }
+
   function surfaceGeometry(shape) {
     const geometry = new THREE.BufferGeometry();
     const add = geometry.setAttribute ? 'setAttribute' : 'addAttribute';
@@ -115,7 +124,12 @@
       });
       const [detail, tint] = key.split(' ');
       const Attribute = THREE.InstancedBufferAttribute;
-      return {geometry: detail === 'fine' ? fine : coarse, tint, count: indices.length, matrices: new Attribute(matrices, 16)};
+      return {
+        geometry: sameGeometry(detail === 'fine' ? fine : coarse),
+        tint,
+        count: indices.length,
+        matrices: new Attribute(matrices, 16),
+      };
     });
   }
 

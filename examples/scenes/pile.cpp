@@ -49,10 +49,13 @@ void buildPile(SceneWorld& world, const SceneOptions& options) {
   constexpr double kLayer = 0.72;   // [m]
   constexpr double kPlaces[5][2] = {{-1, -1}, {1, 1}, {0, 0}, {1, -1}, {-1, 1}};
   Random random(options.seed);
+  std::vector<std::size_t> kinds;
+  for (std::size_t i = 0; i < kBodies; ++i) kinds.push_back(i % solids.size());
+  random.shuffle(kinds);
   for (int i = 0; i < kBodies; ++i) {
     const auto& [x, y] = kPlaces[i % 5];
     const btVector3 place(btScalar(kCorner * x), btScalar(kCorner * y), btScalar(0.5 + kLayer * (i / 5)));
-    const std::size_t kind = static_cast<std::size_t>(i + i / 5) % solids.size();
+    const std::size_t kind = kinds[static_cast<std::size_t>(i)];
     // With few kinds, colours tell bodies apart; with many, kinds.
     const Colour colour = paletteColour(solids.size() < 4 ? static_cast<std::size_t>(i) : kind);
     world.addBody(solids[kind], kDensity, btTransform(random.rotation(), place), colour);

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace innersphere::demo {
 
@@ -14,6 +16,14 @@ class Random {
 
   /// Evenly between a and b.
   double between(double a, double b) { return a + (b - a) * static_cast<double>(engine_() >> 11) * 0x1p-53; }
+
+  /// Any order as likely as any other.
+  template <typename T>
+  void shuffle(std::vector<T>& items) {
+    for (std::size_t i = items.size(); i > 1; --i) {
+      std::swap(items[i - 1], items[static_cast<std::size_t>(between(0, static_cast<double>(i)))]);
+    }
+  }
 
   /// Evenly over all rotations: a point in a shell of four dimensions, normalised.
   btQuaternion rotation() {

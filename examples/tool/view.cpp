@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
+#include "choice.hpp"
 #include "commands.hpp"
 #include "film/palette.hpp"
 #include "innersphere/packer.hpp"
@@ -15,11 +18,12 @@ namespace {
 struct Arguments {
   std::string source;
   std::size_t spheres = 2000;
+  bool y_up = false;
   PictureArguments pictures;
   bool force = false;
 };
 
-demo::Film filmOf(const Packing& packing, const std::string& title) {
+demo::Film filmOf(const Packing& packing, const std::string& title, bool y_up) {
   demo::Film film;
   film.title = title;
   film.caption = std::to_string(packing.spheres.size()) + " spheres fill " +
@@ -28,10 +32,15 @@ demo::Film filmOf(const Packing& packing, const std::string& title) {
   film.colour_by_radius = true;
   film.shapes.push_back({title, packing.surface, packing.spheres});
   film.actors.push_back({0, demo::paletteColour(1)});
-  film.poses.push_back({});
-  film.ground = packing.spheres.front().z;
-  for (const Sphere& s : packing.spheres) film.ground = std::min(film.ground, s.z - s.radius);
-  for (const auto& v : packing.surface.vertices) film.ground = std::min(film.ground, v[2]);
+  // A quarter turn about x takes y to z.
+  const float half = std::sqrt(0.5f);
+  demo::Pose pose;
+  if (y_up) pose.rotation = {half, 0, 0, half};
+  film.poses.push_back(pose);
+  const auto height = [y_up](float y, float z) { return y_up ? y : z; };
+  film.ground = std::numeric_limits<float>::max();
+  for (const Sphere& s : packing.spheres) film.ground = std::min(film.ground, height(s.y, s.z) - s.radius);
+  for (const auto& v : packing.surface.vertices) film.ground = std::min(film.ground, height(v[1], v[2]));
   return film;
 }
 
@@ -43,7 +52,8 @@ void run(Arguments& arguments) {
     pictures.html = stem + ".html";
   }
   checkPictures(pictures, arguments.force);
-  writePictures(filmOf(loadOrPack(arguments.source, arguments.spheres), stem), pictures, arguments.force);
+  writePictures(filmOf(loadOrPack(arguments.source, arguments.spheres), stem, arguments.y_up), pictures,
+                arguments.force);
 }
 
 }  // namespace
@@ -57,11 +67,12 @@ void addViewCommand(CLI::App& app, Session&) {
   command->add_option("--spheres", arguments->spheres, "Of what is packed first")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  addChoice<bool>(*command, "--up", arguments->y_up, {{"y", true}, {"z", false}}, "Axis that points up");
   addPictureOptions(*command, arguments->pictures);
   command->add_flag("--force", arguments->force, "Replace existing outputs");
   command->footer(
       "Without --png and --html both are written to the current folder, named after FILE.\nExamples:\n"
-      "  innersphere view bunny.cbor\n"
+      "  innersphere view bunny.cbor --up y\n"
       "  innersphere view gear --html gear.html");
   command->callback([arguments] { run(*arguments); });
 }
