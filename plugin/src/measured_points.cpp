@@ -29,17 +29,20 @@ bool isOld(const PatchContacts& from, std::uint64_t id) {
 }
 
 /// Contacts far less deep than the deepest only touch because they were enlarged. A cap's depth is about
-/// twice its volume over its area.
+/// twice its volume over its area; a sphere that is inside as a whole has no area, and stays.
 void dropFar(const PatchContacts& from, std::vector<std::size_t>& near) {
   const auto depth = [&](std::size_t i) {
-    return 2 * from.contacts[i].volume / (toBullet(from.contacts[i].area).length() + kTiny);
+    const btScalar area = toBullet(from.contacts[i].area).length();
+    return area > 0 ? 2 * from.contacts[i].volume / area : btScalar(0);
   };
   btScalar deepest = 0;
   for (std::size_t i : near) deepest = btMax(deepest, depth(i));
-  near.erase(
-      std::remove_if(near.begin(), near.end(),
-                     [&](std::size_t i) { return depth(i) < deepest - kBelow * from.measure.spacing; }),
-      near.end());
+  near.erase(std::remove_if(near.begin(), near.end(),
+                            [&](std::size_t i) {
+                              const btScalar d = depth(i);
+                              return d > 0 && d < deepest - kBelow * from.measure.spacing;
+                            }),
+             near.end());
 }
 
 /// Those of the step before, those that span the patch, those that face the other body most, and some of the
@@ -79,6 +82,7 @@ bool measure(const PatchContacts& from, std::size_t i, Measured& m) {
   m.id = from.gauge.id(i);
   m.direction = from.moments.normal;
   bool found = from.gauge.measure(i, m.direction, still, m.gap);
+  if (from.gauge.exactB()) return found;
   if (!found || !opposed(m.gap)) {
     const btVector3 area = toBullet(from.contacts[i].area);
     const btVector3 own = area / (area.length() + kTiny);

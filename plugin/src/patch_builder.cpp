@@ -1,5 +1,7 @@
 #include "patch_builder.hpp"
 
+#include <algorithm>
+
 #include "innersphere/patch.hpp"
 #include "measured_points.hpp"
 #include "patch_moments.hpp"
@@ -66,7 +68,8 @@ void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge
         measurePoints({contacts, members[p], moments[p], old_ids, gauge, measure}, found);
     }
     selectPatches(found, old_ids, measure.spacing, result);
-    if (!result.empty()) return;
+    if (std::any_of(found.begin(), found.end(), [](const MeasuredPoint& m) { return m.point.depth > 0; }))
+      return;
   }
   // Bodies that are deep inside each other have no surface near; their overlap still says which way is out.
   for (const PatchMoments& m : moments) {

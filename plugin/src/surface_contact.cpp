@@ -39,7 +39,6 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
                                                         btScalar separation) {
   static thread_local std::vector<Touch> touches;
   static thread_local std::vector<SphereContact> contacts;
-  patches_.clear();
   if (!surface_) return patches_;
   const Measure measure(options, packing_, other_, separation);
   const PackingBody a(packing_, packing, measure.estimator, measure.slack_a);
