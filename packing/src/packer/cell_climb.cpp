@@ -1,13 +1,12 @@
 // The part of CellSearch that finds the way up to a local maximum.
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "packer/cell_search.hpp"
 
 namespace innersphere {
 
-void CellSearch::climb(Point x) {
+bool CellSearch::climb(Point x) {
   const Point start = x;
   Probe best = probe(x, 0, brick_balls_, 0, 0);
   double half = 0.5 * best.value;
@@ -42,13 +41,14 @@ void CellSearch::climb(Point x) {
   }
   const Point snapped = container_.snap(x);
   const Ball ball = container_.fit(snapped, probe(snapped, 0, brick_balls_, 0, 0).value);
-  assert(ball.radius > 0);
+  if (ball.radius < wanted_ - 2 * container_.coarseness()) return false;
   for (const Candidate& other : result_.candidates) {
-    if (other.ball.distance(ball.centre) < ball.radius) return;
+    if (other.ball.distance(ball.centre) < ball.radius) return true;
   }
   Cell place{{}, 0, 20};
   for (int k = 0; k < 3; ++k) place.at[k] = static_cast<std::uint32_t>(ball.centre[k] / place.side());
   result_.candidates.push_back({ball, mortonCode(place, place.level)});
+  return true;
 }
 
 }  // namespace innersphere

@@ -115,10 +115,7 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
   Point x = centre;
   for (int k = 0; k < (half > kLarge * wanted_ ? 1 : kProbes); ++k) {
     const Probe p = probe(x, begin, balls_.size(), wanted_, k == 0 ? bound_ - kSqrt3 * half : 0);
-    if (p.value > wanted_) {
-      climb(x);
-      return Verdict::found;
-    }
+    if (p.value > wanted_ && climb(x)) return Verdict::found;
     program.add(p.value - p.gradient.dot(x - centre), p.gradient);
     cuts.push_back(p);
     const bool low = program.optimum() <= bound_;

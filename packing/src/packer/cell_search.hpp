@@ -38,7 +38,12 @@ class CellSearch {
   /// cell that holds none larger than this is done. As bound > wanted, a cell is decided before it is much
   /// smaller than their difference.
   CellSearch(const Container& container, const SphereGrid& placed, double top, double bound, double wanted)
-      : container_(container), placed_(placed), top_(top), bound_(bound), wanted_(wanted) {}
+      : container_(container),
+        placed_(placed),
+        top_(top),
+        bound_(bound),
+        wanted_(wanted),
+        soundings_(container.margin()) {}
 
   Result search(std::span<const Cell> cells);
 
@@ -77,8 +82,9 @@ class CellSearch {
   /// point.
   Ball ballBehind(const Point& wall, const Point& normal, double radius);
 
-  /// Moves up from x, where a sphere that is wanted fits, to a local maximum, and makes it a candidate.
-  void climb(Point x);
+  /// Moves up from x, where a sphere that is wanted fits, to a local maximum, and makes it a candidate. False
+  /// if the solid contradicts itself there.
+  bool climb(Point x);
 
   /// Looks at balls_[begin, end) and, if those leave more than `enough`, at the surface. The side of a point
   /// that is no farther than `negligible` from the surface does not matter.

@@ -27,6 +27,9 @@ class Container {
   Vec3d toWorld(const Point& x) const;
   Point fromWorld(const Vec3d& p) const;
 
+  /// More than the rounding error of a distance.
+  double margin() const { return margin_; }
+
   /// snap() moves a point by at most this.
   double coarseness() const { return coarseness_; }
 

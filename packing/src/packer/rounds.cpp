@@ -59,8 +59,7 @@ Rounds::Placed Rounds::run(tbb::task_arena& arena, const std::function<bool(cons
   const double tight = std::min(kTightDelta, delta_);
   const auto strides = static_cast<std::size_t>(std::log1p(delta_) / std::log1p(tight) + 1e-9);
   if (min_radius_ >= 0.5) return {};
-  const Ladder ladder(1, min_radius_ * std::pow(1 + tight, kUndecided),
-                      std::pow(1 + tight, 1 - kUndecided));
+  const Ladder ladder(1, min_radius_ * std::pow(1 + tight, kUndecided), std::pow(1 + tight, 1 - kUndecided));
   CellQueue queue(ladder);
   queue.push(Cell{});
   Placed placed;

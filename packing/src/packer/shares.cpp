@@ -37,7 +37,12 @@ double jitter(const std::array<std::uint32_t, 3>& at, std::uint32_t axis) {
 class Sampler {
  public:
   Sampler(const Container& container, const SphereGrid& grid, double spacing, double reach, Counts& counts)
-      : container_(container), grid_(grid), spacing_(spacing), reach_(reach), counts_(counts) {}
+      : container_(container),
+        grid_(grid),
+        spacing_(spacing),
+        reach_(reach),
+        counts_(counts),
+        soundings_(container.margin()) {}
 
   /// The cube of `lattice` points along an edge, the first of which is `at`.
   void descend(const std::array<std::uint32_t, 3>& at, std::uint32_t lattice, bool inside) {
@@ -95,7 +100,7 @@ class Sampler {
 
   void sampleBlock(const std::array<std::uint32_t, 3>& block, const Point& centre, double half, bool inside) {
     gather(centre, half);
-    soundings_ = {};
+    soundings_ = Soundings(container_.margin());
     for (std::uint32_t k = 0; k < kBlock * kBlock * kBlock; ++k) {
       const std::array<std::uint32_t, 3> at{block[0] + k % kBlock, block[1] + k / kBlock % kBlock,
                                             block[2] + k / (kBlock * kBlock)};

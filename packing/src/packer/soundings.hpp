@@ -16,9 +16,12 @@ class Soundings {
     Point at;
     double distance;  ///< positive inside, negative outside
 
-    /// How far the surface stays away from x, at least; not positive if x is out of reach.
-    double clearance(const Point& x) const { return std::abs(distance) - (x - at).norm() * (1 + 1e-9); }
+    /// How far the surface stays away from x; not positive if x is out of reach.
+    double clearance(const Point& x) const { return std::abs(distance) - (x - at).norm(); }
   };
+
+  /// `margin` is more than the rounding error of any distance.
+  explicit Soundings(double margin) : margin_(margin) {}
 
   void add(const Point& at, double distance) {
     if (soundings_.size() < kKept) {
@@ -31,7 +34,7 @@ class Soundings {
   /// The sounding with the largest clearance at x, or null if none reaches x.
   const Sounding* around(const Point& x) const {
     const Sounding* best = nullptr;
-    double most = 0;
+    double most = margin_;
     for (const Sounding& sounding : soundings_) {
       // Most are too far away, which shows without a root.
       if ((x - sounding.at).squaredNorm() >= sounding.distance * sounding.distance) continue;
@@ -48,7 +51,7 @@ class Soundings {
   /// the empty ball of a sounding, both are on the same side.
   int side(const Point& x, double clear) const {
     for (const Sounding& sounding : soundings_) {
-      if (sounding.clearance(x) + clear > 0) return sounding.distance > 0 ? 1 : -1;
+      if (sounding.clearance(x) + clear > margin_) return sounding.distance > 0 ? 1 : -1;
     }
     return 0;
   }
@@ -57,6 +60,7 @@ class Soundings {
   // The search moves through neighbouring cells, so the last soundings are the near ones.
   static constexpr std::size_t kKept = 64;
 
+  double margin_;
   std::vector<Sounding> soundings_;
   std::size_t oldest_ = 0;
 };

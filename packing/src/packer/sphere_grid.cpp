@@ -32,8 +32,9 @@ std::uint64_t SphereGrid::keyOf(int level, std::int64_t x, std::int64_t y, std::
 }
 
 static std::size_t hashOf(std::uint64_t key) {
-  key *= 0x9e3779b97f4a7c15ull;
-  return static_cast<std::size_t>(key ^ key >> 32);
+  key = (key ^ key >> 30) * 0xbf58476d1ce4e5b9ull;
+  key = (key ^ key >> 27) * 0x94d049bb133111ebull;
+  return static_cast<std::size_t>(key ^ key >> 31);
 }
 
 SphereGrid::Slot& SphereGrid::slot(std::uint64_t key) {
