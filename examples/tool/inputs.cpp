@@ -7,6 +7,7 @@
 #include "innersphere/packer.hpp"
 #include "innersphere/packing_file.hpp"
 #include "innersphere/solids.hpp"
+#include "numbers.hpp"
 #include "scenes/scaled_solid.hpp"
 #include "terminal.hpp"
 
@@ -14,7 +15,7 @@ namespace innersphere::tool {
 
 void addScaleOption(CLI::App& command, MeshOptions& options) {
   command.add_option("--scale", options.scale, "Multiplies all coordinates: 0.001 for a mesh in millimetres")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
 }
 

@@ -10,6 +10,7 @@
 #include "innersphere/packer.hpp"
 #include "innersphere/query.hpp"
 #include "inputs.hpp"
+#include "numbers.hpp"
 #include "outputs.hpp"
 #include "pose_table.hpp"
 #include "terminal.hpp"
@@ -180,7 +181,7 @@ void addOverlapCommand(CLI::App& app, Session&) {
       ->required();
   command->add_option("-o,--output", arguments->output, "CSV file to write")->required();
   command->add_option("--spheres", arguments->spheres, "Use the largest ones only; 0: all")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str();
   addEstimatorOption(*command, arguments->query.estimator);
   addBackendOption(*command, arguments->context.backend);

@@ -4,6 +4,7 @@
 #include "innersphere/packer.hpp"
 #include "innersphere/packing_file.hpp"
 #include "inputs.hpp"
+#include "numbers.hpp"
 #include "outputs.hpp"
 #include "packing_report.hpp"
 #include "terminal.hpp"
@@ -39,11 +40,11 @@ void addPackCommand(CLI::App& app, Session&) {
   command->add_option("-o,--output", arguments->output, "Packing file to write: .json, .cbor, .ply or .xyzr")
       ->required();
   command->add_option("--spheres", options.spheres, "Stop at exactly this many spheres; 0: no limit")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str();
   command
       ->add_option("--min-radius", options.min_radius, "Place no smaller sphere [m]; 0: 1e-4 of the diagonal")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str();
   command
       ->add_option("--density", options.density,
@@ -53,15 +54,15 @@ void addPackCommand(CLI::App& app, Session&) {
   command
       ->add_option("--gap", options.gap,
                    "Stop when no surface point is farther from a sphere [m]; 0: no limit")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str();
   command
       ->add_option("--delta", options.delta,
                    "Greediness: each radius is at least 1/(1+delta) of the largest possible")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command->add_option("--threads", options.threads, "0: all cores; the result does not depend on it")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str();
   addScaleOption(*command, arguments->solid.mesh);
   addRepairOption(*command, arguments->solid.mesh);

@@ -5,6 +5,7 @@
 #include "contact_arguments.hpp"
 #include "innersphere/error.hpp"
 #include "inputs.hpp"
+#include "numbers.hpp"
 #include "outputs.hpp"
 #include "pictures.hpp"
 #include "scene_report.hpp"
@@ -64,19 +65,19 @@ void addSceneRunCommand(CLI::App& scene) {
   demo::SceneOptions& options = arguments->options;
   command->add_option("NAME", arguments->scene, "One of `innersphere scene list`")->required();
   command->add_option("--seconds", arguments->seconds, "Simulated time [s]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command->add_option("--dt", arguments->dt, "Time step [s]")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
   command->add_option("--spheres", options.spheres, "Of each solid's packing")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   addResponseOption(*command, options.contact.response);
   addBackendOption(*command, options.contact.backend);
   addEstimatorOption(*command, options.contact.estimator);
   command->add_option("--seed", options.seed, "Of random places and orientations")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str();
   command
       ->add_option("--mesh", arguments->meshes,

@@ -9,6 +9,7 @@
 #include "film/palette.hpp"
 #include "innersphere/packer.hpp"
 #include "inputs.hpp"
+#include "numbers.hpp"
 #include "pictures.hpp"
 #include "report.hpp"
 
@@ -65,7 +66,7 @@ void addViewCommand(CLI::App& app, Session&) {
   command->add_option("FILE", arguments->source, "Packing file, or a mesh or a solid's name to pack first")
       ->required();
   command->add_option("--spheres", arguments->spheres, "Of what is packed first")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   addChoice<bool>(*command, "--up", arguments->y_up, {{"y", true}, {"z", false}}, "Axis that points up");
   addPictureOptions(*command, arguments->pictures);
