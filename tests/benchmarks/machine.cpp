@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 namespace innersphere::benchmarks {
@@ -19,8 +20,14 @@ std::string processor() {
   return "unknown processor";
 }
 
-std::string nameOf(const std::string& path) {
-  return path.substr(path.find_last_of('/') + 1);
+// Without the folders: where the files lie is nobody's business.
+std::string withoutFolders(const std::string& argument) {
+  std::string text;
+  for (const char c : argument) {
+    text += c;
+    if (c == '/') text.erase(text.find_last_of('=') + 1);  // npos + 1 is 0
+  }
+  return text;
 }
 
 std::string commit() {
@@ -40,14 +47,13 @@ std::string heading(const std::string& title, int argc, char** argv) {
   const std::time_t now = std::time(nullptr);
   std::array<char, 32> date{};
   std::strftime(date.data(), date.size(), "%Y-%m-%d", std::gmtime(&now));
-  std::string text = "# ";
-  text += title;
-  text += "\n\n* machine: " + processor() + ", " + std::to_string(std::thread::hardware_concurrency()) +
-          " hardware threads\n";
-  text += "* date: " + std::string(date.data()) + ", commit " + commit() + "\n";
-  text += "* command: `tests/benchmarks/run.sh " + nameOf(argv[0]);
-  for (int i = 1; i < argc; ++i) text += " " + nameOf(argv[i]);
-  return text + "`\n\n";
+  std::ostringstream text;
+  text << "# " << title << "\n\n* machine: " << processor() << ", " << std::thread::hardware_concurrency()
+       << " hardware threads\n* date: " << date.data() << ", commit " << commit()
+       << "\n* command: `tests/benchmarks/run.sh";
+  for (int i = 0; i < argc; ++i) text << ' ' << withoutFolders(argv[i]);
+  text << "`\n\n";
+  return text.str();
 }
 
 double peakMemory() {
