@@ -1,6 +1,68 @@
 #include "packing_report.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
 namespace innersphere::tool {
+namespace {
+
+double diagonalOf(const Surface& surface) {
+  if (surface.vertices.empty()) return 0;
+  double squared = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax_element(surface.vertices.begin(), surface.vertices.end(),
+                                                 [k](const auto& a, const auto& b) { return a[k] < b[k]; });
+    squared += std::pow(double{(*high)[k]} - (*low)[k], 2);
+  }
+  return std::sqrt(squared);
+}
+
+// The last six prefixes: shorter ones are for programs.
+constexpr std::size_t kPrefixesShown = 6;
+
+void addOverlapErrors(const OverlapErrors& errors, Report& report) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const OverlapErrors::Prefix& prefix : errors.prefixes) {
+    rows.push_back({{"count", prefix.count}, {"raw", prefix.raw}, {"volume_true", prefix.volume_true}});
+  }
+  report.add("overlap_errors", "",
+             {{"bins", kOverlapBins},
+              {"poses", errors.poses},
+              {"sampling_error", errors.sampling_error},
+              {"prefixes", rows}},
+             "");
+  if (errors.prefixes.empty()) return;
+  const auto line = [](const std::array<double, 4>& fractions) {
+    std::string text;
+    for (double f : fractions) {
+      char cell[32];
+      std::snprintf(cell, sizeof cell, "%10.2f", 100 * f);
+      text += cell;
+    }
+    return text + " %";
+  };
+  report.addLine("overlap error, mean", " of overlaps < 1 %     1-5 %    5-15 %    > 15 % of the solid");
+  const std::size_t all = errors.prefixes.size();
+  for (std::size_t i = all - std::min(all, kPrefixesShown); i < all; ++i) {
+    const OverlapErrors::Prefix& prefix = errors.prefixes[i];
+    report.addLine("  " + std::to_string(prefix.count) + ", plain", line(prefix.raw));
+    report.addLine("  " + std::to_string(prefix.count) + ", volume-true", line(prefix.volume_true));
+  }
+  report.addLine("  its sampling error", line(errors.sampling_error));
+}
+
+void addMassWeights(const std::vector<float>& weights, Report& report) {
+  if (weights.empty()) {
+    report.add("mass_weights", "mass weights", nullptr, "none");
+    return;
+  }
+  const auto [low, high] = std::minmax_element(weights.begin(), weights.end());
+  report.add("mass_weights", "mass weights", {{"min", *low}, {"max", *high}},
+             number(*low) + " to " + number(*high) + " times the density of the solid");
+}
+
+}  // namespace
 
 Report describe(const Packing& packing) {
   const Quality& quality = packing.quality;
@@ -17,9 +79,14 @@ Report describe(const Packing& packing) {
   report.add("largest_radius", "largest radius", largest, number(largest, "m"));
   report.add("smallest_radius", "smallest radius", smallest, number(smallest, "m"));
   report.add("density", "density", quality.density, percent(quality.density));
-  report.add("gap_mean", "surface gap, mean", quality.gap_mean, number(quality.gap_mean, "m"));
-  report.add("gap_p95", "surface gap, p95", quality.gap_p95, number(quality.gap_p95, "m"));
-  report.add("gap_max", "surface gap, max", quality.gap_max, number(quality.gap_max, "m"));
+  const double diagonal = diagonalOf(packing.surface);
+  const auto gap = [diagonal](double length) {
+    return number(length, "m") + (diagonal > 0 ? ", " + percent(length / diagonal) + " of the diagonal" : "");
+  };
+  report.add("diagonal", "diagonal", diagonal, number(diagonal, "m"));
+  report.add("gap_mean", "surface gap, mean", quality.gap_mean, gap(quality.gap_mean));
+  report.add("gap_p95", "surface gap, p95", quality.gap_p95, gap(quality.gap_p95));
+  report.add("gap_max", "surface gap, max", quality.gap_max, gap(quality.gap_max));
   const Certificate& certificate = packing.certificate;
   report.add("delta", "certified greedy", certificate.delta,
              certificate.delta > 0
@@ -35,11 +102,15 @@ Report describe(const Packing& packing) {
     prefix_text += std::to_string(radii.count);
   }
   report.add("volume_true", "volume-true prefixes", prefixes, prefix_text.empty() ? "none" : prefix_text);
+  addOverlapErrors(packing.overlap_errors, report);
+  addMassWeights(packing.mass_weights, report);
   report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
   report.add("centre_of_mass", "centre of mass", solid.centre_of_mass, vector(solid.centre_of_mass, "m"));
   report.add("inertia", "inertia, unit density", solid.inertia,
              vector({solid.inertia[0], solid.inertia[4], solid.inertia[8]}, "m^5 (xx yy zz)"));
   report.add("triangles", "triangles", packing.surface.triangles.size());
+  report.add("warnings", "", packing.warnings, "");
+  for (const std::string& warning : packing.warnings) report.addLine("WARNING", warning);
   return report;
 }
 

@@ -11,9 +11,12 @@
 
 #include "innersphere/error.hpp"
 #include "packer/container.hpp"
+#include "packer/mass_weights.hpp"
+#include "packer/overlap_errors.hpp"
 #include "packer/rounds.hpp"
 #include "packer/shares.hpp"
 #include "packer/surface_samples.hpp"
+#include "packer/volume_true.hpp"
 
 namespace innersphere {
 namespace {
@@ -178,14 +181,28 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   packing.quality.gap_max *= side;
 
   const std::size_t count = chosen.balls.size();
+  Shares shares;
   for (std::size_t prefix = std::min(kFirstPrefix, count);; prefix = std::min(2 * prefix, count)) {
     report("shares", static_cast<double>(prefix) / static_cast<double>(2 * count));
     const auto balls = std::span(chosen.balls).first(prefix);
-    arena.execute(
-        [&] { packing.volume_true.push_back(findVolumeTrueRadii(task.container, balls, task.volume)); });
+    arena.execute([&] {
+      shares = findShares(task.container, balls, task.volume);
+      packing.volume_true.push_back(volumeTrueRadii(task.container, balls, shares));
+    });
     if (prefix == count) break;
   }
-  report("shares", 1);
+  report("measuring", 0);
+  arena.execute([&] {
+    packing.overlap_errors = findOverlapErrors(task.container, chosen.balls, packing.volume_true, task.volume,
+                                               task.container.fromWorld(packing.solid.centre_of_mass));
+  });
+  for (double& share : shares.volumes) share *= side * side * side;
+  packing.mass_weights = findMassWeights(packing.spheres, shares.volumes, packing.solid);
+  if (packing.mass_weights.empty()) {
+    packing.warnings.push_back(
+        "no masses of the spheres give the inertia of the solid; use that of the solid");
+  }
+  report("measuring", 1);
   return packing;
 }
 

@@ -51,6 +51,29 @@ void validateRadii(const std::vector<VolumeTrueRadii>& prefixes, std::size_t sph
   }
 }
 
+void validateMeasures(const Packing& packing) {
+  if (!packing.mass_weights.empty() && packing.mass_weights.size() != packing.spheres.size()) {
+    throw Error(ErrorCode::bad_argument, "there are " + std::to_string(packing.mass_weights.size()) +
+                                             " mass weights for " + std::to_string(packing.spheres.size()) +
+                                             " spheres");
+  }
+  for (float w : packing.mass_weights) {
+    if (!std::isfinite(w) || !(w > 0)) {
+      throw Error(ErrorCode::bad_argument, "the mass weights are not all positive and finite");
+    }
+  }
+  const auto requireFinite = [](const std::array<double, 4>& errors) {
+    for (double x : errors) {
+      if (!std::isfinite(x)) notFinite("a number of the overlap errors");
+    }
+  };
+  requireFinite(packing.overlap_errors.sampling_error);
+  for (const OverlapErrors::Prefix& prefix : packing.overlap_errors.prefixes) {
+    requireFinite(prefix.raw);
+    requireFinite(prefix.volume_true);
+  }
+}
+
 void validateSurface(const Surface& surface) {
   for (const auto& v : surface.vertices) {
     for (float x : v) {
@@ -90,6 +113,7 @@ void validate(const Packing& packing) {
   validateRadii(packing.volume_true, packing.spheres.size());
   validateSurface(packing.surface);
   validateNumbers(packing);
+  validateMeasures(packing);
 }
 
 }  // namespace innersphere

@@ -64,13 +64,16 @@ class Entry {
         [](std::uint32_t word) { return std::bit_cast<float>(word); });
   }
 
+  std::uint32_t index() const {
+    if (!value_.is_number_unsigned() || value_.get<std::uint64_t>() > UINT32_MAX)
+      damaged("'" + path_ + "' has a bad index");
+    return value_.get<std::uint32_t>();
+  }
+
   std::vector<std::uint32_t> indices(std::size_t group) const {
-    const auto index = [&](const json& x) {
-      if (!x.is_number_unsigned() || x.get<std::uint64_t>() > UINT32_MAX)
-        damaged("'" + path_ + "' has a bad index");
-      return x.get<std::uint32_t>();
-    };
-    return list<std::uint32_t>(group, index, [](std::uint32_t word) { return word; });
+    return list<std::uint32_t>(
+        group, [&](const json& x) { return Entry(x, path_).index(); },
+        [](std::uint32_t word) { return word; });
   }
 
  private:
@@ -114,6 +117,22 @@ void requireVersion(const Entry& document) {
   if (version != kPackingFormatVersion) damaged("'version' is not a version");
 }
 
+OverlapErrors overlapErrorsOf(const Entry& entry) {
+  if (entry["bins"].numbers<kOverlapBins.size()>() != kOverlapBins) {
+    damaged("'overlap_errors.bins' are not the ones that this version knows");
+  }
+  OverlapErrors errors;
+  const std::vector<std::uint32_t> poses = entry["poses"].indices(errors.poses.size());
+  if (poses.size() != errors.poses.size()) damaged("'overlap_errors.poses' has the wrong length");
+  std::copy(poses.begin(), poses.end(), errors.poses.begin());
+  errors.sampling_error = entry["sampling_error"].numbers<4>();
+  for (const Entry& prefix : entry["prefixes"].items()) {
+    errors.prefixes.push_back(
+        {prefix["count"].index(), prefix["raw"].numbers<4>(), prefix["volume_true"].numbers<4>()});
+  }
+  return errors;
+}
+
 Surface surfaceOf(const Entry& entry) {
   Surface surface;
   const std::vector<float> v = entry["vertices"].floats(3);
@@ -138,6 +157,12 @@ Packing packingOf(const json& value) {
     packing.volume_true.push_back(std::move(radii));
   }
   packing.surface = surfaceOf(document["surface"]);
+  // Entries that came later than the first files.
+  if (document.has("overlap_errors")) packing.overlap_errors = overlapErrorsOf(document["overlap_errors"]);
+  if (document.has("mass_weights")) packing.mass_weights = document["mass_weights"].floats(1);
+  if (document.has("warnings")) {
+    for (const Entry& warning : document["warnings"].items()) packing.warnings.push_back(warning.text());
+  }
 
   const Entry solid = document["solid"];
   packing.solid = {solid["volume"].number(), solid["centre_of_mass"].numbers<3>(),

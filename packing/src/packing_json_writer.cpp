@@ -62,6 +62,17 @@ json volumeTrueEntry(const std::vector<VolumeTrueRadii>& prefixes, Encoding enco
   return array;
 }
 
+json overlapErrorsEntry(const OverlapErrors& errors) {
+  json prefixes = json::array();
+  for (const OverlapErrors::Prefix& prefix : errors.prefixes) {
+    prefixes.push_back({{"count", prefix.count}, {"raw", prefix.raw}, {"volume_true", prefix.volume_true}});
+  }
+  return {{"bins", kOverlapBins},
+          {"poses", errors.poses},
+          {"sampling_error", errors.sampling_error},
+          {"prefixes", std::move(prefixes)}};
+}
+
 json surfaceEntry(const Surface& surface, Encoding encoding) {
   std::vector<float> vertices;
   for (const auto& v : surface.vertices) vertices.insert(vertices.end(), v.begin(), v.end());
@@ -86,9 +97,12 @@ Entries entriesOf(const Packing& packing, Encoding encoding) {
       {"certificate", {{"delta", c.delta}, {"largest_missing_radius", c.largest_missing_radius}}},
       {"quality",
        {{"density", q.density}, {"gap_mean", q.gap_mean}, {"gap_p95", q.gap_p95}, {"gap_max", q.gap_max}}},
+      {"overlap_errors", overlapErrorsEntry(packing.overlap_errors)},
+      {"warnings", packing.warnings},
       {"solid", {{"volume", m.volume}, {"centre_of_mass", m.centre_of_mass}, {"inertia", m.inertia}}},
       {"spheres", sphereEntry(packing.spheres, encoding)},
       {"volume_true", volumeTrueEntry(packing.volume_true, encoding)},
+      {"mass_weights", floats(packing.mass_weights, encoding)},
       {"surface", surfaceEntry(packing.surface, encoding)},
   };
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "file_scratch.hpp"
@@ -35,6 +36,10 @@ Packing somePacking(std::size_t n, unsigned seed = 1) {
   packing.surface.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   packing.certificate = {0.1, 0.00123};
   packing.quality = {0.8, 0.01, 0.02, 0.1 + 0.2};
+  packing.overlap_errors = {
+      {8, 7, 6, 0}, {0.1, 0.02, 1.0 / 3, 0}, {{2, {0.5, 0.4, 0.3, 0.2}, {0.1, 0.01, 1e-3, 1e-17}}}};
+  for (std::size_t i = 0; i < n; ++i) packing.mass_weights.push_back(1 + 1 / static_cast<float>(i + 3));
+  packing.warnings = {"a \"part\" is empty", ""};
   packing.provenance = {"some \"mesh\".obj", "0123456789abcdef", "--spheres 5", "0.1.0"};
   return packing;
 }
@@ -64,6 +69,16 @@ void expectSame(const Packing& a, const Packing& b) {
   EXPECT_EQ(a.quality.gap_mean, b.quality.gap_mean);
   EXPECT_EQ(a.quality.gap_p95, b.quality.gap_p95);
   EXPECT_EQ(a.quality.gap_max, b.quality.gap_max);
+  EXPECT_EQ(a.mass_weights, b.mass_weights);
+  EXPECT_EQ(a.warnings, b.warnings);
+  EXPECT_EQ(a.overlap_errors.poses, b.overlap_errors.poses);
+  EXPECT_EQ(a.overlap_errors.sampling_error, b.overlap_errors.sampling_error);
+  ASSERT_EQ(a.overlap_errors.prefixes.size(), b.overlap_errors.prefixes.size());
+  for (std::size_t i = 0; i < a.overlap_errors.prefixes.size(); ++i) {
+    EXPECT_EQ(a.overlap_errors.prefixes[i].count, b.overlap_errors.prefixes[i].count);
+    EXPECT_EQ(a.overlap_errors.prefixes[i].raw, b.overlap_errors.prefixes[i].raw);
+    EXPECT_EQ(a.overlap_errors.prefixes[i].volume_true, b.overlap_errors.prefixes[i].volume_true);
+  }
   EXPECT_EQ(a.provenance.source, b.provenance.source);
   EXPECT_EQ(a.provenance.source_hash, b.provenance.source_hash);
   EXPECT_EQ(a.provenance.options, b.provenance.options);
@@ -101,6 +116,43 @@ TEST(FilePacking, EmptySurfaceAndPrefixesAreFine) {
     writePacking(packing, scratch.path(name));
     expectSame(readPacking(scratch.path(name)), packing);
   }
+}
+
+// As the first files were.
+TEST(FilePacking, FilesWithoutTheLaterEntriesAreFine) {
+  Packing packing = somePacking(3);
+  nlohmann::json document = nlohmann::json::parse(toJson(packing));
+  for (const char* key : {"overlap_errors", "mass_weights", "warnings"}) EXPECT_EQ(document.erase(key), 1u);
+  packing.overlap_errors = {};
+  packing.mass_weights.clear();
+  packing.warnings.clear();
+  expectSame(fromJson(document.dump()), packing);
+}
+
+TEST(FilePacking, BadMeasuresAreRefused) {
+  const nlohmann::json good = nlohmann::json::parse(toJson(somePacking(3)));
+  const auto refused = [&](const char* pointer, const nlohmann::json& value) {
+    nlohmann::json document = good;
+    document[nlohmann::json::json_pointer(pointer)] = value;
+    try {
+      validate(fromJson(document.dump()));
+      ADD_FAILURE() << pointer << " " << value;
+    } catch (const Error&) {
+    }
+  };
+  refused("/mass_weights", {1.0, 1.0});
+  refused("/mass_weights", {1.0, 0.0, 1.0});
+  refused("/mass_weights", {1.0, 1e99, 1.0});
+  refused("/warnings", {1});
+  refused("/warnings", "text");
+  refused("/overlap_errors", 1);
+  refused("/overlap_errors/bins", {0.0, 0.1, 0.2, 0.3, 1.0});
+  refused("/overlap_errors/poses", {1, 2, 3});
+  refused("/overlap_errors/poses", {1, 2, 3, -4});
+  refused("/overlap_errors/poses", {1, 2, 3, 4, 5, 6, 7, 8});
+  refused("/overlap_errors/sampling_error", {0.1, 0.1, 0.1, nullptr});
+  refused("/overlap_errors/prefixes/0/count", 1.5);
+  refused("/overlap_errors/prefixes/0/raw", {0.1});
 }
 
 TEST(FilePacking, JsonIsReadableByPeople) {

@@ -92,6 +92,15 @@ inline bool sameBytes(const Packing& a, const Packing& b) {
     if (a.volume_true[i].radii != b.volume_true[i].radii) return false;
     if (a.volume_true[i].sampling_error != b.volume_true[i].sampling_error) return false;
   }
+  if (a.mass_weights != b.mass_weights || a.overlap_errors.poses != b.overlap_errors.poses ||
+      a.overlap_errors.sampling_error != b.overlap_errors.sampling_error ||
+      a.overlap_errors.prefixes.size() != b.overlap_errors.prefixes.size()) {
+    return false;
+  }
+  for (std::size_t i = 0; i < a.overlap_errors.prefixes.size(); ++i) {
+    const OverlapErrors::Prefix &p = a.overlap_errors.prefixes[i], &q = b.overlap_errors.prefixes[i];
+    if (p.raw != q.raw || p.volume_true != q.volume_true) return false;
+  }
   return a.certificate.delta == b.certificate.delta &&
          a.certificate.largest_missing_radius == b.certificate.largest_missing_radius &&
          a.quality.density == b.quality.density && a.quality.gap_mean == b.quality.gap_mean &&

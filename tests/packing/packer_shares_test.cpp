@@ -7,6 +7,7 @@
 
 #include "analytic_solids.hpp"
 #include "innersphere/packer.hpp"
+#include "packer/shares.hpp"
 #include "packer_oracles.hpp"
 
 namespace innersphere::test {
@@ -53,14 +54,19 @@ TEST(PackerShares, NoSphereStandsForLessThanItself) {
 TEST(PackerShares, EqualRandomSampling) {
   const BittenCube solid;
   const Packing packing = packed(solid, 64);
-  const VolumeTrueRadii& radii = packing.volume_true.front();
-  ASSERT_EQ(radii.count, 64u);
+  const Container container(solid);
+  std::vector<Ball> balls;
+  for (const Sphere& s : packing.spheres) {
+    balls.push_back({container.fromWorld({s.x, s.y, s.z}), s.radius / container.side()});
+  }
+  const double unit = std::pow(container.side(), 3), volume = solid.massProperties().volume;
+  const Shares shares = findShares(container, balls, volume / unit);
   std::vector<double> hits(64);
   std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> unit(-0.5, 0.5);
+  std::uniform_real_distribution<double> place(-0.5, 0.5);
   const int points = 400000;
   for (int i = 0; i < points; ++i) {
-    const Vec3d x{unit(random), unit(random), unit(random)};
+    const Vec3d x{place(random), place(random), place(random)};
     if (!solid.contains(x)) continue;
     std::size_t nearest = 0;
     double least = 1e30;
@@ -74,16 +80,16 @@ TEST(PackerShares, EqualRandomSampling) {
     }
     ++hits[nearest];
   }
-  const double mean = solid.massProperties().volume / 64;
   double squared = 0;
   for (std::size_t k = 0; k < 64; ++k) {
-    const double difference = kBall * std::pow(double{radii.radii[k]}, 3) - hits[k] / points;
+    const double difference = shares.volumes[k] * unit - hits[k] / points;
     squared += difference * difference;
   }
-  const double error = std::sqrt(squared / 64) / mean;
-  EXPECT_LT(error, 2 * radii.sampling_error);
-  EXPECT_GT(radii.sampling_error, 0);
-  EXPECT_LT(radii.sampling_error, 0.1);
+  const double error = std::sqrt(squared / 64) / (volume / 64);
+  EXPECT_LT(error, 2 * shares.sampling_error);
+  EXPECT_GT(shares.sampling_error, 0);
+  EXPECT_LT(shares.sampling_error, 0.1);
+  EXPECT_EQ(packing.volume_true.front().sampling_error, shares.sampling_error);
 }
 
 double overlapVolume(const Packing& p, const std::vector<float>& radii, const Vec3d& shift) {
@@ -109,6 +115,34 @@ TEST(PackerShares, OverlapOfTwoCubes) {
     EXPECT_LT(overlapVolume(packing, raw, shift), 0.8 * exact);
     EXPECT_NEAR(overlapVolume(packing, true_radii, shift), exact, 0.03 * exact);
   }
+}
+
+// Two cubes that touch faces with a thin overlap, turned so that no spheres are aligned: what is filled near
+// the surface decides.
+TEST(PackerShares, ShallowOverlapOfTwoCubes) {
+  const Packing packing = packed(Cube(), 1000);
+  const std::vector<float>& radii = packing.volume_true.back().radii;
+  std::vector<float> by_share;
+  {
+    const Cube solid;
+    const Container container(solid);
+    std::vector<Ball> balls;
+    for (const Sphere& s : packing.spheres) {
+      balls.push_back({container.fromWorld({s.x, s.y, s.z}), s.radius / container.side()});
+    }
+    const double unit = std::pow(container.side(), 3);
+    for (double v : findShares(container, balls, 1 / unit).volumes) {
+      by_share.push_back(static_cast<float>(std::cbrt(v * unit / kBall)));
+    }
+  }
+  double error = 0, error_by_share = 0;
+  for (const Vec3d& shift : {Vec3d{0.95, 0.1, 0.05}, Vec3d{0.94, 0.2, 0.3}, Vec3d{0.96, 0.15, 0.25}}) {
+    const double exact = (1 - shift[0]) * (1 - shift[1]) * (1 - shift[2]);
+    error += overlapVolume(packing, radii, shift) / exact - 1;
+    error_by_share += overlapVolume(packing, by_share, shift) / exact - 1;
+  }
+  EXPECT_LT(std::abs(error / 3), 0.1);
+  EXPECT_LT(std::abs(error), 0.7 * std::abs(error_by_share));
 }
 
 TEST(PackerShares, OneBallIsTheSolid) {

@@ -1,6 +1,7 @@
 // An inner-sphere packing: the result of packing/ and the input of gpu/.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -12,8 +13,9 @@ namespace innersphere {
 
 /// Radii that make the first `count` spheres stand for the whole volume of the solid. A sphere's share is the
 /// volume of the solid that is nearer to its surface than to any other sphere's; its volume-true radius is
-/// that of a ball with the volume of its share. Shares of a prefix sum to the solid, so neighbouring
-/// volume-true spheres overlap a little.
+/// that of a ball with the volume of its share, a little larger at the surface and a little smaller behind,
+/// so that shallow overlaps come out right as well. No sphere is smaller than it was. The balls' volumes sum
+/// to the solid's, so neighbouring volume-true spheres overlap a little, and some reach out of the surface.
 struct VolumeTrueRadii {
   std::uint32_t count = 0;    ///< length of the prefix
   std::vector<float> radii;   ///< [m], `count` of them, in the order of the spheres
@@ -37,6 +39,24 @@ struct Quality {
   double gap_max = 0;   ///< largest sampled distance [m]: the covering radius, what a contact is late by
 };
 
+/// Depths of overlaps, as volumes relative to the solid's: errors are given for what lies between two of
+/// these.
+inline constexpr std::array<double, 5> kOverlapBins{0, 0.01, 0.05, 0.15, 1};
+
+/// How far overlap volumes found with the spheres are from the truth: measured by the packer with the solid
+/// and copies of it at different places, 0.2 % to 45 % of its volume deep. Arrays have a number for each bin
+/// of kOverlapBins.
+struct OverlapErrors {
+  struct Prefix {
+    std::uint32_t count = 0;              ///< the first spheres, as many as there are volume-true radii for
+    std::array<double, 4> raw{};          ///< mean of |relative error| with the spheres' own radii
+    std::array<double, 4> volume_true{};  ///< and with volume-true radii
+  };
+  std::array<std::uint32_t, 4> poses{};    ///< number of copies
+  std::array<double, 4> sampling_error{};  ///< relative standard error of a true volume: it is sampled, too
+  std::vector<Prefix> prefixes;            ///< by rising count; may be empty
+};
+
 /// Where a packing comes from, so that a file can be traced and made again.
 struct Provenance {
   std::string source;       ///< path of the mesh or name of the solid
@@ -55,6 +75,13 @@ struct Packing {
   Surface surface;       ///< of the solid; may be empty
   Certificate certificate;
   Quality quality;
+  OverlapErrors overlap_errors;
+  /// Densities relative to the solid's, one for each sphere: spheres of these densities have the volume,
+  /// centre of mass and inertia of the solid, to 1e-6 of each. Empty if the spheres cannot have them, or
+  /// nothing is known of the solid.
+  std::vector<float> mass_weights;
+  /// What a user should know, a sentence each: parts of the solid that got no sphere, ...
+  std::vector<std::string> warnings;
   Provenance provenance;
 };
 
@@ -63,7 +90,8 @@ struct Packing {
 const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count);
 
 /// Throws Error if a caller could not use the packing: no spheres, non-finite numbers, radii that are not
-/// positive or not sorted, volume-true radii of the wrong length, surface triangles without their vertices.
+/// positive or not sorted, volume-true radii or mass weights of the wrong length, surface triangles without
+/// their vertices.
 /// Does not look for overlaps; see check.hpp for that.
 void validate(const Packing& packing);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "packer/jitter.hpp"
 #include "packer/soundings.hpp"
 
 namespace innersphere {
@@ -24,14 +25,6 @@ constexpr int kBlock = 4;
 
 // The samples are dealt into two halves, whose difference tells the sampling error.
 using Counts = std::vector<std::array<std::atomic<std::uint32_t>, 2>>;
-
-/// A number in [0, 1) that looks random, from a lattice point and an axis.
-double jitter(const std::array<std::uint32_t, 3>& at, std::uint32_t axis) {
-  std::uint64_t x = (std::uint64_t{at[0]} << 42 ^ std::uint64_t{at[1]} << 21 ^ at[2]) * 4 + axis;
-  x = (x + 0x9e3779b97f4a7c15ull) * 0xbf58476d1ce4e5b9ull;
-  x = (x ^ x >> 29) * 0x94d049bb133111ebull;
-  return static_cast<double>((x ^ x >> 32) >> 11) * 0x1p-53;
-}
 
 /// Samples one cube of the unit cube, descending to the blocks that are partly gap.
 class Sampler {
@@ -89,15 +82,6 @@ class Sampler {
     return best;
   }
 
-  bool contains(const Point& x, double half) {
-    if (const Soundings::Sounding* known = soundings_.around(x)) return known->distance > 0;
-    const double distance = std::min(container_.closest(x, half).distance, half);
-    int side = soundings_.side(x, distance);
-    if (side == 0) side = container_.contains(x) ? 1 : -1;
-    soundings_.add(x, side * distance);
-    return side > 0;
-  }
-
   void sampleBlock(const std::array<std::uint32_t, 3>& block, const Point& centre, double half, bool inside) {
     gather(centre, half);
     soundings_ = Soundings(container_.margin());
@@ -106,7 +90,7 @@ class Sampler {
                                             block[2] + k / (kBlock * kBlock)};
       const Point x = Point(at[0] + jitter(at, 0), at[1] + jitter(at, 1), at[2] + jitter(at, 2)) * spacing_;
       SphereGrid::Nearest hit = nearest(x);
-      if (hit.distance <= 0 || (!inside && !contains(x, half))) continue;
+      if (hit.distance <= 0 || (!inside && !soundings_.contains(container_, x, half))) continue;
       if (!(hit.distance < reach_)) hit = grid_.nearestOfAll(x, 2 * reach_);
       counts_[hit.index][(at[0] + at[1] + at[2]) % 2].fetch_add(1, std::memory_order_relaxed);
     }
@@ -138,7 +122,7 @@ void sample(const Container& container, const SphereGrid& grid, double spacing, 
 
 }  // namespace
 
-VolumeTrueRadii findVolumeTrueRadii(const Container& container, std::span<const Ball> balls, double volume) {
+Shares findShares(const Container& container, std::span<const Ball> balls, double volume) {
   const auto count = static_cast<double>(balls.size());
   double filled = 0, smallest = 1;
   for (const Ball& ball : balls) {
@@ -159,14 +143,13 @@ VolumeTrueRadii findVolumeTrueRadii(const Container& container, std::span<const 
   const double each = sum > 0 ? std::max(0.0, volume - filled) / sum : 0;
   // All shares together are the solid, whatever the rounding.
   const double scale = volume / (filled + each * sum);
-  VolumeTrueRadii result;
-  result.count = static_cast<std::uint32_t>(balls.size());
-  result.sampling_error = std::sqrt(difference / count) * each / (volume / count);
+  Shares shares;
+  shares.sampling_error = std::sqrt(difference / count) * each / (volume / count);
   for (std::size_t i = 0; i < balls.size(); ++i) {
     const double share = kBallVolume * std::pow(balls[i].radius, 3) + each * (counts[i][0] + counts[i][1]);
-    result.radii.push_back(static_cast<float>(std::cbrt(scale * share / kBallVolume) * container.side()));
+    shares.volumes.push_back(scale * share);
   }
-  return result;
+  return shares;
 }
 
 }  // namespace innersphere

@@ -1,10 +1,11 @@
 // What is known of the surface around the points that were looked at.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "packer/ball.hpp"
+#include "packer/container.hpp"
 
 namespace innersphere {
 
@@ -54,6 +55,17 @@ class Soundings {
       if (sounding.clearance(x) + clear > margin_) return sounding.distance > 0 ? 1 : -1;
     }
     return 0;
+  }
+
+  /// Whether x is inside the solid, asked of the solid only if the soundings do not tell. What is learnt is
+  /// kept; `reach` bounds the distances that are of use.
+  bool contains(const Container& container, const Point& x, double reach) {
+    if (const Sounding* known = around(x)) return known->distance > 0;
+    const double distance = std::min(container.closest(x, reach).distance, reach);
+    int found = side(x, distance);
+    if (found == 0) found = container.contains(x) ? 1 : -1;
+    add(x, found * distance);
+    return found > 0;
   }
 
  private:

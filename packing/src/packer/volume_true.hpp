@@ -1,0 +1,18 @@
+// Radii with which spheres stand for the whole solid.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "innersphere/packing.hpp"
+#include "packer/container.hpp"
+#include "packer/shares.hpp"
+
+namespace innersphere {
+
+/// Radii [m] of balls with the volumes of their shares, then adjusted near the surface (see VolumeTrueRadii).
+/// Runs in the current TBB arena.
+VolumeTrueRadii volumeTrueRadii(const Container& container, std::span<const Ball> balls,
+                                const Shares& shares);
+
+}  // namespace innersphere

@@ -1,0 +1,129 @@
+#include "packer/voxels.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "packer/jitter.hpp"
+#include "packer/soundings.hpp"
+
+namespace innersphere {
+namespace {
+
+// Cells along an edge of the unit cube, at most: 17 MB of bits.
+constexpr double kMostCells = 512;
+
+// Cells along an edge of the blocks that are looked at as a whole.
+constexpr std::uint32_t kBlock = 8;
+
+}  // namespace
+
+Voxels::Voxels(const Container& container, double volume, double wanted) {
+  spacing_ = std::max(std::cbrt(volume / wanted), 1 / kMostCells);
+  reach_ = std::sqrt(3.0) / 2 * kBlock * spacing_;
+  const Bounds box = container.solid().bounds();
+  origin_ = container.fromWorld(box.min);
+  const Point size = container.fromWorld(box.max) - origin_;
+  for (int k = 0; k < 3; ++k) {
+    blocks_in_[k] = static_cast<std::uint32_t>(size[k] / (spacing_ * kBlock)) + 1;
+    size_[k] = blocks_in_[k] * kBlock;
+  }
+  const auto place = [&](const Index& at) {
+    const Point x(at[0] + jitter(at, 0), at[1] + jitter(at, 1), at[2] + jitter(at, 2));
+    return Point(origin_ + x * spacing_);
+  };
+  const auto cell = [&](std::size_t block, std::uint32_t i) {
+    const auto b = static_cast<std::uint32_t>(block);
+    return Index{b % blocks_in_[0] * kBlock + i % kBlock,
+                 b / blocks_in_[0] % blocks_in_[1] * kBlock + i / kBlock % kBlock,
+                 b / (blocks_in_[0] * blocks_in_[1]) * kBlock + i / (kBlock * kBlock)};
+  };
+  constexpr std::uint32_t kCells = kBlock * kBlock * kBlock;
+
+  blocks_.resize(std::size_t{blocks_in_[0]} * blocks_in_[1] * blocks_in_[2]);
+  // Bytes first, because threads cannot share the words of a bitmap.
+  std::vector<std::uint8_t> found(blocks_.size() * kCells);
+  tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t b) {
+    const Index first = cell(b, 0);
+    Block& block = blocks_[b];
+    block.centre = origin_ + (Point(first[0], first[1], first[2]) + Point::Constant(kBlock / 2.0)) * spacing_;
+    const double cutoff = 4 * reach_;
+    const double distance = std::min(container.closest(block.centre, cutoff).distance, cutoff);
+    Soundings soundings(container.margin());
+    block.distance = soundings.contains(container, block.centre, cutoff) ? distance : -distance;
+    if (block.distance <= -reach_) return;
+    for (std::uint32_t i = 0; i < kCells; ++i) {
+      const Index at = cell(b, i);
+      found[bit(at)] = block.distance >= reach_ || soundings.contains(container, place(at), cutoff);
+    }
+  });
+
+  inside_.assign(found.begin(), found.end());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    blocks_[b].begin = {points_[0].size(), points_[1].size()};
+    for (std::uint32_t i = 0; i < kCells; ++i) {
+      const Index at = cell(b, i);
+      if (inside_[bit(at)]) points_[(at[0] + at[1] + at[2]) % 2].push_back(place(at).cast<float>());
+    }
+    blocks_[b].end = {points_[0].size(), points_[1].size()};
+  }
+}
+
+const Voxels::Block* Voxels::blockAt(const Point& x) const {
+  const Point at = (x - origin_) / (spacing_ * kBlock);
+  for (int k = 0; k < 3; ++k) {
+    if (!(at[k] >= 0 && at[k] < blocks_in_[k])) return nullptr;
+  }
+  const auto z = static_cast<std::size_t>(at[2]), y = static_cast<std::size_t>(at[1]);
+  return &blocks_[(z * blocks_in_[1] + y) * blocks_in_[0] + static_cast<std::size_t>(at[0])];
+}
+
+double Voxels::outsideBy(const Point& x) const {
+  const Block* block = blockAt(x);
+  return block ? std::max(0.0, -block->distance - (x - block->centre).norm()) : 0;
+}
+
+Voxels::Shared Voxels::shared(const Pose& pose, std::size_t stride) const {
+  // Into the lattice of the original; in single precision, which is far finer than the cells.
+  const Eigen::Matrix3f rotation = (pose.rotation / spacing_).cast<float>();
+  const Eigen::Vector3f shift = ((pose.shift - origin_) / spacing_).cast<float>();
+  const Point extent = Point(size_[0], size_[1], size_[2]) * spacing_;
+  const auto hit = [&](const Eigen::Vector3f& point) {
+    const Eigen::Vector3f at = rotation * point + shift;
+    for (int k = 0; k < 3; ++k) {
+      if (!(at[k] >= 0 && at[k] < static_cast<float>(size_[k]))) return false;
+    }
+    return static_cast<bool>(
+        inside_[bit({static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]),
+                     static_cast<std::uint32_t>(at[2])})]);
+  };
+  std::size_t hits[2] = {}, looked[2] = {};
+  for (const Block& block : blocks_) {
+    const Point centre = pose.apply(block.centre), corner = centre - origin_;
+    const bool outside = (corner.array() < -reach_).any() || ((extent - corner).array() < -reach_).any();
+    const Block* there = outside ? nullptr : blockAt(centre);
+    const double clear = there ? std::abs(there->distance) - (centre - there->centre).norm() - reach_ : 0;
+    for (int half = 0; half < 2; ++half) {
+      const std::size_t first = (block.begin[half] + stride - 1) / stride * stride;
+      if (first >= block.end[half]) continue;
+      const std::size_t count = (block.end[half] - first + stride - 1) / stride;
+      looked[half] += count;
+      if (outside) continue;
+      // Cells are rounded to one side or the other within a cell's diagonal of the surface.
+      if (clear > std::sqrt(3.0) * spacing_) {
+        if (there->distance > 0) hits[half] += count;
+        continue;
+      }
+      for (std::size_t i = first; i < block.end[half]; i += stride) hits[half] += hit(points_[half][i]);
+    }
+  }
+  double fraction[2] = {};
+  for (int half = 0; half < 2; ++half) {
+    if (looked[half] > 0)
+      fraction[half] = static_cast<double>(hits[half]) / static_cast<double>(looked[half]);
+  }
+  return {(fraction[0] + fraction[1]) / 2, std::abs(fraction[0] - fraction[1]) / 2};
+}
+
+}  // namespace innersphere

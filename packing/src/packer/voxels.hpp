@@ -1,0 +1,65 @@
+// A solid as a set of sample points, to find how much of it two placements share.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "packer/container.hpp"
+
+namespace innersphere {
+
+/// Where a copy of the solid is, in the packer's coordinates: x -> rotation x + shift.
+struct Pose {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Point shift = Point::Zero();
+
+  Point apply(const Point& x) const { return rotation * x + shift; }
+};
+
+/// A lattice with a jittered point in each cell, and whether that is inside the solid. Both solids of an
+/// overlap are sampled so: the points of the copy are looked up in the cells of the original. The mean over
+/// many jitters would be exact, whatever the shape.
+class Voxels {
+ public:
+  /// About `wanted` points inside; fewer if the solid is thin. Runs in the current TBB arena.
+  Voxels(const Container& container, double volume, double wanted);
+
+  struct Shared {
+    double fraction = 0;  ///< of the solid's volume
+    double error = 0;     ///< standard error of it: half of the difference of two halves of the points
+  };
+
+  /// What the solid shares with its copy; from every `stride`-th point.
+  Shared shared(const Pose& pose, std::size_t stride = 1) const;
+
+  /// A length by which x is at least outside of the solid, or 0 if that is not known.
+  double outsideBy(const Point& x) const;
+
+ private:
+  using Index = std::array<std::uint32_t, 3>;
+
+  /// A cube of cells with its points, and how far its middle is from the surface: negative outside. The
+  /// points of a copy's block that lands far from the surface need not be looked at one by one.
+  struct Block {
+    Point centre;
+    double distance = 0;
+    std::array<std::size_t, 2> begin{}, end{};
+  };
+
+  std::size_t bit(const Index& at) const {
+    return (std::size_t{at[2]} * size_[1] + at[1]) * size_[0] + at[0];
+  }
+  const Block* blockAt(const Point& x) const;
+
+  Point origin_;
+  double spacing_ = 1;
+  Index size_{}, blocks_in_{};
+  double reach_ = 0;  // from the middle of a block to its corners
+  std::vector<Block> blocks_;
+  std::vector<bool> inside_;
+  std::array<std::vector<Eigen::Vector3f>, 2> points_;  // those inside, in two halves, in the order of blocks
+};
+
+}  // namespace innersphere

@@ -1,0 +1,165 @@
+// What a packing says of itself: masses and the errors of its overlap volumes.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "analytic_solids.hpp"
+#include "innersphere/packer.hpp"
+#include "innersphere/solids.hpp"
+#include "packer/overlap_errors.hpp"
+#include "packer/voxels.hpp"
+#include "packer_oracles.hpp"
+
+namespace innersphere::test {
+namespace {
+
+constexpr Real kBall = 4 * std::numbers::pi_v<Real> / 3;
+
+Packing packed(const Solid& solid, std::size_t spheres) {
+  PackOptions options;
+  options.spheres = spheres;
+  return pack(solid, options);
+}
+
+/// Volume, centre of mass and inertia of weighted balls, about the origin of their frame.
+struct Sums {
+  Real volume = 0, first[3] = {}, inertia[3][3] = {};
+
+  explicit Sums(const Packing& packing) {
+    for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+      const Sphere& s = packing.spheres[i];
+      const Real r = s.radius, m = packing.mass_weights[i] * kBall * r * r * r;
+      const Real x[3] = {s.x, s.y, s.z}, squared = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+      volume += m;
+      for (int k = 0; k < 3; ++k) {
+        first[k] += m * x[k];
+        for (int l = 0; l < 3; ++l) {
+          inertia[k][l] += m * ((k == l ? squared + 2 * r * r / 5 : 0) - x[k] * x[l]);
+        }
+      }
+    }
+  }
+};
+
+void expectMassOfTheSolid(const Packing& packing) {
+  ASSERT_EQ(packing.mass_weights.size(), packing.spheres.size());
+  const MassProperties& solid = packing.solid;
+  const Sums sums(packing);
+  EXPECT_NEAR(sums.volume / solid.volume, 1, 1e-6);
+  const Real size = std::sqrt((solid.inertia[0] + solid.inertia[4] + solid.inertia[8]) / solid.volume);
+  Real c[3], squared = 0;
+  for (int k = 0; k < 3; ++k) {
+    c[k] = sums.first[k] / sums.volume;
+    squared += c[k] * c[k];
+    EXPECT_NEAR(c[k], solid.centre_of_mass[k], 1e-6 * size);
+  }
+  for (int k = 0; k < 3; ++k) {
+    for (int l = 0; l < 3; ++l) {
+      const Real about_centre = sums.inertia[k][l] - sums.volume * ((k == l ? squared : 0) - c[k] * c[l]);
+      EXPECT_NEAR(about_centre, solid.inertia[3 * k + l], 1e-6 * size * size * solid.volume);
+    }
+  }
+  for (float w : packing.mass_weights) EXPECT_GT(w, 0);
+}
+
+TEST(PackerMeasures, WeightedSpheresWeighLikeTheSolid) {
+  for (const char* name : {"box", "lbracket", "torus", "bowl"}) {
+    SCOPED_TRACE(name);
+    expectMassOfTheSolid(packed(*makeNamedSolid(name), 300));
+  }
+  expectMassOfTheSolid(packed(*makeNamedSolid("ball"), 10));
+}
+
+TEST(PackerMeasures, MassesThatCannotBeAreNamed) {
+  const Packing packing = packed(Cube(), 2);
+  EXPECT_TRUE(packing.mass_weights.empty());
+  ASSERT_EQ(packing.warnings.size(), 1u);
+  EXPECT_NE(packing.warnings[0].find("inertia"), std::string::npos);
+}
+
+Pose poseOf(const Eigen::AngleAxisd& turn, const Point& centre, const Point& shift) {
+  const Eigen::Matrix3d r = turn.toRotationMatrix();
+  return {r, centre - r * centre + shift};
+}
+
+TEST(PackerMeasures, SampledOverlapOfCubesIsTheirs) {
+  const Cube solid;
+  const Container container(solid);
+  const Voxels voxels(container, std::pow(container.side(), -3), 1 << 20);
+  const Point centre = Point::Constant(0.5);
+  for (const Point& shift : {Point(0.5, 0, 0), Point(0.7, 0.3, 0.1), Point(0.97, 0.2, 0), Point(0, 0, 0)}) {
+    const auto found = voxels.shared(poseOf(Eigen::AngleAxisd::Identity(), centre, shift / container.side()));
+    const double exact = (1 - shift[0]) * (1 - shift[1]) * (1 - shift[2]);
+    EXPECT_NEAR(found.fraction / exact, 1, 0.01) << shift.transpose();
+  }
+  // Turned by 45 degrees about z, a corner of the copy reaches as deep as its diagonal says.
+  const double depth = 0.3;
+  const auto corner = voxels.shared(poseOf({std::numbers::pi / 4, Point::UnitZ()}, centre,
+                                           Point(0.5 + std::sqrt(0.5) - depth, 0, 0) / container.side()));
+  EXPECT_NEAR(corner.fraction / (depth * depth), 1, 0.01);
+}
+
+TEST(PackerMeasures, SampledOverlapOfBallsIsALens) {
+  const TestBall solid;
+  const Container container(solid);
+  const double unit = 1 / container.side();
+  const Voxels voxels(container, static_cast<double>(kBall) * std::pow(unit, 3), 1 << 20);
+  for (double distance : {0.5, 1.0, 1.5, 1.8}) {
+    const Point shift = distance * unit * Point(1, 2, -2) / 3;
+    const auto found =
+        voxels.shared(poseOf({0.7, Point(0.6, 0.8, 0)}, container.fromWorld({0, 0, 0}), shift));
+    const double exact = static_cast<double>(lens(1, 1, distance) / kBall);
+    EXPECT_LT(std::abs(found.fraction - exact), 6 * found.error + 2e-4 * exact + 2e-5);
+    EXPECT_NEAR(found.fraction / exact, 1, 0.01);
+  }
+}
+
+// One sphere stands for a ball, with the right radius and with one that is too small: both errors are known.
+TEST(PackerMeasures, OverlapErrorsOfABall) {
+  const TestBall solid;
+  const Container container(solid);
+  const double unit = 1 / container.side(), small = 0.9;
+  const std::vector<Ball> balls{{container.fromWorld({0, 0, 0}), small * unit}};
+  const OverlapErrors errors =
+      findOverlapErrors(container, balls, {{1, {1.0f}, 0}}, static_cast<double>(kBall) * std::pow(unit, 3),
+                        container.fromWorld({0, 0, 0}));
+  ASSERT_EQ(errors.prefixes.size(), 1u);
+  const auto share = [](double distance) { return static_cast<double>(lens(1, 1, distance) / kBall); };
+  for (std::size_t bin = 0; bin < 4; ++bin) {
+    EXPECT_GE(errors.poses[bin], 6u);
+    EXPECT_LT(errors.sampling_error[bin], 0.02);
+    EXPECT_LT(errors.prefixes[0].volume_true[bin], 3 * errors.sampling_error[bin] + 1e-3);
+    // The error falls with depth, so those at the ends of the bin bound it.
+    double low = 1, high = 0;
+    for (double distance = 0; distance < 2; distance += 1e-3) {
+      const double fraction = share(distance);
+      if (fraction < std::max(kOverlapBins[bin], 0.0018) || fraction > std::min(kOverlapBins[bin + 1], 0.5))
+        continue;
+      const double error =
+          1 - static_cast<double>(lens(small, small, distance)) / (share(distance) * 4 * M_PI / 3);
+      low = std::min(low, error);
+      high = std::max(high, error);
+    }
+    EXPECT_GT(errors.prefixes[0].raw[bin], low - 1e-9);
+    EXPECT_LT(errors.prefixes[0].raw[bin], high + 1e-9);
+  }
+}
+
+TEST(PackerMeasures, OverlapErrorsFallWithMoreSpheres) {
+  const Packing packing = packed(*makeNamedSolid("lbracket"), 1024);
+  const OverlapErrors& errors = packing.overlap_errors;
+  ASSERT_EQ(errors.prefixes.size(), packing.volume_true.size());
+  const OverlapErrors::Prefix &few = errors.prefixes.front(), &all = errors.prefixes.back();
+  EXPECT_EQ(few.count, 64u);
+  EXPECT_EQ(all.count, 1024u);
+  for (std::size_t bin = 0; bin < 4; ++bin) {
+    EXPECT_LT(all.raw[bin], few.raw[bin]);
+    EXPECT_LT(all.volume_true[bin], 0.5 * all.raw[bin]);
+  }
+  EXPECT_LT(all.volume_true[3], 0.02);
+}
+
+}  // namespace
+}  // namespace innersphere::test
