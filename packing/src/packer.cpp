@@ -11,6 +11,7 @@
 
 #include "innersphere/error.hpp"
 #include "packer/container.hpp"
+#include "packer/empty_parts.hpp"
 #include "packer/mass_weights.hpp"
 #include "packer/overlap_errors.hpp"
 #include "packer/rounds.hpp"
@@ -201,6 +202,9 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   if (packing.mass_weights.empty()) {
     packing.warnings.push_back(
         "no masses of the spheres give the inertia of the solid; use that of the solid");
+  }
+  for (std::string& sentence : nameEmptyParts(packing.surface, packing.spheres)) {
+    packing.warnings.push_back(std::move(sentence));
   }
   report("measuring", 1);
   return packing;

@@ -6,8 +6,10 @@
 #include <numbers>
 
 #include "analytic_solids.hpp"
+#include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
+#include "mesh_shapes.hpp"
 #include "packer/overlap_errors.hpp"
 #include "packer/voxels.hpp"
 #include "packer_oracles.hpp"
@@ -77,6 +79,39 @@ TEST(PackerMeasures, MassesThatCannotBeAreNamed) {
   EXPECT_TRUE(packing.mass_weights.empty());
   ASSERT_EQ(packing.warnings.size(), 1u);
   EXPECT_NE(packing.warnings[0].find("inertia"), std::string::npos);
+}
+
+Packing packedMesh(const Mesh& mesh, std::size_t spheres) {
+  return packed(*makeSolid(mesh, "parts"), spheres);
+}
+
+TEST(PackerMeasures, PartsWithoutASphereAreNamed) {
+  Mesh mesh = boxMesh();
+  append(mesh, boxMesh({2, 0, 0}, {2.1, 0.1, 0.1}));
+  append(mesh, boxMesh({0, 2, 0}, {0.4, 2.4, 0.4}));
+  const Packing few = packedMesh(mesh, 50);
+  ASSERT_EQ(few.warnings.size(), 1u);
+  EXPECT_NE(few.warnings[0].find("part 2 of 3"), std::string::npos) << few.warnings[0];
+  EXPECT_NE(few.warnings[0].find("(2.05, 0.05, 0.05)"), std::string::npos) << few.warnings[0];
+  EXPECT_TRUE(packedMesh(mesh, 500).warnings.empty());
+}
+
+// Spheres in what lies inside a hollow part are not in that part.
+TEST(PackerMeasures, AHollowPartWithoutASphereIsNamed) {
+  Mesh mesh = boxMesh();
+  append(mesh, inverted(boxMesh({-0.49, -0.49, -0.49}, {0.49, 0.49, 0.49})));
+  append(mesh, boxMesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}));
+  const Packing packing = packedMesh(mesh, 40);
+  ASSERT_FALSE(packing.warnings.empty());
+  EXPECT_NE(packing.warnings.back().find("part 1 of 2"), std::string::npos) << packing.warnings.back();
+}
+
+TEST(PackerMeasures, ManyEmptyPartsAreCounted) {
+  Mesh mesh = boxMesh();
+  for (int i = 0; i < 15; ++i) append(mesh, boxMesh({2, 0.1 * i, 0}, {2.01, 0.1 * i + 0.01, 0.01}));
+  const Packing packing = packedMesh(mesh, 20);
+  ASSERT_EQ(packing.warnings.size(), 11u);
+  EXPECT_EQ(packing.warnings.back(), "5 more parts got no sphere");
 }
 
 Pose poseOf(const Eigen::AngleAxisd& turn, const Point& centre, const Point& shift) {

@@ -16,7 +16,7 @@ constexpr double kBallVolume = 4.0 / 3.0 * std::numbers::pi;
 // surface too little is filled, from 1.5 s to 4 s too much. So shallow overlaps come out too small. The same
 // profile is found on all solids and for all numbers of spheres, in units of s. Radii with their centres near
 // the surface grow by this much, falling off within kNear s of depth, ...
-constexpr double kGrowth = 0.2;
+constexpr double kGrowth = 0.15;
 constexpr double kNear = 0.5;
 // ... and what that adds is taken from the spheres down to about kFar s.
 constexpr double kFar = 3;

@@ -1,0 +1,15 @@
+// Parts of a solid that the spheres left out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "innersphere/packing.hpp"
+
+namespace innersphere {
+
+/// A sentence for each closed shell of the surface with material right inside and no sphere's centre in that
+/// material; of more than ten, the first ten and a sentence with the number of the others.
+std::vector<std::string> nameEmptyParts(const Surface& surface, const std::vector<Sphere>& spheres);
+
+}  // namespace innersphere
