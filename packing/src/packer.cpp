@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "innersphere/error.hpp"
+#include "mesh_report.hpp"
 #include "packer/container.hpp"
 #include "packer/empty_parts.hpp"
 #include "packer/mass_weights.hpp"
@@ -71,13 +72,16 @@ struct Task {
         std::hypot(box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]);
     const double asked = options.min_radius > 0 ? options.min_radius : 1e-4 * diagonal;
     // A sphere loses up to the coarseness when its centre is rounded.
-    smallest = std::max({asked / side + container.coarseness(), 4 * container.coarseness(), 1e-5});
+    const double wished = std::max(asked / side + container.coarseness(), 1e-5);
+    limited_by_place = 4 * container.coarseness() > wished;
+    smallest = limited_by_place ? 4 * container.coarseness() : wished;
   }
 
   Container container;
   const PackOptions& options;
   SurfaceSamples samples;
   double volume, enough, gap, smallest;
+  bool limited_by_place;  ///< smaller spheres would lose too much by rounding, so far from the origin
 };
 
 /// Calls the user back, and ends the work if the user wants that.
@@ -165,10 +169,18 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
 
   const Reporter report(progress, solid.name());
   tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
+  if (task.limited_by_place) {
+    packing.warnings.push_back(
+        "the solid is so far from the origin that single precision allows no sphere smaller than " +
+        text(task.smallest * task.container.side()) + " m; move it to the origin");
+  }
   const Chosen chosen = choose(task, place(task, arena, report));
   if (chosen.balls.empty()) {
-    throw Error(ErrorCode::no_sphere_fits, "no sphere of the smallest allowed radius fits into '" +
-                                               solid.name() + "'; ask for a smaller min_radius");
+    throw Error(
+        ErrorCode::no_sphere_fits,
+        "no sphere of the smallest allowed radius fits into '" + solid.name() + "'; " +
+            (task.limited_by_place ? "it is too far from the origin for single precision, move it there"
+                                   : "ask for a smaller min_radius"));
   }
   const double side = task.container.side();
   for (const Ball& ball : chosen.balls) packing.spheres.push_back(task.container.toSphere(ball));

@@ -12,15 +12,45 @@ constexpr std::uint32_t kLeaf = 4;
 // A dipole is used from this many radii of its triangles on.
 constexpr double kFar = 2;
 
-}  // namespace
+/// Sums angles of the plane, given as vectors, with one arc tangent for all: multiplies them as complex
+/// numbers, and counts how often the product goes round.
+class AngleSum {
+ public:
+  void add(double x, double y) {
+    if (x == 0 && y == 0) return;
+    const double re = re_ * x - im_ * y;
+    const double im = re_ * y + im_ * x + 0.0;  // never -0, whose angle is -pi instead of pi
+    if (im_ >= 0 && y >= 0 && im < 0) ++turns_;
+    if (im_ < 0 && y < 0 && im >= 0) --turns_;
+    re_ = re;
+    im_ = im;
+    const double size = std::max(std::abs(re), std::abs(im));
+    if (size < 1e-100 || size > 1e100) {
+      re_ /= size;
+      im_ /= size;
+    }
+  }
+  double turns() const { return turns_ + std::atan2(im_, re_) / (2 * std::numbers::pi); }
 
-// Van Oosterom and Strackee 1983.
-double windingNumber(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+ private:
+  double re_ = 1, im_ = 0;
+  int turns_ = 0;
+};
+
+// Half of the solid angle, by Van Oosterom and Strackee 1983.
+void addTriangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c, AngleSum& sum) {
   const Vec3d pa = a - p, pb = b - p, pc = c - p;
   const double la = norm(pa), lb = norm(pb), lc = norm(pc);
   const double volume = dot(pa, cross(pb, pc));
-  const double scale = la * lb * lc + dot(pa, pb) * lc + dot(pb, pc) * la + dot(pc, pa) * lb;
-  return std::atan2(volume, scale) / (2 * std::numbers::pi);
+  sum.add(la * lb * lc + dot(pa, pb) * lc + dot(pb, pc) * la + dot(pc, pa) * lb, volume);
+}
+
+}  // namespace
+
+double windingNumber(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  AngleSum sum;
+  addTriangle(p, a, b, c, sum);
+  return sum.turns();
 }
 
 WindingTree::WindingTree(const Mesh& mesh) {
@@ -74,6 +104,7 @@ void WindingTree::build(std::uint32_t begin, std::uint32_t end) {
 
 double WindingTree::windingNumber(const Vec3d& p) const {
   double sum = 0;
+  AngleSum near;
   for (std::uint32_t n = 0; n < nodes_.size();) {
     const Node& node = nodes_[n];
     const Vec3d away = node.centre - p;
@@ -84,14 +115,14 @@ double WindingTree::windingNumber(const Vec3d& p) const {
     } else if (node.end - node.begin <= kLeaf) {
       for (std::uint32_t i = node.begin; i < node.end; ++i) {
         const Corners& t = triangles_[i];
-        sum += innersphere::windingNumber(p, t.a, t.b, t.c);
+        addTriangle(p, t.a, t.b, t.c, near);
       }
       n = node.skip;
     } else {
       ++n;
     }
   }
-  return sum;
+  return sum + near.turns();
 }
 
 }  // namespace innersphere

@@ -1,52 +1,50 @@
-// Density, time and memory of packings.
+// What packings cost and how dense they are: one Markdown table for each question.
 #include <CLI/CLI.hpp>
-#include <chrono>
+#include <algorithm>
 #include <cstdio>
-#include <functional>
+#include <filesystem>
 
 #include "innersphere/error.hpp"
 #include "innersphere/mesh.hpp"
-#include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
 #include "machine.hpp"
-
-namespace {
-
-double secondsOf(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-}  // namespace
+#include "packing_tables.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app("Density, time and memory of packings, as a Markdown table on stdout");
-  std::vector<std::string> solids = {"box"};
-  std::vector<std::size_t> counts = {1000, 4000, 10000};
-  app.add_option("SOLID", solids, "Mesh files or names of solids")->capture_default_str();
-  app.add_option("--spheres", counts, "Numbers of spheres")->capture_default_str()->delimiter(',');
-  CLI11_PARSE(app, argc, argv);
   using namespace innersphere;
+  using namespace innersphere::benchmarks;
+  CLI::App app("Density, time and memory of packings, as Markdown tables on stdout");
+  std::vector<std::string> sources;
+  std::vector<std::size_t> counts{1000, 4000, 10000, 16000};
+  std::size_t large = 0;
+  bool invariance = false, slow = false;
+  std::string csv;
+  app.add_option("SOLID", sources, "Mesh files or names of solids; default: all named solids");
+  app.add_option("--spheres", counts, "Numbers of spheres")->capture_default_str()->delimiter(',');
+  app.add_option("--large", large, "Also pack the first solid with this many spheres; 0: do not")
+      ->capture_default_str();
+  app.add_flag("--invariance", invariance,
+               "Also: threads, scale, place and repeated runs of the first solid");
+  app.add_flag("--slow-cases", slow, "Also: solids that are hard to pack");
+  app.add_option("--csv", csv, "Write density against the number of spheres there, for plots");
+  CLI11_PARSE(app, argc, argv);
+  if (sources.empty()) sources = namedSolids();
   try {
-    std::printf("%s", benchmarks::heading("Packing", argc, argv).c_str());
-    std::printf(
-        "| solid | spheres | density %% | time s | spheres/s | peak memory MiB "
-        "|\n|---|---|---|---|---|---|\n");
-    for (const std::string& name : solids) {
-      const bool is_mesh = name.find('.') != std::string::npos;
-      const auto solid = is_mesh ? makeSolid(readMesh(name), name) : makeNamedSolid(name);
-      for (std::size_t count : counts) {
-        PackOptions options;
-        options.spheres = count;
-        Packing packing;
-        const double seconds = secondsOf([&] { packing = pack(*solid, options); });
-        const double placed = static_cast<double>(packing.spheres.size());
-        std::printf("| %s | %.0f | %.2f | %.2f | %.0f | %.0f |\n", name.c_str(), placed,
-                    100 * packing.quality.density, seconds, placed / seconds, benchmarks::peakMemory());
-        std::fflush(stdout);
+    std::vector<Case> cases;
+    for (const std::string& source : sources) {
+      if (!std::filesystem::exists(source)) {
+        cases.push_back({source, makeNamedSolid(source)});
+        continue;
       }
+      cases.push_back({std::filesystem::path(source).stem().string(), makeSolid(readMesh(source), source)});
     }
+    std::printf("%s", heading("Packing", argc, argv).c_str());
+    Curves curves;
+    tableOfDensities(cases, counts, curves);
+    if (!csv.empty()) writeCurves(curves, csv);
+    if (large > 0) tableOfLinearity(cases.front(), large);
+    if (invariance) tableOfInvariance(cases.front());
+    if (slow) tableOfSlowCases();
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
