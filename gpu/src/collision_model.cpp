@@ -10,24 +10,10 @@
 
 namespace innersphere {
 
-namespace {
-
-/// The next of four values an octave, so that margins that change a little from query to query share a grid.
-/// Margins far below the radii share one too.
-float roundedGrowth(double margin, const Packing& packing) {
-  if (margin == 0) return 0;
-  const double size = std::max(margin, packing.spheres.back().radius / 8.0);
-  int exponent;
-  const double fraction = std::frexp(size, &exponent);
-  return static_cast<float>(std::ldexp(std::ceil(fraction * 8) / 8, exponent));
-}
-
-}  // namespace
-
 CollisionModel::Impl::Impl(std::shared_ptr<const Packing> p) : packing(std::move(p)) {
   if (!packing) throw Error(ErrorCode::bad_argument, "a collision model needs a packing, not a null pointer");
   validate(*packing);
-  if (packing->spheres.size() >= std::size_t{1} << core::kIndexBits) {
+  if (packing->spheres.size() >= std::size_t{1} << 29) {
     throw Error(ErrorCode::bad_argument, "the packing has 2^29 spheres or more; use fewer");
   }
   constexpr float kLargest = 1e15f;  // leaves room for squares and margins in single precision
@@ -44,18 +30,17 @@ CollisionModel::Impl::Impl(std::shared_ptr<const Packing> p) : packing(std::move
   }
 }
 
-const HashGrid& CollisionModel::Impl::grid(std::uint32_t prefix, Estimator estimator, double margin) {
+const HashGrid& CollisionModel::Impl::grid(std::uint32_t prefix, Estimator estimator) {
   const std::size_t all = packing->spheres.size();
   std::size_t count = prefix == 0 || prefix > all ? all : prefix;
   const VolumeTrueRadii* radii =
       estimator == Estimator::volume_true ? volumeTrueRadii(*packing, count) : nullptr;
   if (radii) count = radii->count;
-  const float growth = roundedGrowth(margin, *packing);
 
   Entry* entry;
   {
     const std::lock_guard lock(mutex_);
-    entry = &grids_[Key(static_cast<std::uint32_t>(count), radii, growth)];
+    entry = &grids_[Key(static_cast<std::uint32_t>(count), radii)];
   }
   std::call_once(entry->built, [&] {
     std::vector<Sphere> spheres(packing->spheres.begin(),
@@ -65,8 +50,7 @@ const HashGrid& CollisionModel::Impl::grid(std::uint32_t prefix, Estimator estim
     }
     // Isolated: while it waits for its own tasks, this thread must not pick up a caller's task that wants the
     // same grid.
-    tbb::this_task_arena::isolate(
-        [&] { entry->grid = std::make_unique<HashGrid>(std::move(spheres), growth); });
+    tbb::this_task_arena::isolate([&] { entry->grid = std::make_unique<HashGrid>(std::move(spheres)); });
   });
   return *entry->grid;
 }

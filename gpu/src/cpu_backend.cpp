@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/walk.hpp"
+#include "cpu_kernels.hpp"
 
 namespace innersphere {
 
@@ -66,41 +66,113 @@ void CpuBackend::walkRange(const std::vector<PreparedQuery>& queries, std::size_
   }
 }
 
+/// Decides the candidates of one query, and sums what counts.
+class CpuBackend::Summer : public CandidateSink {
+ public:
+  Summer(const PreparedQuery& query, std::uint32_t index, Want want, HitWriter& writer)
+      : setup_(query.setup), index_(index), want_(want), writer_(writer) {
+    sums_.clear();
+  }
+
+  void setFromA(bool from_a) { from_a_ = from_a; }
+
+  bool take(Candidates& candidates) override {
+    if (candidates.count == 0) return true;
+    const CpuKernels& kernels = cpuKernels();
+    const bool all = want_ != Want::volume;
+    (all ? kernels.sumAll : kernels.sumVolumes)(setup_, from_a_, candidates, tally_);
+    if (tally_.pairs > 0) add(all ? core::kTerms : core::kVolumeTerms);
+    if (wantsHits(want_)) write(candidates);
+    candidates.count = 0;
+    return true;
+  }
+
+  const core::Sums& sums() const { return sums_; }
+
+ private:
+  void add(int terms) {
+    sums_.pairs += tally_.pairs;
+    tally_.pairs = 0;
+    for (int i = 0; i < terms; ++i) {
+      const core::FixedSum sum = toFixed(tally_.terms[static_cast<std::size_t>(i)], unitOf(setup_.units, i));
+      sums_.terms[i] = sums_.terms[i] + sum;
+    }
+  }
+
+  void write(const Candidates& candidates) {
+    const auto& as = from_a_ ? candidates.walker : candidates.partner;
+    const auto& bs = from_a_ ? candidates.partner : candidates.walker;
+    for (std::size_t k = 0; k < candidates.count; ++k) {
+      if (tally_.hit[k]) writer_.add({index_, setup_.a.grid.ids[as[k]], setup_.b.grid.ids[bs[k]]});
+    }
+  }
+
+  const core::Setup& setup_;
+  std::uint32_t index_;
+  Want want_;
+  HitWriter& writer_;
+  bool from_a_ = true;
+  Tally tally_;
+  core::Sums sums_;
+};
+
+/// Stops at the first pair that overlaps.
+class CpuBackend::Toucher : public CandidateSink {
+ public:
+  Toucher(const core::Setup& setup, core::Sums& total) : setup_(setup), touched_(total.pairs) {}
+
+  void setFromA(bool from_a) { from_a_ = from_a; }
+  bool done() const { return touched_.load(std::memory_order_relaxed) != 0; }
+
+  bool take(Candidates& candidates) override {
+    const auto& as = from_a_ ? candidates.walker : candidates.partner;
+    const auto& bs = from_a_ ? candidates.partner : candidates.walker;
+    for (std::size_t k = 0; k < candidates.count; ++k) {
+      const core::Pair pair =
+          core::makePair(setup_.frame, setup_.a.grid.spheres[as[k]], setup_.b.grid.spheres[bs[k]]);
+      if (core::isHit(pair, from_a_)) touched_.store(1, std::memory_order_relaxed);
+    }
+    candidates.count = 0;
+    return !done();
+  }
+
+ private:
+  const core::Setup& setup_;
+  std::atomic_ref<std::uint64_t> touched_;
+  bool from_a_ = true;
+};
+
 void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin,
                            std::size_t end, Want want, core::Sums& total, HitWriter& writer) {
   const core::Setup& setup = query.setup;
-  const auto forHits = [&](std::size_t cluster, const auto& visit) {
-    const auto number = static_cast<std::uint32_t>(cluster);
-    const bool from_a = core::isFromA(setup, number);
-    core::walkCandidates(setup, number, 0, 1, [&](std::uint32_t a, std::uint32_t b) {
-      core::Pair pair;
-      return !core::isHit(setup, from_a, a, b, pair) || visit(a, b, pair);
-    });
-  };
+  const CpuKernels& kernels = cpuKernels();
+  const std::size_t split = std::clamp<std::size_t>(setup.a.clusters, begin, end);
+  Candidates candidates;
   if (want == Want::touch) {
-    const std::atomic_ref<unsigned long long> touched(total.pairs);
-    for (std::size_t cluster = begin; cluster < end && touched.load(std::memory_order_relaxed) == 0;
-         ++cluster) {
-      forHits(cluster, [&](std::uint32_t, std::uint32_t, const core::Pair&) {
-        touched.store(1, std::memory_order_relaxed);
-        return false;
-      });
+    Toucher toucher(setup, total);
+    for (std::size_t cluster = begin; cluster < end && !toucher.done(); ++cluster) {
+      const bool from_a = cluster < split;
+      toucher.setFromA(from_a);
+      const core::Walker walker = core::walkerOf(setup, from_a);
+      const core::Cluster& own = walker.own.clusters[cluster - (from_a ? 0 : setup.a.clusters)];
+      const Columns& columns = (from_a ? query.grid_b : query.grid_a)->columns();
+      if (!kernels.walk(walker, columns, own, candidates, toucher) || !toucher.take(candidates)) return;
     }
     return;
   }
-  core::Sums sums;
-  sums.clear();
-  const bool wrench = want != Want::volume, collect = wantsHits(want);
-  for (std::size_t cluster = begin; cluster < end; ++cluster) {
-    forHits(cluster, [&](std::uint32_t a, std::uint32_t b, const core::Pair& pair) {
-      sums.add(pair, setup.shifts, wrench);
-      if (collect) writer.add({index, setup.a.grid.ids[a], setup.b.grid.ids[b]});
-      return true;
-    });
+  Summer summer(query, index, want, writer);
+  for (const bool from_a : {true, false}) {
+    summer.setFromA(from_a);
+    const core::Walker walker = core::walkerOf(setup, from_a);
+    const Columns& columns = (from_a ? query.grid_b : query.grid_a)->columns();
+    const std::size_t before = from_a ? 0 : setup.a.clusters;
+    for (std::size_t c = from_a ? begin : split; c < (from_a ? split : end); ++c)
+      kernels.walk(walker, columns, walker.own.clusters[c - before], candidates, summer);
+    summer.take(candidates);
   }
-  if (sums.pairs == 0) return;
+  if (summer.sums().pairs == 0) return;
   const tbb::spin_mutex::scoped_lock lock(locks_[index % locks_.size()]);
-  total.add(sums);
+  total.add(summer.sums());
 }
 
 }  // namespace innersphere

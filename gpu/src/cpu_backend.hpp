@@ -19,6 +19,8 @@ class CpuBackend : public WalkBackend {
 
  private:
   class HitWriter;
+  class Summer;
+  class Toucher;
   void walkRange(const std::vector<PreparedQuery>& queries, std::size_t begin, std::size_t end, Want want,
                  std::vector<core::Sums>& sums, Hits& hits);
   void walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin, std::size_t end,

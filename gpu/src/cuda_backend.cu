@@ -1,10 +1,11 @@
-// The walk on an NVIDIA GPU: one launch for a whole batch, a warp for each cluster of 32 neighbouring
-// spheres, a lane for each sphere. The lanes run the same functions as the CPU.
+// The walk on an NVIDIA GPU: one launch for a whole batch. A warp takes some clusters of one query, one after
+// the other, a lane for each sphere.
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <vector>
 
+#include "core/sums.hpp"
 #include "core/walk.hpp"
 #include "cuda_backend.hpp"
 #include "cuda_grid.hpp"
@@ -15,137 +16,437 @@ namespace innersphere {
 namespace {
 
 constexpr unsigned kWarp = 32;
-constexpr unsigned kBlock = 128;
+constexpr unsigned kAll = 0xffffffffu;
 static_assert(core::kClusterSize == kWarp, "a warp walks one cluster");
+constexpr unsigned kLargestJob = 32;          ///< clusters
+constexpr unsigned kWarpsPerProcessor = 128;  ///< that there should be, at least
+constexpr unsigned kMostParts = 8;            ///< jobs that share a cluster where there are few clusters
+constexpr unsigned kPartners = 128;           ///< spheres near a cluster that are kept before they are tested
+constexpr unsigned kUnroll = 8;               ///< partners that are tested at once
+constexpr unsigned kQueue = 2 * kWarp;        ///< candidates
+static_assert(kPartners + 2 <= (3u << (core::kShortSumBits - 7)),
+              "partners that are tested add so many rounds");
+constexpr unsigned kRoundsPerSum = 1u << (core::kShortSumBits - 5);  ///< each of which adds a warp's terms
+constexpr std::uint32_t kFromA = 1u << 31;                           ///< of a candidate's walker
 
-constexpr unsigned kQueue = 256;  ///< candidates that a warp keeps before it tests them together
+/// The sum of one term as three numbers that any number of warps can add to without a carry between them.
+struct Limbs {
+  unsigned long long fine;         ///< in units of the quantum
+  unsigned long long coarse_low;   ///< in units of 2^fine_bits quanta
+  unsigned long long coarse_high;  ///< in units of 2^(fine_bits + 32)
+};
+
+struct DeviceSums {
+  unsigned long long pairs;
+  Limbs terms[core::kTerms];
+};
+
+void toSums(const DeviceSums& from, const core::Units& units, core::Sums& to) {
+  to.pairs = from.pairs;
+  for (int i = 0; i < core::kTerms; ++i) {
+    const Limbs& limbs = from.terms[i];
+    const int bits = unitOf(units, i).fine_bits;
+    const auto part = [](unsigned long long x, int shift) {
+      const core::FixedSum low = core::shifted(static_cast<std::int64_t>(x), shift % 64);
+      return shift < 64 ? low : core::FixedSum{0, low.lo};
+    };
+    to.terms[i] = part(limbs.fine, 0) + part(limbs.coarse_low, bits) + part(limbs.coarse_high, bits + 32);
+  }
+}
 
 /// Arguments of the launch; pointers to the device.
 struct Batch {
   const core::Setup* setups;
-  const unsigned long long* first;  ///< clusters of all queries before each
+  const unsigned long long* first;  ///< jobs of all queries before each
   unsigned count;
-  bool wrench;
-  core::Sums* sums;
+  unsigned job_size;  ///< clusters
+  unsigned parts;     ///< jobs that share a cluster
+  DeviceSums* sums;
   Hit* hits;
   unsigned long long capacity;  ///< of hits
   unsigned long long* found;    ///< hits, also those beyond the capacity; null if none are wanted
 };
 
+/// What a launch computes.
+enum class Goal { touch, volume, wrench };
+
+template <Goal goal>
+constexpr int kTermCount = goal == Goal::wrench   ? core::kTerms
+                           : goal == Goal::volume ? core::kVolumeTerms
+                                                  : 1;
+
 /// What a warp works on.
 struct Job {
   unsigned query;
-  std::uint32_t cluster;
+  std::uint32_t first;  ///< cluster, of all of A's and then all of B's
+  unsigned part;        ///< of the lookups of each cluster
 };
 
-/// False if there is nothing left for this warp.
-__device__ bool findJob(const Batch& batch, Job& job) {
-  const unsigned long long warp =
-      (static_cast<unsigned long long>(blockIdx.x) * kBlock + threadIdx.x) / kWarp;
-  if (warp >= batch.first[batch.count]) return false;
+__device__ Job findJob(const Batch& batch) {
   unsigned lo = 0, hi = batch.count;
   while (hi - lo > 1) {
     const unsigned middle = lo + (hi - lo) / 2;
-    (batch.first[middle] <= warp ? lo : hi) = middle;
+    (batch.first[middle] <= blockIdx.x ? lo : hi) = middle;
   }
-  job = {lo, static_cast<std::uint32_t>(warp - batch.first[lo])};
+  const auto number = static_cast<std::uint32_t>(blockIdx.x - batch.first[lo]);
+  return {lo, number / batch.parts * batch.job_size, number % batch.parts};
+}
+
+/// The sum over this lane and all before it.
+__device__ unsigned scan(unsigned x, unsigned lane) {
+  for (unsigned step = 1; step < kWarp; step *= 2) {
+    const unsigned before = __shfl_up_sync(kAll, x, step);
+    if (lane >= step) x += before;
+  }
+  return x;
+}
+
+/// The first lane whose scanned number is above x.
+__device__ unsigned laneOf(unsigned scanned, unsigned x) {
+  unsigned lane = 0;
+  for (unsigned step = kWarp / 2; step > 0; step /= 2) {
+    if (__shfl_sync(kAll, scanned, lane + step - 1) <= x) lane += step;
+  }
+  return lane;
+}
+
+__device__ unsigned warpOr(unsigned x) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_or_sync(kAll, x);
+#else
+  for (unsigned step = kWarp / 2; step > 0; step /= 2) x |= __shfl_xor_sync(kAll, x, step);
+  return x;
+#endif
+}
+
+__device__ float warpMin(float x) {
+  for (unsigned step = kWarp / 2; step > 0; step /= 2) x = fminf(x, __shfl_xor_sync(kAll, x, step));
+  return x;
+}
+__device__ float warpMax(float x) {
+  return -warpMin(-x);
+}
+
+__device__ float squaredLength(float x, float y, float z) {
+  return __fmaf_rn(x, x, __fmaf_rn(y, y, z * z));
+}
+
+/// Memory of one warp.
+struct Scratch {
+  struct Walk {
+    float4 partners[kPartners];  ///< spheres near the cluster, relative to the centre of the grid
+    std::uint32_t places[kPartners];
+    std::uint32_t runs[kWarp];  ///< for those that hold something: place of the first, less spheres before it
+  };
+  union {
+    Walk walk;
+    unsigned long long columns[core::kTerms][kWarp + 1];
+  };
+  uint2 queue[kQueue];  ///< candidates: places of walker and partner
+};
+
+/// Sums of one lane.
+template <int kTerms>
+struct LaneSums {
+  core::ShortSum terms[kTerms];
+  unsigned pairs;
+  __device__ void clear() {
+    pairs = 0;
+#pragma unroll
+    for (int i = 0; i < kTerms; ++i) terms[i] = {0, 0};
+  }
+};
+
+/// The sum of one column of numbers, a row for each lane, in the lanes 2 i and 2 i + 1 for the column i.
+template <int kTerms>
+__device__ unsigned long long sumColumns(Scratch& scratch, unsigned lane) {
+  __syncwarp();
+  unsigned long long sum = 0;
+  if (lane / 2 < kTerms) {
+    for (unsigned k = 0; k < kWarp / 2; ++k) sum += scratch.columns[lane / 2][2 * k + (lane & 1)];
+  }
+  __syncwarp();
+  return sum + __shfl_xor_sync(kAll, sum, 1);
+}
+
+/// Adds the sums of all lanes to those of the query, and clears them.
+template <int kTerms>
+__device__ void addWarp(DeviceSums& total, const core::Units& units, LaneSums<kTerms>& sums, Scratch& scratch,
+                        unsigned lane) {
+  if (!__any_sync(kAll, sums.pairs != 0)) return;
+  unsigned pairs = sums.pairs;
+  for (unsigned step = kWarp / 2; step > 0; step /= 2) pairs += __shfl_xor_sync(kAll, pairs, step);
+  if (lane == 0) atomicAdd(&total.pairs, static_cast<unsigned long long>(pairs));
+  __syncwarp();
+#pragma unroll
+  for (int i = 0; i < kTerms; ++i) scratch.columns[i][lane] = sums.terms[i].coarse;
+  unsigned long long coarse = sumColumns<kTerms>(scratch, lane);
+#pragma unroll
+  for (int i = 0; i < kTerms; ++i) scratch.columns[i][lane] = sums.terms[i].fine;
+  const auto fine = static_cast<long long>(sumColumns<kTerms>(scratch, lane));
+  sums.clear();
+  const int term = static_cast<int>(lane / 2);
+  if (term >= kTerms) return;
+  const int bits = unitOf(units, term).fine_bits;
+  coarse += static_cast<unsigned long long>(fine >> bits);
+  Limbs& limbs = total.terms[term];
+  if (lane & 1) {
+    atomicAdd(&limbs.fine, static_cast<unsigned long long>(fine) & ((1ull << bits) - 1));
+    atomicAdd(&limbs.coarse_low, coarse & 0xffffffffu);
+  } else {
+    atomicAdd(&limbs.coarse_high, static_cast<unsigned long long>(static_cast<long long>(coarse) >> 32));
+  }
+}
+
+/// Decides one candidate and adds it if it counts. Returns whether it does.
+template <Goal goal>
+__device__ bool addCandidate(const Batch& batch, const core::Setup& setup, unsigned query, uint2 candidate,
+                             LaneSums<kTermCount<goal>>& sums) {
+  const bool from_a = candidate.x & kFromA;
+  const std::uint32_t walker = candidate.x & ~kFromA;
+  const std::uint32_t ia = from_a ? walker : candidate.y, ib = from_a ? candidate.y : walker;
+  const core::Pair pair = core::makePair(setup.frame, setup.a.grid.spheres[ia], setup.b.grid.spheres[ib]);
+  if (!core::isHit(pair, from_a)) return false;
+  ++sums.pairs;
+  if (goal == Goal::touch) return true;
+  const core::Terms terms = core::makeTerms<goal == Goal::wrench>(pair);
+#pragma unroll
+  for (int i = 0; i < kTermCount<goal>; ++i) core::add(sums.terms[i], terms.terms[i], unitOf(setup.units, i));
+  if (goal == Goal::wrench && batch.found) {
+    const unsigned long long at = atomicAdd(batch.found, 1ull);
+    if (at < batch.capacity) batch.hits[at] = {query, setup.a.grid.ids[ia], setup.b.grid.ids[ib]};
+  }
   return true;
 }
 
-/// Integer addition in two halves; the order of the additions does not matter to the result.
-__device__ void atomicAddFixed(core::FixedSum& sum, const core::FixedSum& x) {
-  const unsigned long long before = atomicAdd(&sum.lo, x.lo);
-  const unsigned long long carry = before + x.lo < before ? 1 : 0;
-  if (x.hi + carry != 0) atomicAdd(&sum.hi, x.hi + carry);
-}
+/// A cluster, seen from the other grid: a lane for each sphere.
+struct LaneWalker {
+  core::Vec3f p;
+  float reach;          ///< radius with all margins and tolerances
+  core::Vec3f lo, hi;   ///< around the centres of all lanes
+  float largest_reach;  ///< of all lanes
+};
 
-/// Adds the sums of all lanes of a warp to those of the query.
-__device__ void addWarp(core::Sums& total, core::Sums sums, int terms) {
-  constexpr unsigned kAll = 0xffffffffu;
-  if (!__any_sync(kAll, sums.pairs != 0)) return;
-  const bool leader = threadIdx.x % kWarp == 0;
-  for (unsigned step = kWarp / 2; step > 0; step /= 2) sums.pairs += __shfl_down_sync(kAll, sums.pairs, step);
-  if (leader) atomicAdd(&total.pairs, sums.pairs);
-#pragma unroll
-  for (int i = 0; i < core::kTerms; ++i) {
-    if (i >= terms) continue;
-    core::FixedSum sum = sums.terms[i];
-    for (unsigned step = kWarp / 2; step > 0; step /= 2) {
-      sum = sum + core::FixedSum{__shfl_down_sync(kAll, sum.lo, step), __shfl_down_sync(kAll, sum.hi, step)};
+/// False if none of its spheres can meet one of the grid.
+__device__ bool makeWalker(const core::Walker& walker, const core::Cluster& cluster, unsigned lane,
+                           LaneWalker& own) {
+  const float infinity = __int_as_float(0x7f800000);
+  own.p = {infinity, infinity, infinity};
+  own.reach = 0;
+  bool meets = false;
+  if (lane < cluster.count) {
+    const core::Probe probe = core::makeProbe(walker.search, walker.own.spheres[cluster.first + lane]);
+    const float reach = probe.radius + walker.search.grid_margin + walker.search.tolerance;
+    meets = core::meetsBounds(walker.grid, probe.p, reach);
+    if (meets) {
+      own.p = probe.p;
+      own.reach = reach;
     }
-    if (leader) atomicAddFixed(total.terms[i], sum);
   }
+  if (!__any_sync(kAll, meets)) return false;
+  own.lo = {warpMin(own.p.x), warpMin(own.p.y), warpMin(own.p.z)};
+  own.hi = {warpMax(meets ? own.p.x : -infinity), warpMax(meets ? own.p.y : -infinity),
+            warpMax(meets ? own.p.z : -infinity)};
+  own.largest_reach = warpMax(own.reach);
+  return true;
 }
 
-/// Tests one candidate and adds it if it overlaps.
-__device__ void addCandidate(const Batch& batch, const Job& job, std::uint32_t a, std::uint32_t b,
-                             core::Sums& sums) {
+/// A run of spheres.
+struct Run {
+  std::uint32_t first, count;
+};
+
+/// The blocks near a cluster on all levels, numbered through. Lane l knows those of level l.
+struct Lookups {
+  core::CellBox box;
+  unsigned scanned;  ///< blocks of this level and all finer ones
+  bool whole;        ///< this level counts as one block
+  unsigned total;
+};
+static_assert(core::kAxisBits + 2 <= static_cast<int>(kWarp), "a lane for each level");
+
+__device__ Lookups makeLookups(const core::Walker& walker, const core::Cluster& cluster,
+                               const LaneWalker& own, unsigned lane) {
+  const core::GridView& grid = walker.grid;
+  const float r = own.largest_reach;
+  const core::Vec3f lo = own.lo - core::Vec3f{r, r, r}, hi = own.hi + core::Vec3f{r, r, r};
+  Lookups lookups{};
+  unsigned count = 0;
+  const int l = static_cast<int>(lane);
+  if (l >= core::firstLevel(walker, cluster) && l < grid.level_count) {
+    const core::Level level = grid.levels[l];
+    if (level.count != 0 && core::blockBox(grid, level, walker.search, lo, hi, lookups.box)) {
+      std::uint64_t blocks = 1;
+      for (int axis = 0; axis < 3; ++axis) blocks *= lookups.box.hi[axis] - lookups.box.lo[axis] + 1;
+      lookups.whole = blocks >= level.blocks;
+      count = lookups.whole ? 1 : static_cast<unsigned>(blocks);
+    }
+  }
+  lookups.scanned = scan(count, lane);
+  lookups.total = __shfl_sync(kAll, lookups.scanned, kWarp - 1);
+  return lookups;
+}
+
+/// The run of the block number `number`. All lanes call it together.
+__device__ Run lookUp(const core::GridView& grid, const Lookups& lookups, unsigned number) {
+  const unsigned level = laneOf(lookups.scanned, number);
+  const unsigned x0 = __shfl_sync(kAll, lookups.box.lo[0], level),
+                 x1 = __shfl_sync(kAll, lookups.box.hi[0], level);
+  const unsigned y0 = __shfl_sync(kAll, lookups.box.lo[1], level),
+                 y1 = __shfl_sync(kAll, lookups.box.hi[1], level);
+  const unsigned z0 = __shfl_sync(kAll, lookups.box.lo[2], level);
+  const bool whole = __shfl_sync(kAll, lookups.whole, level);
+  const unsigned finer = __shfl_sync(kAll, lookups.scanned, level > 0 ? level - 1 : 0);
+  const unsigned start = level > 0 ? finer : 0;
+  if (number >= lookups.total) return {0, 0};
+  if (whole) return {grid.levels[level].first, grid.levels[level].count};
+  const unsigned at = number - start, nx = x1 - x0 + 1, ny = y1 - y0 + 1;
+  const unsigned row = at / nx;
+  const core::Block block = core::findBlock(
+      grid, core::blockKey(static_cast<int>(level), x0 + at % nx, y0 + row % ny, z0 + row / ny));
+  return {block.first, block.count};
+}
+
+/// Walks a job. The lanes find candidates at different times; they are queued, and decided side by side.
+template <Goal goal>
+__global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ Batch batch) {
+  __shared__ Scratch scratch;
+  const unsigned lane = threadIdx.x;
+  const Job job = findJob(batch);
   const core::Setup& setup = batch.setups[job.query];
-  core::Pair pair;
-  if (!core::isHit(setup, core::isFromA(setup, job.cluster), a, b, pair)) return;
-  sums.add(pair, setup.shifts, batch.wrench);
-  if (!batch.found) return;
-  const unsigned long long at = atomicAdd(batch.found, 1ull);
-  if (at < batch.capacity) batch.hits[at] = {job.query, setup.a.grid.ids[a], setup.b.grid.ids[b]};
-}
+  DeviceSums& total = batch.sums[job.query];
+  if (goal == Goal::touch && *static_cast<volatile unsigned long long*>(&total.pairs) != 0) return;
 
-/// For the rare candidate that finds the queue full. Apart, so that it does not take registers from the walk.
-__device__ __noinline__ void addAtOnce(const Batch& batch, const Job& job, std::uint32_t a, std::uint32_t b) {
-  core::Sums sums;
+  const std::uint32_t clusters = setup.a.clusters + setup.b.clusters;
+  bool active = false;
+  if (lane < batch.job_size && job.first + lane < clusters) {
+    const std::uint32_t number = job.first + lane;
+    const bool from_a = core::isFromA(setup, number);
+    const core::Walker walker = core::walkerOf(setup, from_a);
+    active = core::clusterMeets(walker, walker.own.clusters[from_a ? number : number - setup.a.clusters]);
+  }
+
+  LaneSums<kTermCount<goal>> sums;
   sums.clear();
-  addCandidate(batch, job, a, b, sums);
-  core::Sums& total = batch.sums[job.query];
-  if (sums.pairs == 0) return;
-  atomicAdd(&total.pairs, sums.pairs);
-  for (int i = 0; i < core::kTerms; ++i) atomicAddFixed(total.terms[i], sums.terms[i]);
-}
+  unsigned queued = 0, rounds = 0;
+  for (unsigned left = __ballot_sync(kAll, active); left != 0; left &= left - 1) {
+    const bool last_cluster = (left & (left - 1)) == 0;
+    const std::uint32_t number = job.first + static_cast<std::uint32_t>(__ffs(static_cast<int>(left)) - 1);
+    const bool from_a = core::isFromA(setup, number);
+    const core::Walker walker = core::walkerOf(setup, from_a);
+    const core::Cluster cluster = walker.own.clusters[from_a ? number : number - setup.a.clusters];
+    const std::uint32_t self = (cluster.first + lane) | (from_a ? kFromA : 0);
+    const core::Vec3f centre = walker.grid.centre;
+    LaneWalker own;
+    Lookups lookups{};
+    if (makeWalker(walker, cluster, lane, own)) lookups = makeLookups(walker, cluster, own, lane);
 
-/// The lanes of a warp find candidates at different times. They queue them, and then evaluate them side by
-/// side.
-__global__ void __launch_bounds__(kBlock) walkBatch(const __grid_constant__ Batch batch) {
-  __shared__ uint2 queues[kBlock / kWarp][kQueue];
-  __shared__ unsigned sizes[kBlock / kWarp];
-  uint2* queue = queues[threadIdx.x / kWarp];
-  unsigned* size = &sizes[threadIdx.x / kWarp];
-  const unsigned lane = threadIdx.x % kWarp;
-  Job job;
-  if (!findJob(batch, job)) return;
-  if (lane == 0) *size = 0;
-  __syncwarp();
-  core::walkCandidates(batch.setups[job.query], job.cluster, lane, kWarp,
-                       [&](std::uint32_t a, std::uint32_t b) {
-                         const unsigned at = atomicAdd(size, 1u);
-                         if (at < kQueue) {
-                           queue[at] = {a, b};
-                         } else {
-                           addAtOnce(batch, job, a, b);
-                         }
-                         return true;
-                       });
-  __syncwarp();
-  core::Sums sums;
-  sums.clear();
-  const unsigned queued = min(*size, kQueue);
-  for (unsigned k = lane; k < queued; k += kWarp) addCandidate(batch, job, queue[k].x, queue[k].y, sums);
-  __syncwarp();
-  addWarp(batch.sums[job.query], sums, batch.wrench ? core::kTerms : core::kVolumeTerms);
-}
-
-/// Want::touch: sets the pair count to 1 at the first hit, and then the other warps of the query have nothing
-/// to do.
-__global__ void __launch_bounds__(kBlock) touchBatch(const __grid_constant__ Batch batch) {
-  Job job;
-  if (!findJob(batch, job)) return;
-  unsigned long long* touched = &batch.sums[job.query].pairs;
-  if (*static_cast<volatile unsigned long long*>(touched) != 0) return;
-  const core::Setup& setup = batch.setups[job.query];
-  const bool from_a = core::isFromA(setup, job.cluster);
-  core::walkCandidates(setup, job.cluster, threadIdx.x % kWarp, kWarp, [&](std::uint32_t a, std::uint32_t b) {
-    core::Pair pair;
-    if (!core::isHit(setup, from_a, a, b, pair)) return true;
-    atomicExch(touched, 1ull);
-    return false;
-  });
+    const unsigned end = lookups.total * (job.part + 1) / batch.parts;
+    unsigned partners = 0;
+    for (unsigned begin = lookups.total * job.part / batch.parts;; begin += kWarp) {
+      Run run{0, 0};
+      if (begin < end) {
+        run = lookUp(walker.grid, lookups, begin + lane);
+        if (begin + lane >= end) run.count = 0;
+      }
+      const unsigned scanned = scan(run.count, lane);
+      const unsigned spheres = __shfl_sync(kAll, scanned, kWarp - 1);
+      const bool last_blocks = begin + kWarp >= end;
+      const unsigned start = scanned - run.count;
+      const unsigned filled = __ballot_sync(kAll, run.count != 0);
+      __syncwarp();
+      if (run.count != 0) scratch.walk.runs[__popc(filled & ((1u << lane) - 1))] = run.first - start;
+      __syncwarp();
+      unsigned runs = 0;  // that begin before s
+      for (unsigned s = 0;; s += kWarp) {
+        if (s < spheres) {  // keep what is near the cluster's box
+          const bool begins = run.count != 0 && start >= s && start < s + kWarp;
+          const unsigned heads = warpOr(begins ? 1u << (start - s) : 0);
+          const unsigned number = runs + __popc(heads & (kAll >> (kWarp - 1 - lane))) - 1;
+          runs += __popc(heads);
+          const unsigned place = scratch.walk.runs[number] + s + lane;
+          bool near = s + lane < spheres;
+          float4 partner{};
+          if (near) {
+            const Sphere sphere = walker.grid.spheres[place];
+            partner = {sphere.x - centre.x, sphere.y - centre.y, sphere.z - centre.z, sphere.radius};
+            const float dx = fmaxf(fmaxf(own.lo.x - partner.x, partner.x - own.hi.x), 0.0f);
+            const float dy = fmaxf(fmaxf(own.lo.y - partner.y, partner.y - own.hi.y), 0.0f);
+            const float dz = fmaxf(fmaxf(own.lo.z - partner.z, partner.z - own.hi.z), 0.0f);
+            const float sum = partner.w + own.largest_reach;
+            near = !(squaredLength(dx, dy, dz) > sum * sum);
+          }
+          const unsigned all_near = __ballot_sync(kAll, near);
+          if (near) {
+            const unsigned at = partners + __popc(all_near & ((1u << lane) - 1));
+            scratch.walk.partners[at] = partner;
+            scratch.walk.places[at] = place;
+          }
+          partners += __popc(all_near);
+        }
+        const bool last_spheres = s + kWarp >= spheres;
+        const bool cluster_done = last_blocks && last_spheres;
+        const bool flush = cluster_done && last_cluster;
+        if (partners + kWarp > kPartners || cluster_done) {
+          __syncwarp();
+          unsigned at = 0;
+          do {
+            const unsigned count = min(kWarp, partners - at);
+            unsigned near = 0;
+            for (unsigned k = 0; k < count; k += kUnroll) {
+              unsigned some = 0;
+#pragma unroll
+              for (unsigned i = 0; i < kUnroll; ++i) {  // past the end is what was there before
+                const float4 partner = scratch.walk.partners[at + k + i];
+                const float sum = partner.w + own.reach;
+                const float gap2 =
+                    squaredLength(partner.x - own.p.x, partner.y - own.p.y, partner.z - own.p.z);
+                if (!(gap2 > sum * sum)) some |= 1u << i;
+              }
+              near |= some << k;
+            }
+            if (count < kWarp) near &= (1u << count) - 1;
+            while (true) {
+              const unsigned finders = __ballot_sync(kAll, near != 0);
+              if (near != 0) {
+                const unsigned k = static_cast<unsigned>(__ffs(static_cast<int>(near)) - 1);
+                near &= near - 1;
+                scratch.queue[queued + __popc(finders & ((1u << lane) - 1))] = {self,
+                                                                                scratch.walk.places[at + k]};
+              }
+              queued += __popc(finders);
+              const bool drain = flush && finders == 0 && at + kWarp >= partners && queued > 0;
+              if (queued >= kWarp || drain) {
+                __syncwarp();
+                const unsigned taken = min(queued, kWarp);
+                queued -= taken;
+                bool hit = false;
+                if (lane < taken)
+                  hit = addCandidate<goal>(batch, setup, job.query, scratch.queue[queued + lane], sums);
+                if (goal == Goal::touch && __any_sync(kAll, hit)) {
+                  if (lane == 0) atomicExch(&total.pairs, 1ull);
+                  return;
+                }
+                __syncwarp();
+                ++rounds;
+              }
+              if (finders == 0 && !(drain && queued > 0)) break;
+            }
+            at += kWarp;
+          } while (at < partners);
+          partners = 0;
+          if (goal != Goal::touch && rounds > kRoundsPerSum / 4) {
+            addWarp(total, setup.units, sums, scratch, lane);
+            rounds = 0;
+          }
+          __syncwarp();
+        }
+        if (last_spheres) break;
+      }
+      if (last_blocks) break;
+    }
+  }
+  if (goal != Goal::touch) addWarp(total, setup.units, sums, scratch, lane);
 }
 
 class CudaBackend : public WalkBackend {
@@ -161,22 +462,21 @@ class CudaBackend : public WalkBackend {
     sums.resize(queries.size());
     for (core::Sums& sum : sums) sum.clear();
     hits.count = 0;
-    std::size_t clusters = 0;
-    for (const PreparedQuery& query : queries) clusters += query.clusters();
-    if (clusters == 0) return;
+    if (countJobs(queries) == 0) return;
 
     Layout layout(queries.size());
     host_.reserve(layout.size);
     device_memory_.reserve(layout.size);
     gather(queries, layout);
     while (true) {
-      launch(layout, queries.size(), clusters, want);
+      launch(layout, queries.size(), want);
       if (!wantsHits(want)) break;
       hits.count = *layout.found(host_.data());
       if (hits.count <= device_hits_.capacity()) break;
       device_hits_.reserve(hits.count);  // now the room that is needed is known: walk again
     }
-    std::copy_n(layout.sums(host_.data()), sums.size(), sums.begin());
+    for (std::size_t q = 0; q < queries.size(); ++q)
+      toSums(layout.sums(host_.data())[q], queries[q].setup.units, sums[q]);
     if (hits.items.size() < hits.count) hits.items.resize(hits.count);
     if (hits.count > 0) {
       copyAsync(hits.items.data(), device_hits_.data(), hits.count, stream_);
@@ -190,11 +490,11 @@ class CudaBackend : public WalkBackend {
   struct Layout {
     explicit Layout(std::size_t count)
         : at_sums(256),
-          at_first(at_sums + count * sizeof(core::Sums)),
+          at_first(at_sums + count * sizeof(DeviceSums)),
           at_setups((at_first + (count + 1) * sizeof(unsigned long long) + 15) / 16 * 16),
           size(at_setups + count * sizeof(core::Setup)) {}
     unsigned long long* found(std::byte* p) const { return reinterpret_cast<unsigned long long*>(p); }
-    core::Sums* sums(std::byte* p) const { return reinterpret_cast<core::Sums*>(p + at_sums); }
+    DeviceSums* sums(std::byte* p) const { return reinterpret_cast<DeviceSums*>(p + at_sums); }
     unsigned long long* first(std::byte* p) const {
       return reinterpret_cast<unsigned long long*>(p + at_first);
     }
@@ -205,24 +505,42 @@ class CudaBackend : public WalkBackend {
   void open() {
     if (stream_) return;
     INNERSPHERE_CUDA(cudaGetDevice(&device_));
+    INNERSPHERE_CUDA(cudaDeviceGetAttribute(&processors_, cudaDevAttrMultiProcessorCount, device_));
     INNERSPHERE_CUDA(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
   }
 
-  /// The queries with their grids on the device, and where the clusters of each begin.
+  /// A job should be long, to add its sums up once, but all multiprocessors should get some.
+  std::size_t countJobs(const std::vector<PreparedQuery>& queries) {
+    std::size_t clusters = 0;
+    for (const PreparedQuery& query : queries) clusters += query.clusters();
+    const std::size_t warps = kWarpsPerProcessor * static_cast<std::size_t>(processors_);
+    if (clusters == 0) return jobs_ = 0;
+    job_size_ = static_cast<unsigned>(std::clamp<std::size_t>(clusters / warps, 1, kLargestJob));
+    parts_ = static_cast<unsigned>(std::clamp<std::size_t>(warps / clusters, 1, kMostParts));
+    jobs_ = 0;
+    for (const PreparedQuery& query : queries) jobs_ += jobsOf(query);
+    return jobs_;
+  }
+
+  std::size_t jobsOf(const PreparedQuery& query) const {
+    return (query.clusters() + job_size_ - 1) / job_size_ * parts_;
+  }
+
+  /// The queries with their grids on the device, and where the jobs of each begin.
   void gather(const std::vector<PreparedQuery>& queries, const Layout& layout) {
     core::Setup* setups = layout.setups(host_.data());
     unsigned long long* first = layout.first(host_.data());
     first[0] = 0;
     for (std::size_t q = 0; q < queries.size(); ++q) {
       setups[q] = queries[q].setup;
-      first[q + 1] = first[q] + queries[q].clusters();
+      first[q + 1] = first[q] + jobsOf(queries[q]);
       if (queries[q].clusters() == 0) continue;
       setups[q].a.grid = viewOnDevice(*queries[q].grid_a, device_, stream_);
       setups[q].b.grid = viewOnDevice(*queries[q].grid_b, device_, stream_);
     }
   }
 
-  void launch(const Layout& layout, std::size_t count, std::size_t clusters, Want want) {
+  void launch(const Layout& layout, std::size_t count, Want want) {
     std::byte* memory = device_memory_.data();
     std::memset(host_.data(), 0, layout.at_first);
     copyAsync(memory, host_.data(), layout.size, stream_);
@@ -230,19 +548,21 @@ class CudaBackend : public WalkBackend {
     batch.setups = layout.setups(memory);
     batch.first = layout.first(memory);
     batch.count = static_cast<unsigned>(count);
-    batch.wrench = want != Want::volume;
+    batch.job_size = job_size_;
+    batch.parts = parts_;
     batch.sums = layout.sums(memory);
     if (wantsHits(want)) {
       batch.hits = device_hits_.data();
       batch.capacity = device_hits_.capacity();
       batch.found = layout.found(memory);
     }
-    constexpr std::size_t kWarps = kBlock / kWarp;
-    const auto blocks = static_cast<unsigned>((clusters + kWarps - 1) / kWarps);
+    const auto jobs = static_cast<unsigned>(jobs_);
     if (want == Want::touch) {
-      touchBatch<<<blocks, kBlock, 0, stream_>>>(batch);
+      walkBatch<Goal::touch><<<jobs, kWarp, 0, stream_>>>(batch);
+    } else if (want == Want::volume) {
+      walkBatch<Goal::volume><<<jobs, kWarp, 0, stream_>>>(batch);
     } else {
-      walkBatch<<<blocks, kBlock, 0, stream_>>>(batch);
+      walkBatch<Goal::wrench><<<jobs, kWarp, 0, stream_>>>(batch);
     }
     INNERSPHERE_CUDA(cudaGetLastError());
     copyAsync(host_.data(), memory, layout.at_first, stream_);
@@ -250,6 +570,10 @@ class CudaBackend : public WalkBackend {
   }
 
   int device_ = 0;
+  int processors_ = 1;
+  unsigned job_size_ = 1;
+  unsigned parts_ = 1;
+  std::size_t jobs_ = 0;  ///< below 2^31, the most that one launch can have
   cudaStream_t stream_ = nullptr;
   PinnedArray<std::byte> host_;
   DeviceArray<std::byte> device_memory_;

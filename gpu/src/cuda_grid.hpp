@@ -16,8 +16,7 @@ class CudaGrid : public DeviceGrid {
     upload(ids_, view_.ids, view_.count, stream);
     upload(clusters_, view_.clusters, view_.cluster_count, stream);
     upload(blocks_, view_.blocks, grid.tableSize(), stream);
-    upload(cells_, view_.cells, grid.cellCount() + 1, stream);
-    upload(entries_, view_.entries, grid.entryCount(), stream);
+    upload(levels_, view_.levels, static_cast<std::size_t>(view_.level_count), stream);
     INNERSPHERE_CUDA(cudaStreamSynchronize(stream));  // other streams may read it from now on
   }
 
@@ -34,9 +33,11 @@ class CudaGrid : public DeviceGrid {
 
   int device_;
   core::GridView view_;
-  DeviceArray<Sphere> spheres_, clusters_;
-  DeviceArray<std::uint32_t> ids_, cells_, entries_;
+  DeviceArray<Sphere> spheres_;
+  DeviceArray<std::uint32_t> ids_;
+  DeviceArray<core::Cluster> clusters_;
   DeviceArray<core::Block> blocks_;
+  DeviceArray<core::Level> levels_;
 };
 
 /// The grid on a device, which must be current; copied there on first use. Safe to call from several threads.

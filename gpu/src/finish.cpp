@@ -9,8 +9,8 @@ namespace innersphere {
 
 namespace {
 
-Vec3d toVec(const core::FixedSum* terms, int shift) {
-  return {core::toDouble(terms[0], shift), core::toDouble(terms[1], shift), core::toDouble(terms[2], shift)};
+Vec3d toVec(const core::FixedSum* terms, const core::Unit& unit) {
+  return {core::toDouble(terms[0], unit), core::toDouble(terms[1], unit), core::toDouble(terms[2], unit)};
 }
 
 std::uint32_t high(std::uint64_t key) {
@@ -27,10 +27,12 @@ SphereContact sumContact(const PreparedQuery& query, const std::uint64_t* keys, 
   core::Vec3r moment{0, 0, 0}, area{0, 0, 0};
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t a = of_b ? low(keys[k]) : high(keys[k]), b = of_b ? high(keys[k]) : low(keys[k]);
-    const core::Pair pair = core::makePair(query.setup, query.grid_a->placeOf(a), query.grid_b->placeOf(b));
+    const core::Pair pair =
+        core::makePair(query.setup.frame, query.setup.a.grid.spheres[query.grid_a->placeOf(a)],
+                       query.setup.b.grid.spheres[query.grid_b->placeOf(b)]);
     const core::Contact contact = core::makeContact(pair);
     volume += contact.lens.volume;
-    moment = moment + contact.lens.volume * core::lensCentroid(pair, contact);
+    moment = moment + core::lensMoment(pair, contact);
     area = area + contact.lens.rim_area * contact.n;
   }
   const core::Vec3r centroid = volume > 0 ? 1 / volume * moment : core::Vec3r{0, 0, 0};
@@ -52,19 +54,19 @@ void clear(QueryResult::Ranges<T>& ranges, std::size_t queries) {
 }  // namespace
 
 Overlap toOverlap(const core::Sums& sums, const core::Setup& setup) {
-  const core::Shifts& shifts = setup.shifts;
+  const core::Units& units = setup.units;
   Overlap overlap;
   overlap.pair_count = sums.pairs;
-  overlap.volume = core::toDouble(sums.terms[core::kVolume], shifts.volume);
+  overlap.volume = core::toDouble(sums.terms[core::kVolume], units.volume);
   if (overlap.volume > 0) {
-    overlap.centroid = toVec(sums.terms + core::kMoment, shifts.moment);
+    overlap.centroid = toVec(sums.terms + core::kMoment, units.moment);
     for (double& c : overlap.centroid) c /= overlap.volume;
   }
-  overlap.force = toVec(sums.terms + core::kForce, shifts.volume);
-  overlap.torque = toVec(sums.terms + core::kTorque, shifts.torque);
-  overlap.area = toVec(sums.terms + core::kArea, shifts.area);
-  overlap.stiffness = core::toDouble(sums.terms[core::kStiffness], shifts.area);
-  overlap.energy = core::toDouble(sums.terms[core::kEnergy], shifts.energy);
+  overlap.force = toVec(sums.terms + core::kForce, units.volume);
+  overlap.torque = toVec(sums.terms + core::kTorque, units.torque);
+  overlap.area = toVec(sums.terms + core::kArea, units.area);
+  overlap.stiffness = core::toDouble(sums.terms[core::kStiffness], units.area);
+  overlap.energy = core::toDouble(sums.terms[core::kEnergy], units.energy);
   return overlap;
 }
 

@@ -1,4 +1,4 @@
-// Builds and owns the hierarchical hash grid of one packing, prefix, set of radii and growth.
+// Builds and owns the hierarchical hash grid of one packing, prefix and set of radii.
 #pragma once
 
 #include <cstdint>
@@ -17,27 +17,31 @@ class DeviceGrid {
   virtual int device() const = 0;
 };
 
-/// Immutable once built. Count, scan, fill: every cell holds exactly the spheres that touch it, so no cell
-/// can overflow. Spheres have one order throughout, also inside a cell, and the grid depends on nothing but
-/// the input.
+/// The spheres in the order of the grid, relative to its centre, an array for each coordinate, so that a CPU
+/// loads several at once. kPadding readable numbers follow the last.
+struct Columns {
+  static constexpr std::size_t kPadding = 32;
+  const float* x;
+  const float* y;
+  const float* z;
+  const float* radius;
+};
+
+/// Immutable once built. Spheres are sorted and the runs that share a block or a cluster are found by
+/// comparing neighbours, so nothing can overflow, and the grid depends on nothing but the input.
 ///
 /// With volume-true radii the spheres of one packing overlap a little and a cell holds a few more; nothing
-/// relies on how many. Greedy packings of a cube, 4,000 and 60,000 spheres: the fullest cell has 9, and 14
-/// with radii grown to the cube's volume. The grid then takes 66 bytes a sphere, its copy of the spheres
-/// included.
+/// relies on how many.
 class HashGrid {
  public:
-  /// `growth`: cells list the spheres as if their radii were larger by so much, so that a query with a margin
-  /// up to that probes no more cells than one without. The number of spheres is 1 to 2^29, coordinates and
-  /// radii up to 1e30.
-  HashGrid(std::vector<Sphere> spheres, float growth);
+  /// The number of spheres is 1 to 2^29, coordinates and radii up to 1e30.
+  explicit HashGrid(std::vector<Sphere> spheres);
 
   /// For the CPU; valid as long as the grid.
   const core::GridView& view() const { return view_; }
+  const Columns& columns() const { return columns_; }
 
-  std::size_t tableSize() const { return blocks_.size(); }
-  std::size_t cellCount() const { return cells_.size() - 1; }
-  std::size_t entryCount() const { return entries_.size(); }
+  std::size_t tableSize() const { return table_.size(); }
 
   /// Where a sphere of the packing is in the grid's order.
   std::uint32_t placeOf(std::uint32_t id) const { return places_[id]; }
@@ -50,19 +54,22 @@ class HashGrid {
   DeviceCopies& deviceCopies() const { return device_copies_; }
 
  private:
-  void measure(float growth);
+  struct Place;
+  void measure();
   void orderSpheres();
-  void boundClusters();
-  void fillCells(float growth);
-  void fillTable(const std::vector<std::uint64_t>& keys);
+  void splitLevels(const std::vector<Place>& places);
+  void makeClusters();
+  void makeColumns();
+  void fillTable();
 
   std::vector<Sphere> spheres_;
   std::vector<std::uint32_t> ids_;
   std::vector<std::uint32_t> places_;
-  std::vector<Sphere> clusters_;
-  std::vector<core::Block> blocks_;
-  std::vector<std::uint32_t> cells_;
-  std::vector<std::uint32_t> entries_;
+  std::vector<core::Level> levels_;
+  std::vector<core::Cluster> clusters_;
+  std::vector<core::Block> table_;
+  std::vector<float> coordinates_;
+  Columns columns_{};
   core::GridView view_{};
   mutable DeviceCopies device_copies_;
 };

@@ -1,11 +1,11 @@
-// The grids of a model: one for each prefix, set of radii and growth that was asked for.
+// The grids of a model: one for each prefix and set of radii that was asked for.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <tuple>
+#include <utility>
 
 #include "hash_grid.hpp"
 #include "innersphere/collision_model.hpp"
@@ -15,15 +15,14 @@ namespace innersphere {
 struct CollisionModel::Impl {
   explicit Impl(std::shared_ptr<const Packing> packing);
 
-  /// The grid for the first `prefix` spheres (0: all), to be queried with margins up to `margin` (in the
-  /// packing's lengths). Built on the first call; later ones return the same. Safe to call from several
-  /// threads at once.
-  const HashGrid& grid(std::uint32_t prefix, Estimator estimator, double margin);
+  /// The grid for the first `prefix` spheres (0: all). Built on the first call; later ones return the same.
+  /// Safe to call from several threads at once.
+  const HashGrid& grid(std::uint32_t prefix, Estimator estimator);
 
   std::shared_ptr<const Packing> packing;
 
  private:
-  using Key = std::tuple<std::uint32_t, const VolumeTrueRadii*, float>;
+  using Key = std::pair<std::uint32_t, const VolumeTrueRadii*>;
   struct Entry {
     std::once_flag built;
     std::unique_ptr<const HashGrid> grid;

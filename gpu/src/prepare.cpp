@@ -89,19 +89,22 @@ Mat3<double> checkedRotation(const Placement& placement, std::size_t index, cons
   return rotation(placement, index, name);
 }
 
-core::Body makeBody(const HashGrid& grid, const Mat3<double>& rotation, double scale, double margin) {
-  return {grid.view(), scaled(rotation, scale), scale, margin, grid.view().cluster_count};
-}
+/// A body while its query is prepared.
+struct Side {
+  const core::GridView& grid;
+  Mat3<double> matrix;
+  double scale;
+  double margin;
+};
 
 /// Centre of a body's grid relative to the body's origin, in world axes.
-Vec3r centreInWorld(const core::Body& body) {
-  const Vec3f& c = body.grid.centre;
-  return body.matrix * Vec3r{c.x, c.y, c.z};
+Vec3r centreInWorld(const Side& side) {
+  const Vec3f& c = side.grid.centre;
+  return side.matrix * Vec3r{c.x, c.y, c.z};
 }
 
 /// `between`: from the origin of the owner of the grid to that of the walker, world axes.
-core::Search makeSearch(const core::Body& walker, const core::Body& owner, const Vec3r& between,
-                        std::size_t index) {
+core::Search makeSearch(const Side& walker, const Side& owner, const Vec3r& between, std::size_t index) {
   const Mat3<double> to_owner = scaled(transposed(owner.matrix), 1 / (owner.scale * owner.scale));
   const Vec3f& centre = owner.grid.centre;
   core::Search search;
@@ -128,43 +131,43 @@ core::Search makeSearch(const core::Body& walker, const core::Body& owner, const
 }
 
 /// The ball around all of a body's spheres.
-bool ballsMeet(const core::Setup& setup) {
-  const core::Body& a = setup.a;
-  const core::Body& b = setup.b;
-  const Vec3r between = setup.offset + (centreInWorld(b) - centreInWorld(a));
-  const double longest = length(setup.offset) + a.scale * a.grid.reach + b.scale * b.grid.reach;
+bool ballsMeet(const Side& a, const Side& b, const Vec3r& offset) {
+  const Vec3r between = offset + (centreInWorld(b) - centreInWorld(a));
+  const double longest = length(offset) + a.scale * a.grid.reach + b.scale * b.grid.reach;
   const double reach =
       a.scale * a.grid.radius + a.margin + b.scale * b.grid.radius + b.margin + 1e-14 * longest;
   return !(length(between) > reach);
 }
 
 /// Whether the ball around the walker's spheres meets the box around those of the grid.
-bool boxMeets(const core::Body& walker, const core::Body& owner, const core::Search& search) {
+bool boxMeets(const Side& walker, const Side& owner, const core::Search& search) {
   const Vec3f& c = walker.grid.centre;
   const core::Probe ball = core::makeProbe(search, {c.x, c.y, c.z, walker.grid.radius});
-  return core::meetsBox(owner.grid, ball.p, ball.radius + search.tolerance);
+  return core::meetsBounds(owner.grid, ball.p, ball.radius + search.grid_margin + search.tolerance);
 }
 
 /// Units small enough to keep the smallest lens and large enough for all spheres to overlap all others,
 /// symmetric in the bodies where the quantity is.
-core::Shifts makeShifts(const core::Body& a, const core::Body& b, std::size_t index) {
+core::Units makeUnits(const Side& a, const Side& b, std::size_t index) {
   const double ra = a.scale * a.grid.largest + a.margin;
   const double rb = b.scale * b.grid.largest + b.margin;
   const double pairs = static_cast<double>(a.grid.count) * static_cast<double>(b.grid.count);
   const double small = std::min(ra, rb);
-  const double area = pairs * 3.2 * small * small;            // pi r^2, and
-  const double volume = pairs * 4.2 * small * small * small;  // 4/3 pi r^3, with room for rounding
+  const double area = 3.2 * small * small;            // pi r^2, and
+  const double volume = 4.2 * small * small * small;  // 4/3 pi r^3, with room for rounding
   const double reach_a = a.scale * a.grid.reach + a.margin;
   const double reach_b = b.scale * b.grid.reach + b.margin;
-  const auto shift = [&](double bound) {
-    if (!(bound > 1e-280) || !(bound < 1e280)) {
+  const auto unit = [&](double bound) {
+    if (!(bound > 1e-270) || !(bound < 1e270)) {
       fail(ErrorCode::bad_argument, index,
            "lengths are too small or too large to be summed; scale the scene towards metres");
     }
-    return core::kFixedBits - (std::ilogb(bound) + 2);
+    const int coarse_shift = core::kCoarseBits - 1 - std::ilogb(bound);
+    const int fine_bits =
+        std::min(core::kFineBits, core::kFixedBits - core::kCoarseBits - std::ilogb(pairs) - 1);
+    return core::Unit{std::ldexp(1.0, coarse_shift), std::ldexp(1.0, fine_bits), coarse_shift, fine_bits};
   };
-  return {shift(volume), shift(volume * reach_a), shift(volume * reach_b), shift(area),
-          shift(volume * (ra + rb))};
+  return {unit(volume), unit(volume * reach_a), unit(volume * reach_b), unit(area), unit(volume * (ra + rb))};
 }
 
 }  // namespace
@@ -182,22 +185,25 @@ PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estim
   }
 
   PreparedQuery prepared;
-  prepared.grid_a = &query.a->impl().grid(query.prefix_a, estimator, local_margin);
-  prepared.grid_b = &query.b->impl().grid(query.prefix_b, estimator, 0);
-  core::Setup& setup = prepared.setup;
-  setup.a = makeBody(*prepared.grid_a, rotation_a, query.placement_a.scale, query.margin);
-  setup.b = makeBody(*prepared.grid_b, rotation_b, query.placement_b.scale, 0);
+  prepared.grid_a = &query.a->impl().grid(query.prefix_a, estimator);
+  prepared.grid_b = &query.b->impl().grid(query.prefix_b, estimator);
+  const double scale_a = query.placement_a.scale, scale_b = query.placement_b.scale;
+  const Side a{prepared.grid_a->view(), scaled(rotation_a, scale_a), scale_a, query.margin};
+  const Side b{prepared.grid_b->view(), scaled(rotation_b, scale_b), scale_b, 0};
   const Vec3d& ta = query.placement_a.translation;
   const Vec3d& tb = query.placement_b.translation;
-  setup.offset = {tb[0] - ta[0], tb[1] - ta[1], tb[2] - ta[2]};
-  setup.shifts = makeShifts(setup.a, setup.b, index);
-  bool may_meet = ballsMeet(setup);
-  if (may_meet) {
-    setup.a_in_b = makeSearch(setup.a, setup.b, -1.0 * setup.offset, index);
-    setup.b_in_a = makeSearch(setup.b, setup.a, setup.offset, index);
-    may_meet = boxMeets(setup.a, setup.b, setup.a_in_b) && boxMeets(setup.b, setup.a, setup.b_in_a);
-  }
-  if (!may_meet) setup.a.clusters = setup.b.clusters = 0;
+  const Vec3r offset{tb[0] - ta[0], tb[1] - ta[1], tb[2] - ta[2]};
+  core::Setup& setup = prepared.setup;
+  setup.a = {a.grid, 0};
+  setup.b = {b.grid, 0};
+  setup.frame = {a.matrix, b.matrix, a.scale, b.scale, a.margin, b.margin, offset};
+  setup.units = makeUnits(a, b, index);
+  if (!ballsMeet(a, b, offset)) return prepared;
+  setup.a_in_b = makeSearch(a, b, -1.0 * offset, index);
+  setup.b_in_a = makeSearch(b, a, offset, index);
+  if (!boxMeets(a, b, setup.a_in_b) || !boxMeets(b, a, setup.b_in_a)) return prepared;
+  setup.a.clusters = a.grid.cluster_count;
+  setup.b.clusters = b.grid.cluster_count;
   return prepared;
 }
 

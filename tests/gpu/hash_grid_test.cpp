@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <set>
 
+#include "core/hilbert.hpp"
 #include "sphere_sets.hpp"
 
 namespace innersphere::test {
@@ -15,95 +19,112 @@ namespace {
 
 using core::Block;
 using core::GridView;
+using core::Level;
 
-struct Cell {
-  int level;
-  long x, y, z;
-};
+using Cell = std::array<std::uint32_t, 3>;
 
-Cell cellOf(std::uint64_t key, int bit) {
-  constexpr int kBits = core::kAxisBits - core::kBlockBits;
-  constexpr std::uint64_t kMask = (1u << kBits) - 1;
-  return {static_cast<int>(key >> (3 * kBits)), static_cast<long>(4 * (key & kMask)) + (bit & 3),
-          static_cast<long>(4 * (key >> kBits & kMask)) + (bit >> 2 & 3),
-          static_cast<long>(4 * (key >> (2 * kBits) & kMask)) + (bit >> 4)};
+/// The cell of the finest level that holds the centre.
+Cell cellOf(const GridView& view, const Sphere& s) {
+  const core::Vec3f p = core::Vec3f{s.x, s.y, s.z} - view.centre;
+  core::CellBox box{};
+  EXPECT_TRUE(core::cellBox(view, p, p, box));
+  return {box.lo[0], box.lo[1], box.lo[2]};
 }
 
-/// Checks everything; returns the largest number of spheres in a cell.
-std::size_t expectSound(const HashGrid& grid, const Spheres& spheres, float growth) {
+void expectSoundLevels(const GridView& view) {
+  std::uint32_t first = 0;
+  for (int l = 0; l < view.level_count; ++l) {
+    const Level& level = view.levels[l];
+    if (level.count == 0) continue;
+    EXPECT_EQ(level.first, first);
+    first += level.count;
+    const double cell = std::ldexp(1.0, view.finest + l);
+    float largest = 0;
+    for (std::uint32_t k = level.first; k < first; ++k) {
+      const double r = view.spheres[k].radius;
+      largest = std::max(largest, view.spheres[k].radius);
+      EXPECT_LE(2 * r, cell);
+      if (l > 0) {
+        EXPECT_LT(cell, 4 * r);
+      }
+    }
+    EXPECT_EQ(level.largest, largest);
+    EXPECT_GE(level.block_shift, l);
+  }
+  EXPECT_EQ(first, view.count);
+}
+
+/// Every sphere is in exactly one block, that of its centre, and is found there.
+void expectSoundBlocks(const HashGrid& grid) {
   const GridView& view = grid.view();
-  constexpr std::uint32_t kIndexMask = (1u << core::kIndexBits) - 1;
-  std::map<std::uint32_t, std::vector<Cell>> cells_of;
-  std::map<std::uint32_t, int> first_cells;
-  std::size_t fullest = 0, total = 0, cells = 0;
+  std::vector<bool> seen(view.count, false);
+  std::vector<std::uint32_t> blocks(static_cast<std::size_t>(view.level_count), 0);
+  std::size_t used = 0;
   for (std::size_t slot = 0; slot < grid.tableSize(); ++slot) {
     const Block& block = view.blocks[slot];
-    if (block.occupied == 0) continue;
-    EXPECT_EQ(core::findBlock(view, block.key), &block);
-    for (int bit = 0; bit < 64; ++bit) {
-      if (!(block.occupied >> bit & 1)) continue;
-      const std::uint32_t cell = core::cellIndex(block, bit), begin = view.cells[cell],
-                          end = view.cells[cell + 1];
-      EXPECT_LT(begin, end);
-      ++cells;
-      fullest = std::max<std::size_t>(fullest, end - begin);
-      total += end - begin;
-      for (std::uint32_t e = begin; e < end; ++e) {
-        const std::uint32_t place = view.entries[e] & kIndexMask;
-        if (e > begin) {
-          EXPECT_LT(view.entries[e - 1] & kIndexMask, place);
-        }
-        cells_of[view.ids[place]].push_back(cellOf(block.key, bit));
-        first_cells[view.ids[place]] += view.entries[e] >> core::kIndexBits == 7;
-      }
+    if (block.count == 0) continue;
+    ++used;
+    const int l = static_cast<int>(block.key >> (3 * core::kAxisBits));
+    ASSERT_LT(l, view.level_count);
+    ++blocks[static_cast<std::size_t>(l)];
+    EXPECT_EQ(core::findBlock(view, block.key).first, block.first);
+    for (std::uint32_t k = block.first; k < block.first + block.count; ++k) {
+      ASSERT_LT(k, view.count);
+      EXPECT_FALSE(seen[k]);
+      seen[k] = true;
+      const Cell cell = cellOf(view, view.spheres[k]);
+      const int shift = view.levels[l].block_shift;
+      EXPECT_EQ(core::blockKey(l, cell[0] >> shift, cell[1] >> shift, cell[2] >> shift), block.key);
+      EXPECT_GE(k, view.levels[l].first);
+      EXPECT_LT(k, view.levels[l].first + view.levels[l].count);
     }
   }
-  EXPECT_EQ(cells, grid.cellCount());
-  EXPECT_EQ(total, grid.entryCount());
-  EXPECT_EQ(cells_of.size(), spheres.size());
-  for (const auto& [index, cells] : cells_of) {
-    SCOPED_TRACE(index);
-    const Sphere& s = spheres[index];
-    const double r = s.radius + static_cast<double>(growth),
-                 cell = std::ldexp(1.0, view.finest + cells[0].level);
-    EXPECT_LE(cells.size(), 8u);
-    EXPECT_EQ(first_cells[index], 1);
-    EXPECT_LE(2 * r, cell * (1 + 1e-6));
-    if (cells[0].level > 0) {
-      EXPECT_LT(cell, 4 * r * (1 + 1e-6));
-    }
-    // Every cell that the sphere reaches into by more than rounding is there.
-    const double slack = 1e-6 * view.radius;
-    const double lo[3] = {s.x - view.centre.x - r, s.y - view.centre.y - r, s.z - view.centre.z - r};
-    const double half[3] = {view.half.x, view.half.y, view.half.z};
-    std::set<std::array<long, 3>> found;
-    for (const Cell& c : cells) {
-      EXPECT_EQ(c.level, cells[0].level);
-      found.insert({c.x, c.y, c.z});
-    }
-    EXPECT_EQ(found.size(), cells.size());
-    for (int corner = 0; corner < 8; ++corner) {
-      std::array<long, 3> at;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double p = lo[axis] + half[axis] + (corner >> axis & 1 ? 2 * r - slack : slack);
-        at[axis] = static_cast<long>(std::floor(p / cell));
-      }
-      EXPECT_TRUE(found.count(at)) << at[0] << " " << at[1] << " " << at[2];
-    }
-  }
-  // The order is a permutation, and every cluster's ball holds its spheres.
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), false), 0);
+  for (int l = 0; l < view.level_count; ++l)
+    EXPECT_EQ(view.levels[l].blocks, blocks[static_cast<std::size_t>(l)]);
+  EXPECT_LE(2 * used, grid.tableSize());
+}
+
+/// The order is a permutation, every sphere is in one cluster, and a cluster's ball holds its spheres.
+void expectSoundOrder(const HashGrid& grid, const Spheres& spheres) {
+  const GridView& view = grid.view();
   std::set<std::uint32_t> seen;
   for (std::uint32_t k = 0; k < view.count; ++k) {
-    const Sphere &s = view.spheres[k], &ball = view.clusters[k / core::kClusterSize];
+    const Sphere& s = view.spheres[k];
     seen.insert(view.ids[k]);
     EXPECT_EQ(grid.placeOf(view.ids[k]), k);
     EXPECT_EQ(std::memcmp(&s, &spheres[view.ids[k]], sizeof s), 0);
-    const double dx = s.x - double{ball.x}, dy = s.y - double{ball.y}, dz = s.z - double{ball.z};
-    EXPECT_LE(std::sqrt(dx * dx + dy * dy + dz * dz) + s.radius, ball.radius);
+    EXPECT_EQ(grid.columns().x[k], s.x - view.centre.x);
+    EXPECT_EQ(grid.columns().y[k], s.y - view.centre.y);
+    EXPECT_EQ(grid.columns().z[k], s.z - view.centre.z);
+    EXPECT_EQ(grid.columns().radius[k], s.radius);
   }
   EXPECT_EQ(seen.size(), spheres.size());
-  EXPECT_EQ(view.cluster_count, (spheres.size() + core::kClusterSize - 1) / core::kClusterSize);
-  return fullest;
+  std::uint32_t next = 0;
+  for (std::uint32_t c = 0; c < view.cluster_count; ++c) {
+    const core::Cluster& cluster = view.clusters[c];
+    EXPECT_EQ(cluster.first, next);
+    next += cluster.count;
+    EXPECT_GE(cluster.count, 1u);
+    EXPECT_LE(cluster.count, core::kClusterSize);
+    EXPECT_EQ(std::max(core::levelOf(view.spheres[cluster.first].radius), view.finest),
+              std::max(core::levelOf(view.spheres[next - 1].radius), view.finest));
+    float smallest = view.largest;
+    for (std::uint32_t k = cluster.first; k < next; ++k) {
+      const Sphere &s = view.spheres[k], &ball = cluster.ball;
+      const double dx = s.x - double{ball.x}, dy = s.y - double{ball.y}, dz = s.z - double{ball.z};
+      EXPECT_LE(std::sqrt(dx * dx + dy * dy + dz * dz) + s.radius, ball.radius);
+      smallest = std::min(smallest, s.radius);
+    }
+    EXPECT_EQ(cluster.smallest, smallest);
+  }
+  EXPECT_EQ(next, view.count);
+}
+
+void expectSound(const HashGrid& grid, const Spheres& spheres) {
+  expectSoundLevels(grid.view());
+  expectSoundBlocks(grid);
+  expectSoundOrder(grid, spheres);
 }
 
 TEST(HashGrid, IsSound) {
@@ -117,43 +138,61 @@ TEST(HashGrid, IsSound) {
                           {{0, 0, 0, 1}},
                           {{-3, 8, 1e6f, 1e-30f}}};
   for (const Spheres& spheres : sets) {
-    for (float growth : {0.0f, 0.01f, 10.0f}) {
-      SCOPED_TRACE(testing::Message() << spheres.size() << " " << growth);
-      expectSound(HashGrid(spheres, growth), spheres, growth);
+    SCOPED_TRACE(spheres.size());
+    expectSound(HashGrid(spheres), spheres);
+  }
+}
+
+/// A lookup of a cluster visits few blocks if few of them are nearly empty.
+TEST(HashGrid, BlocksOfAPackingAreNeitherEmptyNorCrowded) {
+  for (std::size_t n : {500u, 4000u}) {
+    const HashGrid grid(randomSpheres(n, 0.2, 30, n));
+    for (int l = 0; l < grid.view().level_count; ++l) {
+      const Level& level = grid.view().levels[l];
+      if (level.blocks < 2) continue;
+      EXPECT_GE(level.count, 2 * level.blocks);
+      EXPECT_LE(level.count, 200 * level.blocks);
     }
   }
 }
 
-/// Spheres of one level that do not overlap are at least a quarter of the cell's edge, so few of them touch
-/// one cell.
-TEST(HashGrid, CellsOfAPackingHoldAConstantNumber) {
-  for (std::size_t n : {500u, 4000u}) {
-    const Spheres spheres = randomSpheres(n, 0.2, 30, n);
-    EXPECT_LE(expectSound(HashGrid(spheres, 0), spheres, 0), 32u);
-  }
-}
-
-TEST(HashGrid, NoCellOverflows) {
+TEST(HashGrid, NothingOverflows) {
   const Spheres same(5000, Sphere{0.1f, 0.2f, 0.3f, 0.5f});
-  const HashGrid grid(same, 0);
-  EXPECT_EQ(expectSound(grid, same, 0), 5000u);
+  const HashGrid grid(same);
+  expectSound(grid, same);
+  EXPECT_EQ(grid.view().levels[0].blocks, 1u);
 }
 
 TEST(HashGrid, IsTheSameEveryTime) {
   const Spheres spheres = randomSpheres(3000, 0.2, 30, 1);
-  const HashGrid a(spheres, 0), b(spheres, 0);
+  const HashGrid a(spheres), b(spheres);
   ASSERT_EQ(a.tableSize(), b.tableSize());
-  ASSERT_EQ(a.cellCount(), b.cellCount());
-  ASSERT_EQ(a.entryCount(), b.entryCount());
-  for (std::size_t k = 0; k < a.tableSize(); ++k) {
-    EXPECT_EQ(a.view().blocks[k].key, b.view().blocks[k].key);
-    EXPECT_EQ(a.view().blocks[k].occupied, b.view().blocks[k].occupied);
-    EXPECT_EQ(a.view().blocks[k].first, b.view().blocks[k].first);
+  ASSERT_EQ(a.view().cluster_count, b.view().cluster_count);
+  EXPECT_EQ(std::memcmp(a.view().blocks, b.view().blocks, a.tableSize() * sizeof(Block)), 0);
+  EXPECT_EQ(std::memcmp(a.view().ids, b.view().ids, a.view().count * sizeof(std::uint32_t)), 0);
+}
+
+/// The curve visits every cell once, in steps to a neighbour, and every cube of 2^k cells in one run.
+TEST(HashGrid, HilbertCurve) {
+  for (int bits : {1, 2, 4}) {
+    const std::uint32_t n = 1u << bits;
+    std::map<std::uint64_t, Cell> cells;
+    for (std::uint32_t x = 0; x < n; ++x) {
+      for (std::uint32_t y = 0; y < n; ++y) {
+        for (std::uint32_t z = 0; z < n; ++z) cells[core::hilbertPlace(x, y, z, bits)] = {x, y, z};
+      }
+    }
+    ASSERT_EQ(cells.size(), std::size_t{n} * n * n);
+    EXPECT_EQ(cells.rbegin()->first, cells.size() - 1);
+    for (std::uint64_t place = 1; place < cells.size(); ++place) {
+      int steps = 0;
+      for (int i = 0; i < 3; ++i)
+        steps += std::abs(static_cast<int>(cells[place][i]) - static_cast<int>(cells[place - 1][i]));
+      EXPECT_EQ(steps, 1);
+    }
+    for (const auto& [place, cell] : cells)
+      EXPECT_EQ(core::hilbertPlace(cell[0] >> 1, cell[1] >> 1, cell[2] >> 1, bits - 1), place >> 3);
   }
-  constexpr std::size_t kSize = sizeof(std::uint32_t);
-  EXPECT_EQ(std::memcmp(a.view().cells, b.view().cells, (a.cellCount() + 1) * kSize), 0);
-  EXPECT_EQ(std::memcmp(a.view().entries, b.view().entries, a.entryCount() * kSize), 0);
-  EXPECT_EQ(std::memcmp(a.view().ids, b.view().ids, a.view().count * kSize), 0);
 }
 
 TEST(HashGrid, LevelOfARadius) {
@@ -171,13 +210,13 @@ TEST(HashGrid, LevelOfARadius) {
 
 TEST(HashGrid, CellCoordinatesCannotWrap) {
   Spheres spheres{{0, 0, 0, 1}, {1e9f, 1e9f, 1e9f, 1e-4f}, {-1e9f, 5, 5, 1e-4f}};
-  const HashGrid grid(spheres, 0);
+  const HashGrid grid(spheres);
   for (float last : grid.view().last_cell) EXPECT_LT(last, 1 << core::kAxisBits);
-  EXPECT_LT(grid.view().coarsest - grid.view().finest, 1 << core::kLevelBits);
+  EXPECT_LE(grid.view().level_count, 1 << core::kLevelBits);
   core::CellBox box;
-  EXPECT_FALSE(core::cellBox(grid.view(), {3e38f, 0, 0}, 1, box));
-  EXPECT_FALSE(core::cellBox(grid.view(), {0, -3e38f, 0}, 1, box));
-  ASSERT_TRUE(core::cellBox(grid.view(), {0, 0, 0}, 3e38f, box));
+  EXPECT_FALSE(core::cellBox(grid.view(), {3e38f, -1, -1}, {3e38f, 1, 1}, box));
+  EXPECT_FALSE(core::cellBox(grid.view(), {-1, -3e38f, -1}, {1, -3e38f, 1}, box));
+  ASSERT_TRUE(core::cellBox(grid.view(), {-3e38f, -3e38f, -3e38f}, {3e38f, 3e38f, 3e38f}, box));
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_EQ(box.lo[axis], 0u);
     EXPECT_EQ(static_cast<float>(box.hi[axis]), grid.view().last_cell[axis]);

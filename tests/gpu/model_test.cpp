@@ -23,15 +23,14 @@ TEST(CollisionModel, RejectsWhatIsNoPacking) {
 TEST(CollisionModel, BuildsEachGridOnce) {
   const auto model = makeModel(randomSpheres(300, 0.3, 20, 1), true);
   CollisionModel::Impl& impl = model->impl();
-  const HashGrid* all = &impl.grid(0, Estimator::raw, 0);
-  EXPECT_EQ(all, &impl.grid(0, Estimator::raw, 0));
-  EXPECT_EQ(all, &impl.grid(1u << 30, Estimator::raw, 0));
-  EXPECT_NE(all, &impl.grid(0, Estimator::volume_true, 0));
-  EXPECT_EQ(&impl.grid(64, Estimator::volume_true, 0), &impl.grid(100, Estimator::volume_true, 0));
-  EXPECT_EQ(&impl.grid(3, Estimator::volume_true, 0),
-            &impl.grid(3, Estimator::raw, 0));  // none stored: the raw radii
-  EXPECT_EQ(&impl.grid(0, Estimator::raw, 0.0101), &impl.grid(0, Estimator::raw, 0.0102));
-  EXPECT_EQ(impl.grid(64, Estimator::volume_true, 0).view().count, 64u);
+  const HashGrid* all = &impl.grid(0, Estimator::raw);
+  EXPECT_EQ(all, &impl.grid(0, Estimator::raw));
+  EXPECT_EQ(all, &impl.grid(1u << 30, Estimator::raw));
+  EXPECT_NE(all, &impl.grid(0, Estimator::volume_true));
+  EXPECT_EQ(&impl.grid(64, Estimator::volume_true), &impl.grid(100, Estimator::volume_true));
+  EXPECT_EQ(&impl.grid(3, Estimator::volume_true),
+            &impl.grid(3, Estimator::raw));  // none stored: the raw radii
+  EXPECT_EQ(impl.grid(64, Estimator::volume_true).view().count, 64u);
 }
 
 TEST(CollisionModel, CanBeUsedByManyThreadsAtOnce) {

@@ -2,11 +2,14 @@
 //
 // Floating-point addition is not associative, so a sum over pairs found by many threads would change from run
 // to run. Each term is therefore rounded once, to a multiple of a quantum that depends on the query alone,
-// and added as a 128-bit integer. Integer sums have the same bits in any order, and negated terms give
-// exactly the negated sum.
+// and added as an integer. Integer sums have the same bits in any order, and negated terms give exactly the
+// negated sum.
+//
+// A term is split into two integers, a coarse and a fine part, by adding and subtracting a large number: that
+// is a few operations that any processor does on many terms side by side. Short sums of each part fit 64
+// bits; long ones are kept in 128.
 #pragma once
 
-#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -15,14 +18,14 @@
 
 namespace innersphere::core {
 
-/// A 128-bit two's complement integer in units of 2^-shift, where `shift` is kept beside it.
+/// A 128-bit two's complement integer.
 struct FixedSum {
-  unsigned long long lo;
-  unsigned long long hi;
+  std::uint64_t lo;
+  std::uint64_t hi;
 };
 
 INNERSPHERE_HD inline FixedSum operator+(const FixedSum& a, const FixedSum& b) {
-  const unsigned long long lo = a.lo + b.lo;
+  const std::uint64_t lo = a.lo + b.lo;
   return {lo, a.hi + b.hi + (lo < a.lo ? 1u : 0u)};
 }
 
@@ -30,35 +33,60 @@ INNERSPHERE_HD inline FixedSum operator-(const FixedSum& a) {
   return {~a.lo + 1u, ~a.hi + (a.lo == 0 ? 1u : 0u)};
 }
 
-/// Terms are below 2^(kFixedBits - shift), and so is the magnitude of their sum.
-constexpr int kFixedBits = 124;
-
-/// x in units of 2^-shift, rounded towards zero, so that toFixed(-x) = -toFixed(x).
-INNERSPHERE_HD inline FixedSum toFixed(double x, int shift) {
-  std::uint64_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  const int exponent = static_cast<int>(bits >> 52 & 0x7ff);
-  if (exponent == 0) return {0, 0};  // zero; a subnormal number is below every quantum that a query may have
-  const std::uint64_t mantissa = (bits & 0xfffffffffffffu) | 0x10000000000000u;
-  const int up = exponent - 1075 + shift;
-  assert(up + 53 <= kFixedBits + 1);
-  FixedSum sum{0, 0};
-  if (up >= 64) {
-    sum.hi = mantissa << (up - 64);
-  } else if (up > 0) {
-    sum.lo = mantissa << up;
-    sum.hi = mantissa >> (64 - up);
-  } else if (up > -53) {
-    sum.lo = mantissa >> -up;
-  }
-  return bits >> 63 ? -sum : sum;
+/// x 2^shift, 0 <= shift < 64.
+inline FixedSum shifted(std::int64_t x, int shift) {
+  const auto bits = static_cast<std::uint64_t>(x);
+  const auto sign = static_cast<std::uint64_t>(x >> 63);
+  if (shift == 0) return {bits, sign};
+  return {bits << shift, sign << shift | bits >> (64 - shift)};
 }
 
-inline double toDouble(const FixedSum& sum, int shift) {
+/// The quantum of one kind of term is 2^-(coarse_shift + fine_bits). Terms are below 2^(kCoarseBits -
+/// coarse_shift).
+struct Unit {
+  double coarse;  ///< 2^coarse_shift
+  double fine;    ///< 2^fine_bits
+  int coarse_shift;
+  int fine_bits;
+};
+
+constexpr int kCoarseBits = 49;    ///< of a term's coarse part
+constexpr int kFineBits = 40;      ///< at most, of its fine part
+constexpr int kFixedBits = 124;    ///< of a whole sum
+constexpr int kShortSumBits = 13;  ///< so many terms, as a power of two, may be summed in 64 bits
+
+/// A sum of at most 2^kShortSumBits terms.
+struct ShortSum {
+  std::uint64_t coarse;
+  std::uint64_t fine;
+};
+
+/// Adds x, rounded to nearest, ties to even, so that a term and its negation cancel.
+INNERSPHERE_HD inline void add(ShortSum& sum, double x, const Unit& unit) {
+  constexpr double kMagic =
+      6755399441055744.0;  // 1.5 * 2^52: the last bits of what is added to it are an integer
+  constexpr std::uint64_t kMagicBits = 0x4338000000000000u;
+  const double scaled = x * unit.coarse;
+  const double coarse = scaled + kMagic;
+  const double fine = (scaled - (coarse - kMagic)) * unit.fine + kMagic;
+  std::uint64_t bits;
+  memcpy(&bits, &coarse, sizeof bits);
+  sum.coarse += bits - kMagicBits;
+  memcpy(&bits, &fine, sizeof bits);
+  sum.fine += bits - kMagicBits;
+}
+
+/// In units of the quantum.
+inline FixedSum toFixed(const ShortSum& sum, const Unit& unit) {
+  return shifted(static_cast<std::int64_t>(sum.coarse), unit.fine_bits) +
+         shifted(static_cast<std::int64_t>(sum.fine), 0);
+}
+
+inline double toDouble(const FixedSum& sum, const Unit& unit) {
   const bool negative = sum.hi >> 63;
   const FixedSum size = negative ? -sum : sum;
   const double x = std::ldexp(static_cast<double>(size.hi), 64) + static_cast<double>(size.lo);
-  return std::ldexp(negative ? -x : x, -shift);
+  return std::ldexp(negative ? -x : x, -unit.coarse_shift - unit.fine_bits);
 }
 
 }  // namespace innersphere::core

@@ -17,17 +17,15 @@ struct Pair {
   double distance2;
 };
 
-/// From places in the two grids. Everything in it is symmetric under exchange of the bodies, to the last bit:
-/// v changes sign, the rest changes places.
-INNERSPHERE_HD inline Pair makePair(const Setup& setup, std::uint32_t ia, std::uint32_t ib) {
-  const Sphere a = setup.a.grid.spheres[ia];
-  const Sphere b = setup.b.grid.spheres[ib];
+/// Everything in it is symmetric under exchange of the bodies, to the last bit: v changes sign, the rest
+/// changes places.
+INNERSPHERE_HD inline Pair makePair(const Frame& frame, const Sphere& a, const Sphere& b) {
   Pair pair;
-  pair.a = setup.a.matrix * Vec3r{a.x, a.y, a.z};
-  pair.b = setup.b.matrix * Vec3r{b.x, b.y, b.z};
-  pair.v = setup.offset + (pair.b - pair.a);
-  pair.ra = setup.a.scale * a.radius + setup.a.margin;
-  pair.rb = setup.b.scale * b.radius + setup.b.margin;
+  pair.a = frame.matrix_a * Vec3r{a.x, a.y, a.z};
+  pair.b = frame.matrix_b * Vec3r{b.x, b.y, b.z};
+  pair.v = frame.offset + (pair.b - pair.a);
+  pair.ra = frame.scale_a * a.radius + frame.margin_a;
+  pair.rb = frame.scale_b * b.radius + frame.margin_b;
   pair.distance2 = dot(pair.v, pair.v);
   return pair;
 }
@@ -40,15 +38,20 @@ INNERSPHERE_HD inline bool overlaps(const Pair& pair) {
 
 /// Who of the two finds the pair: the smaller sphere walks through the other's grid; of equals, that of A.
 INNERSPHERE_HD inline bool walksToPartner(const Pair& pair, bool from_a) {
-  return from_a ? pair.rb >= pair.ra : pair.ra > pair.rb;
+  const bool a_walks = pair.rb >= pair.ra;
+  return a_walks == from_a;
+}
+
+/// True if a candidate of a cluster overlaps and is this side's to report.
+INNERSPHERE_HD inline bool isHit(const Pair& pair, bool from_a) {
+  return walksToPartner(pair, from_a) & overlaps(pair);
 }
 
 /// An overlapping pair's lens, with the unit vector from a to b. Concentric spheres have no direction: n is
 /// zero, so they push nowhere.
 struct Contact {
-  Lens<double> lens;
-  double distance;
-  double depth;
+  Balls balls;
+  Lens lens;
   Vec3r n;
 };
 
@@ -57,17 +60,26 @@ INNERSPHERE_HD inline Contact makeContact(const Pair& pair) {
   using std::sqrt;
   const double sum = pair.ra + pair.rb;
   const bool apart = pair.distance2 > kSmallest;
+  const double d = sqrt(apart ? pair.distance2 : kSmallest);
+  // One division for all three: 1 / d, 1 / sum and 1 / (sum + d).
+  const double reach = sum + d;
+  const double inverse = 1 / (d * sum * reach);
   Contact contact;
-  contact.distance = apart ? sqrt(pair.distance2) : 0.0;
-  contact.depth = (sum * sum - pair.distance2) / (sum + contact.distance);
-  contact.n = (apart ? 1 / contact.distance : 0.0) * pair.v;
-  contact.lens = lens(pair.ra, pair.rb, contact.distance, contact.depth);
+  Balls& balls = contact.balls;
+  balls.ra = pair.ra;
+  balls.rb = pair.rb;
+  balls.d = apart ? d : 0.0;
+  balls.s = (sum * sum - pair.distance2) * (d * sum * inverse);
+  balls.inverse_d = sum * reach * inverse;
+  balls.inverse_sum = d * reach * inverse;
+  contact.n = (apart ? balls.inverse_d : 0.0) * pair.v;
+  contact.lens = lens(balls);
   return contact;
 }
 
-/// Centroid of the lens, relative to the origin of A.
-INNERSPHERE_HD inline Vec3r lensCentroid(const Pair& pair, const Contact& contact) {
-  return pair.a + contact.lens.fraction * pair.v;
+/// Volume times centroid of the lens, relative to the origin of A.
+INNERSPHERE_HD inline Vec3r lensMoment(const Pair& pair, const Contact& contact) {
+  return contact.lens.volume * pair.a + contact.lens.moment * pair.v;
 }
 
 }  // namespace innersphere::core

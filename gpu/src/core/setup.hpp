@@ -10,13 +10,18 @@
 
 namespace innersphere::core {
 
-/// A body as a query sees it. Its own frame is scaled and rotated, not translated, into the axes of the
-/// world.
+/// What takes two spheres into double precision and world axes. A body's own frame is scaled and rotated, not
+/// translated, into the axes of the world.
+struct Frame {
+  Mat3<double> matrix_a, matrix_b;  ///< scale times rotation
+  double scale_a, scale_b;
+  double margin_a, margin_b;  ///< every radius grows by it [m]
+  Vec3r offset;               ///< from the origin of A to that of B, axes of the world [m]
+};
+
+/// A body as a query sees it.
 struct Body {
   GridView grid;
-  Mat3<double> matrix;  ///< scale times rotation
-  double scale;
-  double margin;           ///< every radius grows by it [m]
   std::uint32_t clusters;  ///< that walk through the other's grid: none if the bodies are apart
 };
 
@@ -33,16 +38,16 @@ struct Search {
   float tolerance;
 };
 
-/// Units of the fixed-point sums, as shifts (see fixed_sum.hpp), for each kind of quantity.
-struct Shifts {
-  int volume, moment, torque, area, energy;
+/// Of the sums, for each kind of quantity.
+struct Units {
+  Unit volume, moment, torque, area, energy;
 };
 
 struct Setup {
   Body a, b;
-  Vec3r offset;  ///< from the origin of A to that of B, axes of the world [m]
+  Frame frame;
   Search a_in_b, b_in_a;
-  Shifts shifts;
+  Units units;
 };
 
 }  // namespace innersphere::core

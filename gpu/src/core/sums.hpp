@@ -9,7 +9,7 @@
 
 namespace innersphere::core {
 
-/// Places of the sums in Sums::terms. Want::volume needs the first kVolumeTerms of them.
+/// Places of the sums. Want::volume needs the first kVolumeTerms of them.
 enum Term {
   kVolume = 0,
   kMoment = 1,
@@ -22,44 +22,55 @@ enum Term {
   kTerms = 15
 };
 
+INNERSPHERE_HD inline const Unit& unitOf(const Units& units, int term) {
+  if (term == kVolume) return units.volume;
+  if (term < kForce) return units.moment;
+  if (term < kTorque) return units.volume;
+  if (term < kArea) return units.torque;
+  return term < kEnergy ? units.area : units.energy;
+}
+
+/// What one pair adds to each sum.
+struct Terms {
+  double terms[kTerms];
+
+  INNERSPHERE_HD void set(int term, const Vec3r& v) {
+    terms[term] = v.x;
+    terms[term + 1] = v.y;
+    terms[term + 2] = v.z;
+  }
+};
+
+/// All terms with kWrench, otherwise the first kVolumeTerms.
+template <bool kWrench>
+INNERSPHERE_HD inline Terms makeTerms(const Pair& pair) {
+  const Contact contact = makeContact(pair);
+  const double volume = contact.lens.volume, rim = contact.lens.rim_area;
+  Terms terms;
+  terms.terms[kVolume] = volume;
+  terms.set(kMoment, lensMoment(pair, contact));
+  if (!kWrench) return terms;
+  const Vec3r force = volume * contact.n;
+  terms.set(kForce, force);
+  terms.set(kTorque, cross(pair.b, force));  // the force is central, so any point of its line will do
+  terms.set(kArea, rim * contact.n);
+  terms.terms[kStiffness] = rim;
+  terms.terms[kEnergy] = lensEnergy(contact.balls);
+  return terms;
+}
+
 struct Sums {
-  unsigned long long pairs;
+  std::uint64_t pairs;
   FixedSum terms[kTerms];
 
-  INNERSPHERE_HD void clear() {
+  void clear() {
     pairs = 0;
-    for (int i = 0; i < kTerms; ++i) terms[i] = {0, 0};
+    for (FixedSum& term : terms) term = {0, 0};
   }
 
-  INNERSPHERE_HD void add(const Sums& other) {
+  void add(const Sums& other) {
     pairs += other.pairs;
     for (int i = 0; i < kTerms; ++i) terms[i] = terms[i] + other.terms[i];
-  }
-
-  INNERSPHERE_HD void add(int term, double x, int shift) { terms[term] = terms[term] + toFixed(x, shift); }
-
-  INNERSPHERE_HD void add(int term, const Vec3r& v, int shift) {
-    add(term, v.x, shift);
-    add(term + 1, v.y, shift);
-    add(term + 2, v.z, shift);
-  }
-
-  /// Adds one overlapping pair; all terms with `wrench`, otherwise volume, moment and count.
-  INNERSPHERE_HD void add(const Pair& pair, const Shifts& shifts, bool wrench) {
-    const Contact contact = makeContact(pair);
-    const double volume = contact.lens.volume;
-    const double rim = contact.lens.rim_area;
-    ++pairs;
-    add(kVolume, volume, shifts.volume);
-    add(kMoment, volume * lensCentroid(pair, contact), shifts.moment);
-    if (!wrench) return;
-    const Vec3r force = volume * contact.n;
-    add(kForce, force, shifts.volume);
-    add(kTorque, cross(pair.b, force),
-        shifts.torque);  // the force is central, so any point of its line will do
-    add(kArea, rim * contact.n, shifts.area);
-    add(kStiffness, rim, shifts.area);
-    add(kEnergy, lensEnergy(pair.ra, pair.rb, contact.distance, contact.depth), shifts.energy);
   }
 };
 

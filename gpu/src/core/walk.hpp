@@ -1,15 +1,18 @@
-// The walk of one body's spheres through the other's grid.
+// The walk of one body's spheres through the other's grid: what both backends share of it.
 //
 // Each sphere of A meets the spheres of B that are at least as large as it, and each sphere of B those of A
 // that are strictly larger: every pair once. A partner that is at least as large lives on the walker's level
-// or a coarser one, where the walker touches at most eight cells, so the work for one sphere does not depend
-// on how many there are.
+// or a coarser one, where few spheres are near the walker, so the work for one sphere does not depend on how
+// many there are.
+//
+// A cluster of neighbours walks together. It looks up the blocks of each level that its box reaches, keeps
+// the spheres that meet the box, and tests each of them against each of its own. What passes is a candidate;
+// pair.hpp decides it in double precision.
 #pragma once
 
 #include <cstdint>
 
 #include "core/grid_view.hpp"
-#include "core/pair.hpp"
 #include "core/setup.hpp"
 
 namespace innersphere::core {
@@ -26,91 +29,49 @@ INNERSPHERE_HD inline Probe makeProbe(const Search& search, const Sphere& s) {
           search.ratio * s.radius + search.margin};
 }
 
-/// The spheres of one cell. `first`: along which axes the probe's box begins here, as bits.
-template <typename Visit>
-INNERSPHERE_HD inline bool visitCell(const GridView& grid, std::uint32_t cell, std::uint32_t first,
-                                     const Probe& probe, float reach, Visit&& visit) {
-  const std::uint32_t end = grid.cells[cell + 1];
-  for (std::uint32_t k = grid.cells[cell]; k < end; ++k) {
-    const std::uint32_t entry = grid.entries[k];
-    // Two boxes that share several cells meet in the first of them: where, along each axis, one of them
-    // begins.
-    if ((entry >> kIndexBits | first) != 7u) continue;
-    const std::uint32_t j = entry & ((1u << kIndexBits) - 1);
-    const Sphere s = grid.spheres[j];
-    const Vec3f d = Vec3f{s.x, s.y, s.z} - grid.centre - probe.p;
-    const float sum = s.radius + reach;
-    if (dot(d, d) > sum * sum) continue;
-    if (!visit(j)) return false;
-  }
-  return true;
-}
-
-/// Calls visit(j) for the place j of every sphere of the grid that may be at least as large as the probe and
-/// may overlap it: each of them once. Stops and returns false when visit does.
-template <typename Visit>
-INNERSPHERE_HD inline bool walk(const GridView& grid, const Search& search, const Probe& probe,
-                                Visit&& visit) {
-  CellBox box;
-  if (!cellBox(grid, probe.p, probe.radius + search.tolerance, box)) return true;
-  const float reach = probe.radius + search.grid_margin + search.tolerance;
-  int level = levelOf(probe.radius * (1 - 1e-6f)) - grid.finest;
-  if (level < 0) level = 0;
-  for (; level <= grid.coarsest - grid.finest; ++level) {
-    const std::uint32_t x0 = box.lo[0] >> level, y0 = box.lo[1] >> level, z0 = box.lo[2] >> level;
-    const std::uint32_t x1 = box.hi[0] >> level, y1 = box.hi[1] >> level, z1 = box.hi[2] >> level;
-    const Block* block = nullptr;
-    std::uint64_t known = ~std::uint64_t{0};  // key of `block`; the cells of one block come in runs
-    for (std::uint32_t z = z0; z <= z1; ++z) {
-      for (std::uint32_t y = y0; y <= y1; ++y) {
-        for (std::uint32_t x = x0; x <= x1; ++x) {
-          const std::uint64_t key = blockKey(level, x >> kBlockBits, y >> kBlockBits, z >> kBlockBits);
-          if (key != known) block = findBlock(grid, known = key);
-          const int bit = bitOfCell(x, y, z);
-          if (!block || !(block->occupied >> bit & 1)) continue;
-          const std::uint32_t first = (x == x0 ? 1u : 0u) | (y == y0 ? 2u : 0u) | (z == z0 ? 4u : 0u);
-          if (!visitCell(grid, cellIndex(*block, bit), first, probe, reach, visit)) return false;
-        }
-      }
-    }
-  }
-  return true;
-}
-
 /// True if a cluster of a setup, of all of A's and then all of B's, is one of A's.
 INNERSPHERE_HD inline bool isFromA(const Setup& setup, std::uint32_t cluster) {
   return cluster < setup.a.clusters;
 }
 
-/// Walks the spheres of one cluster. Takes every `step`-th sphere from `lane` on, so that the lanes of a warp
-/// can share a cluster. Calls visit(ia, ib), with places in the grids, for every pair that is to be tested;
-/// stops when visit returns false.
-template <typename Visit>
-INNERSPHERE_HD inline void walkCandidates(const Setup& setup, std::uint32_t cluster, std::uint32_t lane,
-                                          std::uint32_t step, Visit&& visit) {
-  const bool from_a = isFromA(setup, cluster);
-  if (!from_a) cluster -= setup.a.clusters;
-  const GridView& own = from_a ? setup.a.grid : setup.b.grid;
-  const GridView& grid = from_a ? setup.b.grid : setup.a.grid;
-  const Search& search = from_a ? setup.a_in_b : setup.b_in_a;
+/// Who walks, and where.
+struct Walker {
+  const GridView& own;
+  const GridView& grid;
+  const Search& search;
+};
 
-  const Probe around = makeProbe(search, own.clusters[cluster]);
-  if (!meetsBox(grid, around.p, around.radius + search.tolerance)) return;
-
-  const std::uint32_t begin = cluster * kClusterSize;
-  const std::uint32_t end = begin + kClusterSize < own.count ? begin + kClusterSize : own.count;
-  for (std::uint32_t k = begin + lane; k < end; k += step) {
-    const Probe probe = makeProbe(search, own.spheres[k]);
-    if (!walk(grid, search, probe, [&](std::uint32_t j) { return visit(from_a ? k : j, from_a ? j : k); }))
-      return;
-  }
+INNERSPHERE_HD inline Walker walkerOf(const Setup& setup, bool from_a) {
+  if (from_a) return {setup.a.grid, setup.b.grid, setup.a_in_b};
+  return {setup.b.grid, setup.a.grid, setup.b_in_a};
 }
 
-/// Decides a candidate of a cluster: true if it overlaps and is this side's to report. Gives the pair.
-INNERSPHERE_HD inline bool isHit(const Setup& setup, bool from_a, std::uint32_t ia, std::uint32_t ib,
-                                 Pair& pair) {
-  pair = makePair(setup, ia, ib);
-  return walksToPartner(pair, from_a) && overlaps(pair);
+/// False if no sphere of the cluster can meet one of the grid.
+INNERSPHERE_HD inline bool clusterMeets(const Walker& walker, const Cluster& cluster) {
+  const Probe around = makeProbe(walker.search, cluster.ball);
+  return meetsBounds(walker.grid, around.p,
+                     around.radius + walker.search.grid_margin + walker.search.tolerance);
+}
+
+/// The finest level of the grid on which spheres can be at least as large as the smallest of the cluster.
+INNERSPHERE_HD inline int firstLevel(const Walker& walker, const Cluster& cluster) {
+  const Search& search = walker.search;
+  const float smallest = search.ratio * cluster.smallest + search.margin;
+  const int level = levelOf(smallest * (1 - 1e-6f) - search.grid_margin) - walker.grid.finest;
+  return level > 0 ? level : 0;
+}
+
+/// The blocks of a level that hold the centres of all spheres that may meet the box from lo to hi; false if
+/// there are none.
+INNERSPHERE_HD inline bool blockBox(const GridView& grid, const Level& level, const Search& search,
+                                    const Vec3f& lo, const Vec3f& hi, CellBox& box) {
+  const float r = level.largest + search.grid_margin + search.tolerance;
+  if (!cellBox(grid, {lo.x - r, lo.y - r, lo.z - r}, {hi.x + r, hi.y + r, hi.z + r}, box)) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lo[axis] >>= level.block_shift;
+    box.hi[axis] >>= level.block_shift;
+  }
+  return true;
 }
 
 }  // namespace innersphere::core

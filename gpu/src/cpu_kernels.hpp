@@ -1,0 +1,51 @@
+// The loops of the CPU backend that run on several numbers at once, compiled for several generations of
+// x86-64 processors; the best that this one knows is chosen at run time. All give the same bits.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/sums.hpp"
+#include "core/walk.hpp"
+#include "hash_grid.hpp"
+
+namespace innersphere {
+
+/// Pairs to decide, as places in the grids.
+struct Candidates {
+  static constexpr std::size_t kSize = 256;
+  std::array<std::uint32_t, kSize> walker;   ///< in the grid of the body that walks
+  std::array<std::uint32_t, kSize> partner;  ///< in the grid it walks through
+  std::size_t count = 0;
+};
+static_assert(Candidates::kSize <= std::size_t{1} << core::kShortSumBits);
+
+/// Takes candidates whenever there is no room for more. Returns false to stop the walk.
+class CandidateSink {
+ public:
+  virtual ~CandidateSink() = default;
+  virtual bool take(Candidates& candidates) = 0;
+};
+
+/// Sums over some candidates.
+struct Tally {
+  std::array<core::ShortSum, core::kTerms> terms{};
+  std::size_t pairs = 0;
+  std::array<std::uint8_t, Candidates::kSize> hit;  ///< for each candidate: does it count?
+};
+
+struct CpuKernels {
+  /// Finds the candidates of one cluster, and hands them on where the room ends; the last of them stay in
+  /// `candidates`. Returns false if it was stopped.
+  bool (*walk)(const core::Walker& walker, const Columns& columns, const core::Cluster& cluster,
+               Candidates& candidates, CandidateSink& sink);
+  /// Decides candidates and sums those that count: all terms, or only volumes.
+  void (*sumAll)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
+  void (*sumVolumes)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
+};
+
+/// For this processor.
+const CpuKernels& cpuKernels();
+
+}  // namespace innersphere
