@@ -169,11 +169,6 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
 
   const Reporter report(progress, solid.name());
   tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
-  if (task.limited_by_place) {
-    packing.warnings.push_back(
-        "the solid is so far from the origin that single precision allows no sphere smaller than " +
-        text(task.smallest * task.container.side()) + " m; move it to the origin");
-  }
   const Chosen chosen = choose(task, place(task, arena, report));
   if (chosen.balls.empty()) {
     throw Error(
@@ -181,6 +176,11 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
         "no sphere of the smallest allowed radius fits into '" + solid.name() + "'; " +
             (task.limited_by_place ? "it is too far from the origin for single precision, move it there"
                                    : "ask for a smaller min_radius"));
+  }
+  if (task.limited_by_place && chosen.largest_missing < 1.01 * task.smallest) {
+    packing.warnings.push_back(
+        "the solid is so far from the origin that single precision ended the packing at spheres of " +
+        text(task.smallest * task.container.side()) + " m; move it to the origin");
   }
   const double side = task.container.side();
   for (const Ball& ball : chosen.balls) packing.spheres.push_back(task.container.toSphere(ball));
@@ -211,7 +211,8 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   });
   for (double& share : shares.volumes) share *= side * side * side;
   packing.mass_weights = findMassWeights(packing.spheres, shares.volumes, packing.solid);
-  if (packing.mass_weights.empty()) {
+  const Mat3d& inertia = packing.solid.inertia;
+  if (packing.mass_weights.empty() && inertia[0] + inertia[4] + inertia[8] > 0) {
     packing.warnings.push_back(
         "no masses of the spheres give the inertia of the solid; use that of the solid");
   }

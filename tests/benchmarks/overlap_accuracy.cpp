@@ -105,7 +105,7 @@ void printRow(const std::string& name, std::uint32_t prefix, int bin, const std:
               medianOf(all, [](const Deviation& d) { return d.force_angle; }));
 }
 
-void compare(const std::string& mesh, const std::string& table, std::size_t spheres) {
+void compare(const std::string& mesh, const std::string& table, std::size_t spheres, FILE* points) {
   const std::vector<ExactPose> poses = readExactPoses(table);
   const auto solid = makeSolid(readMesh(mesh), mesh);
   PackOptions options;
@@ -124,6 +124,10 @@ void compare(const std::string& mesh, const std::string& table, std::size_t sphe
       int bin = 0;
       while (bin + 2 < static_cast<int>(kBins.size()) && fraction >= kBins[bin + 1]) ++bin;
       bins[bin].push_back(comparison.at(pose, radii.count));
+      if (points) {
+        std::fprintf(points, "%s %u %g %g %g\n", name.c_str(), radii.count, fraction, bins[bin].back().raw,
+                     bins[bin].back().volume_true);
+      }
     }
     for (int bin = 0; bin < static_cast<int>(bins.size()); ++bin) {
       if (!bins[bin].empty()) printRow(name, radii.count, bin, bins[bin]);
@@ -143,7 +147,16 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--spheres", spheres, "The packing; all its stored prefixes over 1000 are tried")
       ->capture_default_str();
+  std::string points_path;
+  app.add_option("--points", points_path,
+                 "Write solid, spheres, overlap, errors raw and volume-true there, for plots");
   CLI11_PARSE(app, argc, argv);
+  const std::unique_ptr<FILE, int (*)(FILE*)> points(
+      points_path.empty() ? nullptr : std::fopen(points_path.c_str(), "w"), std::fclose);
+  if (!points_path.empty() && !points) {
+    std::fprintf(stderr, "cannot write %s\n", points_path.c_str());
+    return 1;
+  }
   try {
     std::printf("%s", innersphere::benchmarks::heading("Accuracy of the overlap", argc, argv).c_str());
     printHead();
@@ -153,7 +166,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "%s: give a mesh and a table as MESH=POSES\n", item.c_str());
         return 2;
       }
-      compare(item.substr(0, equals), item.substr(equals + 1), spheres);
+      compare(item.substr(0, equals), item.substr(equals + 1), spheres, points.get());
     }
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

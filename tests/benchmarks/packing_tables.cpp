@@ -21,18 +21,18 @@ MeasuredPack packed(const Solid& solid, std::size_t spheres, int threads = 0) {
   return measuredPack(solid, options);
 }
 
-void row(const std::string& name, const MeasuredPack& m) {
+void row(const std::string& name, const MeasuredPack& m, const Solid& solid) {
   const auto n = static_cast<double>(m.packing.spheres.size());
-  std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.0f | %.0f |\n", name.c_str(), n,
+  std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.0f | %.0f | %s |\n", name.c_str(), n,
               100 * m.packing.quality.density, m.seconds, m.cpu_seconds, m.placing, n / m.seconds,
-              peakMemory());
+              peakMemory(), check(m.packing, &solid).valid() ? "valid" : "**invalid**");
   std::fflush(stdout);
 }
 
 void head(const char* title) {
   std::printf(
       "\n## %s\n\n| solid | spheres | density %% | time s | CPU s | time until placed s | spheres/s |"
-      " peak memory so far MiB |\n|---|---|---|---|---|---|---|---|\n",
+      " peak memory so far MiB | checker |\n|---|---|---|---|---|---|---|---|---|\n",
       title);
 }
 
@@ -64,9 +64,7 @@ void tableOfDensities(const std::vector<Case>& cases, const std::vector<std::siz
   for (const Case& solid : cases) {
     for (std::size_t count : counts) {
       const MeasuredPack m = packed(*solid.solid, count);
-      row(solid.name, m);
-      const CheckReport verdict = check(m.packing, solid.solid.get());
-      if (!verdict.valid()) std::printf("\n**%s: the checker finds it invalid**\n\n", solid.name.c_str());
+      row(solid.name, m, *solid.solid);
       curves[solid.name].emplace_back(m.packing.spheres.size(), m.packing.quality.density);
     }
   }
@@ -74,7 +72,9 @@ void tableOfDensities(const std::vector<Case>& cases, const std::vector<std::siz
 
 void tableOfLinearity(const Case& solid, std::size_t most) {
   head("Many spheres");
-  for (std::size_t count = most / 16; count <= most; count *= 2) row(solid.name, packed(*solid.solid, count));
+  for (std::size_t count = most / 16; count <= most; count *= 2) {
+    row(solid.name, packed(*solid.solid, count), *solid.solid);
+  }
 }
 
 void tableOfInvariance(const Case& solid) {
@@ -118,7 +118,10 @@ void tableOfInvariance(const Case& solid) {
 
 void tableOfSlowCases() {
   head("Hard to pack");
-  for (const auto& [name, mesh] : hardMeshes()) row(name, packed(*makeSolid(mesh, name), 10000));
+  for (const auto& [name, mesh] : hardMeshes()) {
+    const auto solid = makeSolid(mesh, name);
+    row(name, packed(*solid, 10000), *solid);
+  }
 }
 
 void writeCurves(const Curves& curves, const std::string& path) {

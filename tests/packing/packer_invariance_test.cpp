@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic_solids.hpp"
+#include "innersphere/error.hpp"
 #include "innersphere/packer.hpp"
 #include "packer_oracles.hpp"
 
@@ -48,6 +49,21 @@ TEST(PackerInvariance, SizeAndPlace) {
     EXPECT_NEAR(other.quality.density, one.quality.density, 0.003);
     EXPECT_NEAR(other.spheres.back().radius / size, one.spheres.back().radius,
                 0.03 * one.spheres.back().radius);
+  }
+}
+
+// Single precision ends somewhere, and the packing says so.
+TEST(PackerInvariance, APlaceTooFarFromTheOriginIsNamed) {
+  EXPECT_TRUE(packed(Cube(1, {1000, 0, 0})).warnings.empty());
+  const Packing far = packed(Cube(1, {1e5, 0, 0}));
+  ASSERT_FALSE(far.warnings.empty());
+  EXPECT_NE(far.warnings[0].find("origin"), std::string::npos) << far.warnings[0];
+  try {
+    packed(Cube(1, {1e8, 0, 0}));
+    ADD_FAILURE() << "packed where numbers are 8 apart";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::no_sphere_fits);
+    EXPECT_NE(std::string(error.what()).find("origin"), std::string::npos) << error.what();
   }
 }
 

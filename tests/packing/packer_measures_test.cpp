@@ -67,7 +67,7 @@ void expectMassOfTheSolid(const Packing& packing) {
 }
 
 TEST(PackerMeasures, WeightedSpheresWeighLikeTheSolid) {
-  for (const char* name : {"box", "lbracket", "torus", "bowl"}) {
+  for (const char* name : {"box", "lbracket", "torus"}) {
     SCOPED_TRACE(name);
     expectMassOfTheSolid(packed(*makeNamedSolid(name), 300));
   }
@@ -75,7 +75,7 @@ TEST(PackerMeasures, WeightedSpheresWeighLikeTheSolid) {
 }
 
 TEST(PackerMeasures, MassesThatCannotBeAreNamed) {
-  const Packing packing = packed(Cube(), 2);
+  const Packing packing = packed(*makeNamedSolid("box"), 2);
   EXPECT_TRUE(packing.mass_weights.empty());
   ASSERT_EQ(packing.warnings.size(), 1u);
   EXPECT_NE(packing.warnings[0].find("inertia"), std::string::npos);
