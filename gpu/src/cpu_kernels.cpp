@@ -1,6 +1,7 @@
 #include "cpu_kernels.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace innersphere {
@@ -15,7 +16,7 @@ constexpr std::size_t kLanes = 8;
 struct Walkers {
   alignas(64) std::array<float, core::kClusterSize> x, y, z, reach;
   std::array<std::uint32_t, core::kClusterSize> place;
-  std::size_t count = 0;    ///< rounded up to whole lanes
+  std::size_t count = 0;
   Vec3f lo, hi;             ///< around the centres
   float largest_reach = 0;  ///< radius with all margins and tolerances
 };
@@ -23,8 +24,7 @@ struct Walkers {
 /// Spheres of the grid that are near the walkers.
 struct Partners {
   static constexpr std::size_t kSize = 512;
-  alignas(64) std::array<float, kSize> x, y, z, radius;
-  std::array<std::uint32_t, kSize> place;
+  std::array<std::uint32_t, kSize + kLanes> place;
   std::size_t count = 0;
 };
 
@@ -49,72 +49,71 @@ inline void makeWalkers(const core::Walker& walker, const core::Cluster& cluster
     walkers.largest_reach = std::max(walkers.largest_reach, reach);
     ++n;
   }
-  for (; n % kLanes != 0; ++n) {  // nothing meets these
-    walkers.x[n] = walkers.y[n] = walkers.z[n] = std::numeric_limits<float>::infinity();
-    walkers.reach[n] = 0;
-  }
   walkers.count = n;
 }
 
 /// Adds the spheres of a run that may meet the box around the walkers. Reads past the end of the run: the
-/// columns are padded.
+/// columns are padded. Returns where it stopped for want of room.
 inline std::uint32_t addRun(const Columns& columns, const Walkers& walkers, std::uint32_t first,
                             std::uint32_t end, Partners& partners) {
   const Vec3f lo = walkers.lo, hi = walkers.hi;
   const float reach = walkers.largest_reach;
+  std::size_t n = partners.count;
   std::uint32_t at = first;
-  for (; at < end && partners.count + kLanes <= Partners::kSize; at += kLanes) {
+  for (; at < end && n + kLanes <= Partners::kSize; at += kLanes) {
     const float* x = columns.x + at;
     const float* y = columns.y + at;
     const float* z = columns.z + at;
     const float* r = columns.radius + at;
     alignas(32) std::int32_t near[kLanes];
-    std::int32_t any = 0;
     for (std::size_t k = 0; k < kLanes; ++k) {
       const float dx = std::max(std::max(lo.x - x[k], x[k] - hi.x), 0.0f);
       const float dy = std::max(std::max(lo.y - y[k], y[k] - hi.y), 0.0f);
       const float dz = std::max(std::max(lo.z - z[k], z[k] - hi.z), 0.0f);
       const float sum = r[k] + reach;
-      near[k] = dx * dx + dy * dy + dz * dz > sum * sum ? 0 : -1;
-      any |= near[k];
+      const bool inside = at + k < end;
+      near[k] = (dx * dx + dy * dy + dz * dz > sum * sum) | !inside ? 0 : 1;
     }
-    if (any == 0) continue;
-    const std::size_t count = std::min<std::size_t>(kLanes, end - at);
-    std::size_t n = partners.count;
-    for (std::size_t k = 0; k < count; ++k) {  // always written, counted where near: no branch to mispredict
-      partners.x[n] = x[k];
-      partners.y[n] = y[k];
-      partners.z[n] = z[k];
-      partners.radius[n] = r[k];
+    for (std::size_t k = 0; k < kLanes; ++k) {  // always written, kept where near: no branch to mispredict
       partners.place[n] = at + static_cast<std::uint32_t>(k);
-      n -= static_cast<std::size_t>(near[k]);
+      n += static_cast<std::size_t>(near[k]);
     }
-    partners.count = n;
   }
+  partners.count = n;
   return at;
 }
 
 /// Tests each partner against all walkers.
-inline bool testPartners(const Walkers& walkers, Partners& partners, Candidates& candidates,
-                         CandidateSink& sink) {
-  const std::size_t n = walkers.count;
-  alignas(64) std::int32_t near[core::kClusterSize];
-  for (std::size_t p = 0; p < partners.count; ++p) {
-    const float px = partners.x[p], py = partners.y[p], pz = partners.z[p], pr = partners.radius[p];
-    std::int32_t any = 0;
-    for (std::size_t w = 0; w < n; ++w) {
-      const float dx = walkers.x[w] - px, dy = walkers.y[w] - py, dz = walkers.z[w] - pz;
-      const float sum = walkers.reach[w] + pr;
-      near[w] = dx * dx + dy * dy + dz * dz > sum * sum ? 0 : -1;
-      any |= near[w];
+inline bool testPartners(const Columns& columns, const Walkers& walkers, Partners& partners,
+                         Candidates& candidates, CandidateSink& sink) {
+  constexpr std::size_t kSize = Partners::kSize;
+  alignas(64) float x[kSize], y[kSize], z[kSize], radius[kSize];
+  alignas(64) std::uint32_t near[kSize];  // a bit for each walker
+  const std::size_t n = (partners.count + kLanes - 1) / kLanes * kLanes;
+  for (std::size_t k = partners.count; k < n; ++k) partners.place[k] = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint32_t place = partners.place[k];
+    x[k] = columns.x[place];
+    y[k] = columns.y[place];
+    z[k] = columns.z[place];
+    radius[k] = columns.radius[place];
+    near[k] = 0;
+  }
+  for (std::size_t w = 0; w < walkers.count; ++w) {
+    const float wx = walkers.x[w], wy = walkers.y[w], wz = walkers.z[w], reach = walkers.reach[w];
+    const std::uint32_t bit = 1u << w;
+    for (std::size_t k = 0; k < n; ++k) {
+      const float dx = wx - x[k], dy = wy - y[k], dz = wz - z[k], sum = reach + radius[k];
+      near[k] |= dx * dx + dy * dy + dz * dz > sum * sum ? 0 : bit;
     }
-    if (any == 0) continue;
+  }
+  for (std::size_t k = 0; k < partners.count; ++k) {
+    if (near[k] == 0) continue;
     if (candidates.count + core::kClusterSize > Candidates::kSize && !sink.take(candidates)) return false;
     std::size_t c = candidates.count;
-    for (std::size_t w = 0; w < n; ++w) {
-      if (near[w] == 0) continue;
-      candidates.walker[c] = walkers.place[w];
-      candidates.partner[c] = partners.place[p];
+    for (std::uint32_t left = near[k]; left != 0; left &= left - 1) {
+      candidates.walker[c] = walkers.place[static_cast<std::size_t>(std::countr_zero(left))];
+      candidates.partner[c] = partners.place[k];
       ++c;
     }
     candidates.count = c;
@@ -136,7 +135,7 @@ inline bool walkImpl(const core::Walker& walker, const Columns& columns, const c
   const auto visit = [&](std::uint32_t at, std::uint32_t count) {
     const std::uint32_t end = at + count;
     while ((at = addRun(columns, walkers, at, end, partners)) < end) {
-      if (!testPartners(walkers, partners, candidates, sink)) return false;
+      if (!testPartners(columns, walkers, partners, candidates, sink)) return false;
     }
     return true;
   };
@@ -159,7 +158,7 @@ inline bool walkImpl(const core::Walker& walker, const Columns& columns, const c
       }
     }
   }
-  return testPartners(walkers, partners, candidates, sink);
+  return testPartners(columns, walkers, partners, candidates, sink);
 }
 
 template <bool kWrench>

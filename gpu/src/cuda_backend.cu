@@ -18,12 +18,12 @@ namespace {
 constexpr unsigned kWarp = 32;
 constexpr unsigned kAll = 0xffffffffu;
 static_assert(core::kClusterSize == kWarp, "a warp walks one cluster");
-constexpr unsigned kLargestJob = 32;          ///< clusters
-constexpr unsigned kWarpsPerProcessor = 128;  ///< that there should be, at least
-constexpr unsigned kMostParts = 8;            ///< jobs that share a cluster where there are few clusters
-constexpr unsigned kPartners = 128;           ///< spheres near a cluster that are kept before they are tested
-constexpr unsigned kUnroll = 8;               ///< partners that are tested at once
-constexpr unsigned kQueue = 2 * kWarp;        ///< candidates
+constexpr unsigned kLargestJob = 32;         ///< clusters
+constexpr unsigned kWarpsPerProcessor = 64;  ///< that there should be, at least
+constexpr unsigned kMostParts = 8;           ///< jobs that share a cluster where there are few clusters
+constexpr unsigned kPartners = 128;          ///< spheres near a cluster that are kept before they are tested
+constexpr unsigned kUnroll = 8;              ///< partners that are tested at once
+constexpr unsigned kQueue = 2 * kWarp;       ///< candidates
 static_assert(kPartners + 2 <= (3u << (core::kShortSumBits - 7)),
               "partners that are tested add so many rounds");
 constexpr unsigned kRoundsPerSum = 1u << (core::kShortSumBits - 5);  ///< each of which adds a warp's terms

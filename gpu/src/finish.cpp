@@ -1,6 +1,9 @@
 #include "finish.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <utility>
 
 #include "core/fixed_sum.hpp"
 #include "core/pair.hpp"
@@ -45,6 +48,19 @@ SphereContact sumContact(const PreparedQuery& query, const std::uint64_t* keys, 
   return sum;
 }
 
+/// Sorts by the lowest `bits` bits from bit `from` on, eight at a time, and keeps the order of equal ones.
+/// The result is in `keys`; `spare` has the same size.
+void sortByBits(std::uint64_t*& keys, std::uint64_t*& spare, std::size_t count, int from, int bits) {
+  for (int shift = from; shift < from + bits; shift += 8) {
+    std::array<std::size_t, 256> at{};
+    for (std::size_t k = 0; k < count; ++k) ++at[keys[k] >> shift & 0xff];
+    std::size_t sum = 0;
+    for (std::size_t& digit : at) sum += std::exchange(digit, sum);
+    for (std::size_t k = 0; k < count; ++k) spare[at[keys[k] >> shift & 0xff]++] = keys[k];
+    std::swap(keys, spare);
+  }
+}
+
 template <typename T>
 void clear(QueryResult::Ranges<T>& ranges, std::size_t queries) {
   ranges.items.clear();
@@ -77,11 +93,11 @@ void HitSorter::run(const std::vector<PreparedQuery>& queries, const std::vector
   clear(result.contacts_b, queries.size());
   if (!wantsHits(want)) return;
   groupByQuery(sums, hits, false);
-  sortGroups(workers);
+  sortGroups(queries, false, workers);
   if (want == Want::pairs) return writePairs(result.pairs);
   writeContacts(queries, false, workers, result.contacts_a);
   groupByQuery(sums, hits, true);
-  sortGroups(workers);
+  sortGroups(queries, true, workers);
   writeContacts(queries, true, workers, result.contacts_b);
 }
 
@@ -98,11 +114,23 @@ void HitSorter::groupByQuery(const std::vector<core::Sums>& sums, const Hits& hi
   }
 }
 
-void HitSorter::sortGroups(Workers& workers) {
+void HitSorter::sortGroups(const std::vector<PreparedQuery>& queries, bool by_b, Workers& workers) {
+  constexpr std::size_t kFew = 256;  // are sorted sooner by comparing
+  spare_.resize(keys_.size());
   workers.forRanges(first_.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t q = begin; q < end; ++q) {
-      std::sort(keys_.begin() + static_cast<std::ptrdiff_t>(first_[q]),
-                keys_.begin() + static_cast<std::ptrdiff_t>(first_[q + 1]));
+      std::uint64_t* const group = keys_.data() + first_[q];
+      const std::size_t count = first_[q + 1] - first_[q];
+      if (count < kFew) {
+        std::sort(group, group + count);
+        continue;
+      }
+      const int bits_a = std::bit_width(queries[q].setup.a.grid.count - 1);
+      const int bits_b = std::bit_width(queries[q].setup.b.grid.count - 1);
+      std::uint64_t *keys = group, *spare = spare_.data() + first_[q];
+      sortByBits(keys, spare, count, 0, by_b ? bits_a : bits_b);
+      sortByBits(keys, spare, count, 32, by_b ? bits_b : bits_a);
+      if (keys != group) std::copy_n(keys, count, group);
     }
   });
 }

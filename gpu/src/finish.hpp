@@ -22,7 +22,7 @@ class HitSorter {
 
  private:
   void groupByQuery(const std::vector<core::Sums>& sums, const Hits& hits, bool by_b);
-  void sortGroups(Workers& workers);
+  void sortGroups(const std::vector<PreparedQuery>& queries, bool by_b, Workers& workers);
   void writePairs(QueryResult::Ranges<SpherePair>& pairs) const;
   void writeContacts(const std::vector<PreparedQuery>& queries, bool of_b, Workers& workers,
                      QueryResult::Ranges<SphereContact>& contacts);
@@ -30,7 +30,8 @@ class HitSorter {
   std::vector<std::size_t> first_;  ///< hits of all queries before each
   std::vector<std::size_t> cursor_;
   std::vector<std::uint64_t> keys_;  ///< hits by query: sphere of the one body above that of the other
-  std::vector<std::size_t> heads_;   ///< where a new sphere begins in keys_
+  std::vector<std::uint64_t> spare_;
+  std::vector<std::size_t> heads_;  ///< where a new sphere begins in keys_
 };
 
 }  // namespace innersphere
