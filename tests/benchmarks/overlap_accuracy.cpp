@@ -18,7 +18,7 @@ namespace {
 using namespace innersphere;
 using namespace innersphere::benchmarks;
 
-constexpr std::array<double, 5> kBins{0, 0.01, 0.05, 0.15, 1};  // overlap, as a fraction of the solid
+constexpr std::array<double, 6> kBins{0, 0.001, 0.01, 0.05, 0.15, 1};  // overlap, as a fraction of the solid
 
 /// What is compared at one pose, for one prefix.
 struct Deviation {

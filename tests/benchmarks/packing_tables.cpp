@@ -127,7 +127,7 @@ void tableOfSlowCases() {
 void writeCurves(const Curves& curves, const std::string& path) {
   std::ofstream file(path);
   for (const auto& [name, points] : curves) {
-    file << '"' << name << "\"\n";
+    file << "# " << name << '\n';
     for (const auto& [spheres, density] : points) file << spheres << ' ' << 100 * (1 - density) << '\n';
     file << "\n\n";
   }

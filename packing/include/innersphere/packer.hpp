@@ -21,7 +21,8 @@ struct PackOptions {
   double gap = 0;      ///< [m] stop when no surface point is farther than this from a sphere
   /// Each sphere has at least 1/(1+delta) of the largest radius possible when it is placed, 0.001 to 1.
   /// Smaller is denser and slower: 0.1 costs 0.1 points of density against 0.01 and is four times faster. The
-  /// first 300 spheres are placed with 0.01 in any case, for they decide most.
+  /// first 300 spheres are placed with 0.01 in any case, for they decide most, unless the solid is a shell or
+  /// the like, with many equal maxima.
   double delta = 0.1;
   int threads = 0;  ///< 0: all cores. The result does not depend on it.
 };

@@ -50,6 +50,12 @@ std::size_t CellQueue::top() const {
   return rung;
 }
 
+std::size_t CellQueue::countAbove(std::size_t until) const {
+  std::size_t count = 0;
+  for (std::size_t rung = 0; rung < std::min(until, buckets_.size()); ++rung) count += buckets_[rung].size();
+  return count;
+}
+
 std::vector<Cell> CellQueue::takeAbove(std::size_t until) {
   std::vector<Cell> taken;
   for (std::size_t rung = 0; rung < std::min(until, buckets_.size()); ++rung) {

@@ -56,7 +56,10 @@ class CellQueue {
   /// The first rung that has cells; the ladder's size if none has.
   std::size_t top() const;
 
-  /// Removes and returns all cells that may hold a sphere larger than rung `until`.
+  /// How many cells may hold a sphere larger than rung `until`.
+  std::size_t countAbove(std::size_t until) const;
+
+  /// Removes and returns them.
   std::vector<Cell> takeAbove(std::size_t until);
 
  private:

@@ -14,6 +14,10 @@ namespace {
 constexpr std::size_t kTightSpheres = 300;
 constexpr double kTightDelta = 0.01;
 
+// Unless this many cells would have to be looked at in one round: the solid is equally thick over a large
+// part, where proofs with a tight delta are expensive and gain nothing.
+constexpr std::size_t kMostTightCells = 50000;
+
 // The part of delta that is left between the radii wanted and the bound to be proven. Smaller: fewer rounds;
 // more work where the solid is equally thick everywhere.
 constexpr double kUndecided = 0.25;
@@ -67,7 +71,7 @@ Rounds::Placed Rounds::run(tbb::task_arena& arena, const std::function<bool(cons
 
   while (!queue.empty()) {
     const std::size_t rung = queue.top();
-    const bool early = placed.top.size() < kTightSpheres;
+    const bool early = placed.top.size() < kTightSpheres && queue.countAbove(rung + 1) < kMostTightCells;
     const std::size_t next = rung + (early ? 1 : strides);
     const float top = ladder[rung], bound = ladder[next];
     const double wanted = std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_);
