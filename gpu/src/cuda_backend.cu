@@ -83,10 +83,14 @@ struct Job {
 };
 
 __device__ Job findJob(const Batch& batch) {
-  unsigned lo = 0, hi = batch.count;
-  while (hi - lo > 1) {
-    const unsigned middle = lo + (hi - lo) / 2;
-    (batch.first[middle] <= blockIdx.x ? lo : hi) = middle;
+  // Often all queries have as many jobs, and this is the one.
+  unsigned lo = static_cast<unsigned>(static_cast<unsigned long long>(blockIdx.x) * batch.count / gridDim.x);
+  if (blockIdx.x < batch.first[lo] || blockIdx.x >= batch.first[lo + 1]) {
+    lo = 0;
+    for (unsigned hi = batch.count; hi - lo > 1;) {
+      const unsigned middle = lo + (hi - lo) / 2;
+      (batch.first[middle] <= blockIdx.x ? lo : hi) = middle;
+    }
   }
   const auto number = static_cast<std::uint32_t>(blockIdx.x - batch.first[lo]);
   return {lo, number / batch.parts * batch.job_size, number % batch.parts};
@@ -131,87 +135,95 @@ __device__ float squaredLength(float x, float y, float z) {
   return __fmaf_rn(x, x, __fmaf_rn(y, y, z * z));
 }
 
+constexpr int kPass = 4;                          ///< terms that the lanes exchange at once
+constexpr unsigned kShare = kWarp / (2 * kPass);  ///< lanes that sum one column
+
 /// Memory of one warp.
 struct Scratch {
-  struct Walk {
-    float4 partners[kPartners];  ///< spheres near the cluster, relative to the centre of the grid
-    std::uint32_t places[kPartners];
-    std::uint32_t runs[kWarp];  ///< for those that hold something: place of the first, less spheres before it
-  };
-  union {
-    Walk walk;
-    unsigned long long columns[core::kTerms][kWarp + 1];
-  };
-  uint2 queue[kQueue];  ///< candidates: places of walker and partner
+  float4 partners[kPartners];  ///< spheres near the cluster, relative to the centre of the grid
+  std::uint32_t places[kPartners];
+  std::uint32_t runs[kWarp];  ///< for those that hold something: place of the first, less spheres before it
+  uint2 queue[kQueue];        ///< candidates: places of walker and partner
+  /// Coarse and fine parts of some terms, a row for each lane; kShare more, so that lanes read different
+  /// banks.
+  unsigned long long columns[2 * kPass][kWarp + kShare];
 };
 
-/// Sums of one lane.
+/// The sums of a warp, spread over its lanes to take few registers: those from kShare i on hold column i of
+/// each pass, each the sum of every kShare-th row.
 template <int kTerms>
-struct LaneSums {
-  core::ShortSum terms[kTerms];
-  unsigned pairs;
+struct WarpSums {
+  static constexpr int kPasses = (kTerms + kPass - 1) / kPass;
+  unsigned long long parts[kPasses];
+  unsigned pairs;  ///< of this lane
   __device__ void clear() {
     pairs = 0;
 #pragma unroll
-    for (int i = 0; i < kTerms; ++i) terms[i] = {0, 0};
+    for (int pass = 0; pass < kPasses; ++pass) parts[pass] = 0;
   }
 };
 
-/// The sum of one column of numbers, a row for each lane, in the lanes 2 i and 2 i + 1 for the column i.
+/// Adds one pair of each lane.
 template <int kTerms>
-__device__ unsigned long long sumColumns(Scratch& scratch, unsigned lane) {
-  __syncwarp();
-  unsigned long long sum = 0;
-  if (lane / 2 < kTerms) {
-    for (unsigned k = 0; k < kWarp / 2; ++k) sum += scratch.columns[lane / 2][2 * k + (lane & 1)];
+__device__ void addTerms(const core::Terms& terms, const core::Units& units, Scratch& scratch, unsigned lane,
+                         WarpSums<kTerms>& sums) {
+#pragma unroll
+  for (int pass = 0; pass < WarpSums<kTerms>::kPasses; ++pass) {
+#pragma unroll
+    for (int i = 0; i < kPass; ++i) {
+      const int term = pass * kPass + i;
+      core::ShortSum sum{0, 0};
+      if (term < kTerms) core::add(sum, terms.terms[term], unitOf(units, term));
+      scratch.columns[2 * i][lane] = sum.coarse;
+      scratch.columns[2 * i + 1][lane] = sum.fine;
+    }
+    __syncwarp();
+#pragma unroll
+    for (unsigned row = lane % kShare; row < kWarp; row += kShare)
+      sums.parts[pass] += scratch.columns[lane / kShare][row];
+    __syncwarp();
   }
-  __syncwarp();
-  return sum + __shfl_xor_sync(kAll, sum, 1);
 }
 
-/// Adds the sums of all lanes to those of the query, and clears them.
+/// Adds the sums of the warp to those of the query, and clears them.
 template <int kTerms>
-__device__ void addWarp(DeviceSums& total, const core::Units& units, LaneSums<kTerms>& sums, Scratch& scratch,
-                        unsigned lane) {
-  if (!__any_sync(kAll, sums.pairs != 0)) return;
+__device__ void addWarp(DeviceSums& total, const core::Units& units, WarpSums<kTerms>& sums, unsigned lane) {
   unsigned pairs = sums.pairs;
   for (unsigned step = kWarp / 2; step > 0; step /= 2) pairs += __shfl_xor_sync(kAll, pairs, step);
+  if (pairs == 0) return;
   if (lane == 0) atomicAdd(&total.pairs, static_cast<unsigned long long>(pairs));
-  __syncwarp();
 #pragma unroll
-  for (int i = 0; i < kTerms; ++i) scratch.columns[i][lane] = sums.terms[i].coarse;
-  unsigned long long coarse = sumColumns<kTerms>(scratch, lane);
-#pragma unroll
-  for (int i = 0; i < kTerms; ++i) scratch.columns[i][lane] = sums.terms[i].fine;
-  const auto fine = static_cast<long long>(sumColumns<kTerms>(scratch, lane));
-  sums.clear();
-  const int term = static_cast<int>(lane / 2);
-  if (term >= kTerms) return;
-  const int bits = unitOf(units, term).fine_bits;
-  coarse += static_cast<unsigned long long>(fine >> bits);
-  Limbs& limbs = total.terms[term];
-  if (lane & 1) {
-    atomicAdd(&limbs.fine, static_cast<unsigned long long>(fine) & ((1ull << bits) - 1));
-    atomicAdd(&limbs.coarse_low, coarse & 0xffffffffu);
-  } else {
-    atomicAdd(&limbs.coarse_high, static_cast<unsigned long long>(static_cast<long long>(coarse) >> 32));
+  for (int pass = 0; pass < WarpSums<kTerms>::kPasses; ++pass) {
+    unsigned long long sum = sums.parts[pass];
+    for (unsigned step = 1; step < kShare; step *= 2) sum += __shfl_xor_sync(kAll, sum, step);
+    const unsigned long long partner = __shfl_xor_sync(kAll, sum, kShare);
+    const unsigned column = lane / kShare;
+    const int term = pass * kPass + static_cast<int>(column / 2);
+    if (lane % kShare != 0 || term >= kTerms) continue;
+    Limbs& limbs = total.terms[term];
+    const int bits = unitOf(units, term).fine_bits;
+    if (column % 2 == 1) {
+      atomicAdd(&limbs.fine, sum & ((1ull << bits) - 1));
+      continue;
+    }
+    const long long coarse = static_cast<long long>(sum) + (static_cast<long long>(partner) >> bits);
+    atomicAdd(&limbs.coarse_low, static_cast<unsigned long long>(coarse) & 0xffffffffu);
+    atomicAdd(&limbs.coarse_high, static_cast<unsigned long long>(coarse >> 32));
   }
+  sums.clear();
 }
 
-/// Decides one candidate and adds it if it counts. Returns whether it does.
+/// Decides one candidate. If it counts, gives its terms and returns true.
 template <Goal goal>
-__device__ bool addCandidate(const Batch& batch, const core::Setup& setup, unsigned query, uint2 candidate,
-                             LaneSums<kTermCount<goal>>& sums) {
+__device__ bool decide(const Batch& batch, const core::Setup& setup, unsigned query, uint2 candidate,
+                       core::Terms& terms) {
   const bool from_a = candidate.x & kFromA;
   const std::uint32_t walker = candidate.x & ~kFromA;
   const std::uint32_t ia = from_a ? walker : candidate.y, ib = from_a ? candidate.y : walker;
   const core::Pair pair = core::makePair(setup.frame, setup.a.grid.spheres[ia], setup.b.grid.spheres[ib]);
   if (!core::isHit(pair, from_a)) return false;
-  ++sums.pairs;
   if (goal == Goal::touch) return true;
-  const core::Terms terms = core::makeTerms<goal == Goal::wrench>(pair);
-#pragma unroll
-  for (int i = 0; i < kTermCount<goal>; ++i) core::add(sums.terms[i], terms.terms[i], unitOf(setup.units, i));
+  terms = core::makeTerms<goal == Goal::wrench>(pair);
   if (goal == Goal::wrench && batch.found) {
     const unsigned long long at = atomicAdd(batch.found, 1ull);
     if (at < batch.capacity) batch.hits[at] = {query, setup.a.grid.ids[ia], setup.b.grid.ids[ib]};
@@ -326,7 +338,7 @@ __global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ B
     active = core::clusterMeets(walker, walker.own.clusters[from_a ? number : number - setup.a.clusters]);
   }
 
-  LaneSums<kTermCount<goal>> sums;
+  WarpSums<kTermCount<goal>> sums;
   sums.clear();
   unsigned queued = 0, rounds = 0;
   for (unsigned left = __ballot_sync(kAll, active); left != 0; left &= left - 1) {
@@ -355,7 +367,7 @@ __global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ B
       const unsigned start = scanned - run.count;
       const unsigned filled = __ballot_sync(kAll, run.count != 0);
       __syncwarp();
-      if (run.count != 0) scratch.walk.runs[__popc(filled & ((1u << lane) - 1))] = run.first - start;
+      if (run.count != 0) scratch.runs[__popc(filled & ((1u << lane) - 1))] = run.first - start;
       __syncwarp();
       unsigned runs = 0;  // that begin before s
       for (unsigned s = 0;; s += kWarp) {
@@ -364,7 +376,7 @@ __global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ B
           const unsigned heads = warpOr(begins ? 1u << (start - s) : 0);
           const unsigned number = runs + __popc(heads & (kAll >> (kWarp - 1 - lane))) - 1;
           runs += __popc(heads);
-          const unsigned place = scratch.walk.runs[number] + s + lane;
+          const unsigned place = scratch.runs[number] + s + lane;
           bool near = s + lane < spheres;
           float4 partner{};
           if (near) {
@@ -379,8 +391,8 @@ __global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ B
           const unsigned all_near = __ballot_sync(kAll, near);
           if (near) {
             const unsigned at = partners + __popc(all_near & ((1u << lane) - 1));
-            scratch.walk.partners[at] = partner;
-            scratch.walk.places[at] = place;
+            scratch.partners[at] = partner;
+            scratch.places[at] = place;
           }
           partners += __popc(all_near);
         }
@@ -397,7 +409,7 @@ __global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ B
               unsigned some = 0;
 #pragma unroll
               for (unsigned i = 0; i < kUnroll; ++i) {  // past the end is what was there before
-                const float4 partner = scratch.walk.partners[at + k + i];
+                const float4 partner = scratch.partners[at + k + i];
                 const float sum = partner.w + own.reach;
                 const float gap2 =
                     squaredLength(partner.x - own.p.x, partner.y - own.p.y, partner.z - own.p.z);
@@ -411,8 +423,7 @@ __global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ B
               if (near != 0) {
                 const unsigned k = static_cast<unsigned>(__ffs(static_cast<int>(near)) - 1);
                 near &= near - 1;
-                scratch.queue[queued + __popc(finders & ((1u << lane) - 1))] = {self,
-                                                                                scratch.walk.places[at + k]};
+                scratch.queue[queued + __popc(finders & ((1u << lane) - 1))] = {self, scratch.places[at + k]};
               }
               queued += __popc(finders);
               const bool drain = flush && finders == 0 && at + kWarp >= partners && queued > 0;
@@ -420,12 +431,16 @@ __global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ B
                 __syncwarp();
                 const unsigned taken = min(queued, kWarp);
                 queued -= taken;
-                bool hit = false;
-                if (lane < taken)
-                  hit = addCandidate<goal>(batch, setup, job.query, scratch.queue[queued + lane], sums);
+                core::Terms terms{};
+                const bool hit = lane < taken &&
+                                 decide<goal>(batch, setup, job.query, scratch.queue[queued + lane], terms);
                 if (goal == Goal::touch && __any_sync(kAll, hit)) {
                   if (lane == 0) atomicExch(&total.pairs, 1ull);
                   return;
+                }
+                if (goal != Goal::touch) {
+                  sums.pairs += hit ? 1 : 0;
+                  addTerms(terms, setup.units, scratch, lane, sums);
                 }
                 __syncwarp();
                 ++rounds;
@@ -436,7 +451,7 @@ __global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ B
           } while (at < partners);
           partners = 0;
           if (goal != Goal::touch && rounds > kRoundsPerSum / 4) {
-            addWarp(total, setup.units, sums, scratch, lane);
+            addWarp(total, setup.units, sums, lane);
             rounds = 0;
           }
           __syncwarp();
@@ -446,7 +461,7 @@ __global__ void __launch_bounds__(kWarp, 16) walkBatch(const __grid_constant__ B
       if (last_blocks) break;
     }
   }
-  if (goal != Goal::touch) addWarp(total, setup.units, sums, scratch, lane);
+  if (goal != Goal::touch) addWarp(total, setup.units, sums, lane);
 }
 
 class CudaBackend : public WalkBackend {

@@ -1,12 +1,11 @@
 #include "finish.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <utility>
 
 #include "core/fixed_sum.hpp"
 #include "core/pair.hpp"
+#include "digit_sort.hpp"
 
 namespace innersphere {
 
@@ -46,19 +45,6 @@ SphereContact sumContact(const PreparedQuery& query, const std::uint64_t* keys, 
                   static_cast<float>(centroid.z)};
   sum.area = {static_cast<float>(area.x), static_cast<float>(area.y), static_cast<float>(area.z)};
   return sum;
-}
-
-/// Sorts by the lowest `bits` bits from bit `from` on, eight at a time, and keeps the order of equal ones.
-/// The result is in `keys`; `spare` has the same size.
-void sortByBits(std::uint64_t*& keys, std::uint64_t*& spare, std::size_t count, int from, int bits) {
-  for (int shift = from; shift < from + bits; shift += 8) {
-    std::array<std::size_t, 256> at{};
-    for (std::size_t k = 0; k < count; ++k) ++at[keys[k] >> shift & 0xff];
-    std::size_t sum = 0;
-    for (std::size_t& digit : at) sum += std::exchange(digit, sum);
-    for (std::size_t k = 0; k < count; ++k) spare[at[keys[k] >> shift & 0xff]++] = keys[k];
-    std::swap(keys, spare);
-  }
 }
 
 template <typename T>
@@ -128,8 +114,9 @@ void HitSorter::sortGroups(const std::vector<PreparedQuery>& queries, bool by_b,
       const int bits_a = std::bit_width(queries[q].setup.a.grid.count - 1);
       const int bits_b = std::bit_width(queries[q].setup.b.grid.count - 1);
       std::uint64_t *keys = group, *spare = spare_.data() + first_[q];
-      sortByBits(keys, spare, count, 0, by_b ? bits_a : bits_b);
-      sortByBits(keys, spare, count, 32, by_b ? bits_b : bits_a);
+      const auto key = [](std::uint64_t x) { return x; };
+      sortByBits(keys, spare, count, key, 0, by_b ? bits_a : bits_b);
+      sortByBits(keys, spare, count, key, 32, by_b ? bits_b : bits_a);
       if (keys != group) std::copy_n(keys, count, group);
     }
   });

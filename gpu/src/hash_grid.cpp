@@ -1,7 +1,6 @@
 #include "hash_grid.hpp"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include <limits>
 
 #include "core/hilbert.hpp"
+#include "digit_sort.hpp"
 
 namespace innersphere {
 
@@ -64,7 +64,6 @@ std::array<std::uint32_t, 3> cellOf(const core::GridView& grid, const Sphere& s)
 struct HashGrid::Place {
   std::uint64_t key;
   std::uint32_t index;
-  int level() const { return static_cast<int>(key >> (3 * core::kAxisBits)); }
 };
 
 HashGrid::HashGrid(std::vector<Sphere> spheres) : spheres_(std::move(spheres)) {
@@ -118,19 +117,22 @@ void HashGrid::measure() {
 }
 
 void HashGrid::orderSpheres() {
-  std::vector<Place> places(spheres_.size());
+  const float* last = view_.last_cell;
+  curve_bits_ = std::bit_width(static_cast<std::uint32_t>(std::max({last[0], last[1], last[2], 1.0f})));
+  std::vector<Place> places(spheres_.size()), spare(spheres_.size());
   forRanges(spheres_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto cell = cellOf(view_, spheres_[i]);
       const int level = std::max(core::levelOf(spheres_[i].radius) - view_.finest, 0);
-      places[i] = {static_cast<std::uint64_t>(level) << (3 * core::kAxisBits) |
-                       core::hilbertPlace(cell[0], cell[1], cell[2], core::kAxisBits),
+      places[i] = {static_cast<std::uint64_t>(level) << (3 * curve_bits_) |
+                       core::hilbertPlace(cell[0], cell[1], cell[2], curve_bits_),
                    static_cast<std::uint32_t>(i)};
     }
   });
-  tbb::parallel_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    return a.key != b.key ? a.key < b.key : a.index < b.index;
-  });
+  // Spheres of equal keys keep the order of the packing.
+  const int level_bits = std::bit_width(static_cast<unsigned>(view_.level_count - 1));
+  sortByBits(
+      places, spare, [](const Place& place) { return place.key; }, 0, 3 * curve_bits_ + level_bits);
   std::vector<Sphere> sorted(places.size());
   ids_.resize(places.size());
   places_.resize(places.size());
@@ -151,15 +153,18 @@ void HashGrid::orderSpheres() {
 void HashGrid::splitLevels(const std::vector<Place>& places) {
   levels_.assign(static_cast<std::size_t>(view_.level_count), core::Level{});
   // Two neighbours share a block if their keys differ only in the bits below it.
+  const auto levelOf = [&](const Place& place) {
+    return static_cast<std::size_t>(place.key >> (3 * curve_bits_));
+  };
   using Steps = std::array<std::uint32_t, core::kAxisBits + 1>;
   std::vector<Steps> steps(levels_.size(), Steps{});
   for (std::size_t k = 0; k < places.size(); ++k) {
-    core::Level& level = levels_[static_cast<std::size_t>(places[k].level())];
+    core::Level& level = levels_[levelOf(places[k])];
     if (level.count++ == 0) {
       level.first = static_cast<std::uint32_t>(k);
     } else {
       const int differ = std::bit_width(places[k].key ^ places[k - 1].key);
-      ++steps[static_cast<std::size_t>(places[k].level())][static_cast<std::size_t>((differ + 2) / 3)];
+      ++steps[levelOf(places[k])][static_cast<std::size_t>((differ + 2) / 3)];
     }
     level.largest = std::max(level.largest, spheres_[k].radius);
   }
@@ -167,7 +172,7 @@ void HashGrid::splitLevels(const std::vector<Place>& places) {
     core::Level& level = levels_[l];
     if (level.count == 0) continue;
     level.blocks = 1;
-    int shift = core::kAxisBits;
+    int shift = curve_bits_;
     // Never below the level's own cells, so that the blocks near a sphere stay few.
     for (; shift > static_cast<int>(l); --shift) {
       const std::uint32_t blocks = level.blocks + steps[l][static_cast<std::size_t>(shift)];

@@ -62,6 +62,7 @@ class HashGrid {
   void makeColumns();
   void fillTable();
 
+  int curve_bits_ = 0;  ///< of a cell's coordinate
   std::vector<Sphere> spheres_;
   std::vector<std::uint32_t> ids_;
   std::vector<std::uint32_t> places_;

@@ -145,6 +145,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> files;
   std::size_t batch = 1024, runs = 101;
   int threads = 1;
+  std::string device;
+  app.add_option("--device", device, "Name of the GPU, for the head of the table");
   app.add_option("PACKING", files, "Packing files for the sweep of poses, besides the balls");
   app.add_option("--spheres", counts, "Numbers of spheres of the balls; the last is that of the other tables")
       ->capture_default_str()
@@ -156,6 +158,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     std::printf("%s", benchmarks::heading("Query", argc, argv).c_str());
+    if (!device.empty()) std::printf("GPU: %s\n\n", device.c_str());
     std::vector<Backend> backends = {Backend::cpu};
     if (cudaAvailable()) backends.push_back(Backend::cuda);
     const std::size_t count = counts.back();

@@ -1,0 +1,36 @@
+// Sorting by integer keys, a digit at a time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace innersphere {
+
+/// Sorts `items` by the bits from..from + bits of their keys and keeps the order of equal ones. `items` and
+/// `spare` are pointers to `count` items each, and may change places.
+template <typename T, typename Key>
+void sortByBits(T*& items, T*& spare, std::size_t count, const Key& key, int from, int bits) {
+  constexpr int kDigit = 8;
+  for (int shift = from; shift < from + bits; shift += kDigit) {
+    std::array<std::size_t, 1 << kDigit> at{};
+    const auto digit = [&](const T& item) { return key(item) >> shift & ((1u << kDigit) - 1); };
+    for (std::size_t k = 0; k < count; ++k) ++at[digit(items[k])];
+    std::size_t sum = 0;
+    for (std::size_t& count_or_place : at) sum += std::exchange(count_or_place, sum);
+    for (std::size_t k = 0; k < count; ++k) spare[at[digit(items[k])]++] = items[k];
+    std::swap(items, spare);
+  }
+}
+
+/// The same for vectors of one size.
+template <typename T, typename Key>
+void sortByBits(std::vector<T>& items, std::vector<T>& spare, const Key& key, int from, int bits) {
+  T *first = items.data(), *second = spare.data();
+  sortByBits(first, second, items.size(), key, from, bits);
+  if (first != items.data()) std::swap(items, spare);
+}
+
+}  // namespace innersphere
