@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numbers>
 
 #include "exact_poses.hpp"
@@ -105,7 +106,17 @@ void printRow(const std::string& name, std::uint32_t prefix, int bin, const std:
               medianOf(all, [](const Deviation& d) { return d.force_angle; }));
 }
 
-void compare(const std::string& mesh, const std::string& table, std::size_t spheres, FILE* points) {
+using Bins = std::array<std::vector<Deviation>, kBins.size() - 1>;
+
+void printRows(const std::string& name, std::uint32_t prefix, const Bins& bins) {
+  for (int bin = 0; bin < static_cast<int>(bins.size()); ++bin) {
+    if (!bins[bin].empty()) printRow(name, prefix, bin, bins[bin]);
+  }
+  std::fflush(stdout);
+}
+
+void compare(const std::string& mesh, const std::string& table, std::size_t spheres, FILE* points,
+             std::map<std::uint32_t, Bins>& all) {
   const std::vector<ExactPose> poses = readExactPoses(table);
   const auto solid = makeSolid(readMesh(mesh), mesh);
   PackOptions options;
@@ -118,7 +129,7 @@ void compare(const std::string& mesh, const std::string& table, std::size_t sphe
                         norm({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]}));
   for (const VolumeTrueRadii& radii : packing->volume_true) {
     if (radii.count < 1000) continue;
-    std::array<std::vector<Deviation>, kBins.size() - 1> bins;
+    Bins bins;
     for (const ExactPose& pose : poses) {
       const double fraction = pose.volume / volume;
       int bin = 0;
@@ -129,10 +140,11 @@ void compare(const std::string& mesh, const std::string& table, std::size_t sphe
                      bins[bin].back().volume_true);
       }
     }
-    for (int bin = 0; bin < static_cast<int>(bins.size()); ++bin) {
-      if (!bins[bin].empty()) printRow(name, radii.count, bin, bins[bin]);
+    printRows(name, radii.count, bins);
+    for (std::size_t bin = 0; bin < bins.size(); ++bin) {
+      std::vector<Deviation>& so_far = all[radii.count][bin];
+      so_far.insert(so_far.end(), bins[bin].begin(), bins[bin].end());
     }
-    std::fflush(stdout);
   }
 }
 
@@ -160,14 +172,16 @@ int main(int argc, char** argv) {
   try {
     std::printf("%s", innersphere::benchmarks::heading("Accuracy of the overlap", argc, argv).c_str());
     printHead();
+    std::map<std::uint32_t, Bins> all;
     for (const std::string& item : cases) {
       const std::size_t equals = item.find('=');
       if (equals == std::string::npos) {
         std::fprintf(stderr, "%s: give a mesh and a table as MESH=POSES\n", item.c_str());
         return 2;
       }
-      compare(item.substr(0, equals), item.substr(equals + 1), spheres, points.get());
+      compare(item.substr(0, equals), item.substr(equals + 1), spheres, points.get(), all);
     }
+    for (const auto& [prefix, bins] : all) printRows("all", prefix, bins);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
