@@ -161,37 +161,50 @@ inline bool walkImpl(const core::Walker& walker, const Columns& columns, const c
   return testPartners(columns, walkers, partners, candidates, sink);
 }
 
+/// The spheres of some pairs, an array for each coordinate.
+template <std::size_t kSize>
+struct SpherePairs {
+  alignas(64) float columns[8][kSize];
+
+  /// Pairs from `count` on repeat the last one, up to whole lanes. Returns how many there are then.
+  template <typename Places>
+  std::size_t load(const core::Setup& setup, const Places& places_a, const Places& places_b,
+                   std::size_t count) {
+    const std::size_t n = (count + kLanes - 1) / kLanes * kLanes;
+    const Sphere* as = setup.a.grid.spheres;
+    const Sphere* bs = setup.b.grid.spheres;
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t c = std::min(k, count - 1);
+      const Sphere a = as[places_a[c]], b = bs[places_b[c]];
+      columns[0][k] = a.x;
+      columns[1][k] = a.y;
+      columns[2][k] = a.z;
+      columns[3][k] = a.radius;
+      columns[4][k] = b.x;
+      columns[5][k] = b.y;
+      columns[6][k] = b.z;
+      columns[7][k] = b.radius;
+    }
+    return n;
+  }
+
+  Sphere a(std::size_t k) const { return {columns[0][k], columns[1][k], columns[2][k], columns[3][k]}; }
+  Sphere b(std::size_t k) const { return {columns[4][k], columns[5][k], columns[6][k], columns[7][k]}; }
+};
+
 template <bool kWrench>
 inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally) {
   constexpr std::size_t kSize = Candidates::kSize;
   constexpr int kTerms = kWrench ? core::kTerms : core::kVolumeTerms;
-  const std::size_t count = candidates.count;
-  const std::size_t n = (count + kLanes - 1) / kLanes * kLanes;
-  alignas(64) float spheres[8][kSize];
-  const Sphere* as = setup.a.grid.spheres;
-  const Sphere* bs = setup.b.grid.spheres;
-  const auto& places_a = from_a ? candidates.walker : candidates.partner;
-  const auto& places_b = from_a ? candidates.partner : candidates.walker;
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t c = std::min(k, count - 1);
-    const Sphere a = as[places_a[c]], b = bs[places_b[c]];
-    spheres[0][k] = a.x;
-    spheres[1][k] = a.y;
-    spheres[2][k] = a.z;
-    spheres[3][k] = a.radius;
-    spheres[4][k] = b.x;
-    spheres[5][k] = b.y;
-    spheres[6][k] = b.z;
-    spheres[7][k] = b.radius;
-  }
+  SpherePairs<kSize> spheres;
+  const std::size_t n = spheres.load(setup, from_a ? candidates.walker : candidates.partner,
+                                     from_a ? candidates.partner : candidates.walker, candidates.count);
   alignas(64) double terms[kTerms][kSize];
   alignas(64) std::int64_t hits[kSize];
   const core::Frame frame = setup.frame;
-  const std::int64_t last = static_cast<std::int64_t>(count);
+  const std::int64_t last = static_cast<std::int64_t>(candidates.count);
   for (std::size_t k = 0; k < n; ++k) {
-    const Sphere a{spheres[0][k], spheres[1][k], spheres[2][k], spheres[3][k]};
-    const Sphere b{spheres[4][k], spheres[5][k], spheres[6][k], spheres[7][k]};
-    core::Pair pair = core::makePair(frame, a, b);
+    core::Pair pair = core::makePair(frame, spheres.a(k), spheres.b(k));
     const bool hit = core::isHit(pair, from_a) & (static_cast<std::int64_t>(k) < last);
     hits[k] = hit ? 1 : 0;
     const double sum = pair.ra + pair.rb;
@@ -206,6 +219,25 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
     core::ShortSum sum{0, 0};
     for (std::size_t k = 0; k < n; ++k) core::add(sum, terms[i][k], unit);
     tally.terms[static_cast<std::size_t>(i)] = sum;
+  }
+}
+
+inline void evaluateImpl(const core::Setup& setup, std::size_t count, PairValues& pairs) {
+  SpherePairs<PairValues::kSize> spheres;
+  const std::size_t n = spheres.load(setup, pairs.a, pairs.b, count);
+  const core::Frame frame = setup.frame;
+  for (std::size_t k = 0; k < n; ++k) {
+    const core::Pair pair = core::makePair(frame, spheres.a(k), spheres.b(k));
+    const core::Contact contact = core::makeContact(pair);
+    const core::Vec3r moment = core::lensMoment(pair, contact);
+    const core::Vec3r area = contact.lens.rim_area * contact.n;
+    pairs.of[PairValues::volume][k] = contact.lens.volume;
+    pairs.of[PairValues::moment][k] = moment.x;
+    pairs.of[PairValues::moment + 1][k] = moment.y;
+    pairs.of[PairValues::moment + 2][k] = moment.z;
+    pairs.of[PairValues::area][k] = area.x;
+    pairs.of[PairValues::area + 1][k] = area.y;
+    pairs.of[PairValues::area + 2][k] = area.z;
   }
 }
 
@@ -224,7 +256,10 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
                                       Tally& tally) {                                                        \
       sumImpl<false>(setup, from_a, candidates, tally);                                                      \
     }                                                                                                        \
-    static constexpr CpuKernels kKernels{walk, sumAll, sumVolumes};                                          \
+    attributes static void evaluate(const core::Setup& setup, std::size_t count, PairValues& pairs) {        \
+      evaluateImpl(setup, count, pairs);                                                                     \
+    }                                                                                                        \
+    static constexpr CpuKernels kKernels{walk, sumAll, sumVolumes, evaluate};                                \
   }
 
 INNERSPHERE_KERNELS(Baseline, );

@@ -35,6 +35,14 @@ struct Tally {
   std::array<std::uint8_t, Candidates::kSize> hit;  ///< for each candidate: does it count?
 };
 
+/// What a contact of a sphere sums over its partners, for some pairs.
+struct PairValues {
+  static constexpr std::size_t kSize = 256;
+  enum Value { volume = 0, moment = 1, area = 4, values = 7 };
+  std::array<std::uint32_t, kSize> a, b;  ///< given: places in the grids
+  alignas(64) std::array<std::array<double, kSize>, values> of;
+};
+
 struct CpuKernels {
   /// Finds the candidates of one cluster, and hands them on where the room ends; the last of them stay in
   /// `candidates`. Returns false if it was stopped.
@@ -43,6 +51,8 @@ struct CpuKernels {
   /// Decides candidates and sums those that count: all terms, or only volumes.
   void (*sumAll)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
   void (*sumVolumes)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
+  /// Evaluates the first `count` pairs, which overlap.
+  void (*evaluate)(const core::Setup& setup, std::size_t count, PairValues& pairs);
 };
 
 /// For this processor.

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 #include "core/fixed_sum.hpp"
-#include "core/pair.hpp"
+#include "cpu_kernels.hpp"
 #include "digit_sort.hpp"
 
 namespace innersphere {
@@ -22,30 +23,7 @@ std::uint32_t low(std::uint64_t key) {
   return static_cast<std::uint32_t>(key);
 }
 
-/// Sums the lenses of one sphere with its partners, keys[0 .. count).
-SphereContact sumContact(const PreparedQuery& query, const std::uint64_t* keys, std::size_t count,
-                         bool of_b) {
-  double volume = 0;
-  core::Vec3r moment{0, 0, 0}, area{0, 0, 0};
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t a = of_b ? low(keys[k]) : high(keys[k]), b = of_b ? high(keys[k]) : low(keys[k]);
-    const core::Pair pair =
-        core::makePair(query.setup.frame, query.setup.a.grid.spheres[query.grid_a->placeOf(a)],
-                       query.setup.b.grid.spheres[query.grid_b->placeOf(b)]);
-    const core::Contact contact = core::makeContact(pair);
-    volume += contact.lens.volume;
-    moment = moment + core::lensMoment(pair, contact);
-    area = area + contact.lens.rim_area * contact.n;
-  }
-  const core::Vec3r centroid = volume > 0 ? 1 / volume * moment : core::Vec3r{0, 0, 0};
-  SphereContact sum;
-  sum.sphere = high(keys[0]);
-  sum.volume = static_cast<float>(volume);
-  sum.centroid = {static_cast<float>(centroid.x), static_cast<float>(centroid.y),
-                  static_cast<float>(centroid.z)};
-  sum.area = {static_cast<float>(area.x), static_cast<float>(area.y), static_cast<float>(area.z)};
-  return sum;
-}
+constexpr std::size_t kFew = 256;  ///< keys are sorted sooner by comparing
 
 template <typename T>
 void clear(QueryResult::Ranges<T>& ranges, std::size_t queries) {
@@ -78,32 +56,30 @@ void HitSorter::run(const std::vector<PreparedQuery>& queries, const std::vector
   clear(result.contacts_a, queries.size());
   clear(result.contacts_b, queries.size());
   if (!wantsHits(want)) return;
-  groupByQuery(sums, hits, false);
-  sortGroups(queries, false, workers);
+  groupByQuery(sums, hits);
+  sortGroups(queries, workers);
   if (want == Want::pairs) return writePairs(result.pairs);
-  writeContacts(queries, false, workers, result.contacts_a);
-  groupByQuery(sums, hits, true);
-  sortGroups(queries, true, workers);
-  writeContacts(queries, true, workers, result.contacts_b);
+  evaluate(queries, workers);
+  writeContacts(false, workers, result.contacts_a);
+  regroupByB(queries, workers);
+  writeContacts(true, workers, result.contacts_b);
 }
 
-void HitSorter::groupByQuery(const std::vector<core::Sums>& sums, const Hits& hits, bool by_b) {
+void HitSorter::groupByQuery(const std::vector<core::Sums>& sums, const Hits& hits) {
   first_.resize(sums.size() + 1);
   first_[0] = 0;
   for (std::size_t q = 0; q < sums.size(); ++q) first_[q + 1] = first_[q] + sums[q].pairs;
   cursor_.assign(first_.begin(), first_.end());
   keys_.resize(hits.count);
+  spare_.resize(hits.count);
   for (std::size_t k = 0; k < hits.count; ++k) {
     const Hit& hit = hits.items[k];
-    keys_[cursor_[hit.query]++] =
-        by_b ? std::uint64_t{hit.b} << 32 | hit.a : std::uint64_t{hit.a} << 32 | hit.b;
+    keys_[cursor_[hit.query]++] = std::uint64_t{hit.a} << 32 | hit.b;
   }
 }
 
-void HitSorter::sortGroups(const std::vector<PreparedQuery>& queries, bool by_b, Workers& workers) {
-  constexpr std::size_t kFew = 256;  // are sorted sooner by comparing
-  spare_.resize(keys_.size());
-  workers.forRanges(first_.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
+void HitSorter::sortGroups(const std::vector<PreparedQuery>& queries, Workers& workers) {
+  workers.forRanges(queries.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t q = begin; q < end; ++q) {
       std::uint64_t* const group = keys_.data() + first_[q];
       const std::size_t count = first_[q + 1] - first_[q];
@@ -111,12 +87,10 @@ void HitSorter::sortGroups(const std::vector<PreparedQuery>& queries, bool by_b,
         std::sort(group, group + count);
         continue;
       }
-      const int bits_a = std::bit_width(queries[q].setup.a.grid.count - 1);
-      const int bits_b = std::bit_width(queries[q].setup.b.grid.count - 1);
       std::uint64_t *keys = group, *spare = spare_.data() + first_[q];
       const auto key = [](std::uint64_t x) { return x; };
-      sortByBits(keys, spare, count, key, 0, by_b ? bits_a : bits_b);
-      sortByBits(keys, spare, count, key, 32, by_b ? bits_b : bits_a);
+      sortByBits(keys, spare, count, key, 0, std::bit_width(queries[q].setup.b.grid.count - 1));
+      sortByBits(keys, spare, count, key, 32, std::bit_width(queries[q].setup.a.grid.count - 1));
       if (keys != group) std::copy_n(keys, count, group);
     }
   });
@@ -128,10 +102,76 @@ void HitSorter::writePairs(QueryResult::Ranges<SpherePair>& pairs) const {
   for (std::size_t k = 0; k < keys_.size(); ++k) pairs.items[k] = {high(keys_[k]), low(keys_[k])};
 }
 
-void HitSorter::writeContacts(const std::vector<PreparedQuery>& queries, bool of_b, Workers& workers,
-                              QueryResult::Ranges<SphereContact>& contacts) {
+void HitSorter::evaluate(const std::vector<PreparedQuery>& queries, Workers& workers) {
+  values_.resize(keys_.size());
+  workers.forRanges(keys_.size(), 4 * PairValues::kSize, [&](std::size_t begin, std::size_t end) {
+    PairValues pairs;
+    std::size_t q =
+        static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), begin) - first_.begin());
+    while (begin < end) {
+      const std::size_t stop = std::min({end, first_[q], begin + PairValues::kSize});
+      const PreparedQuery& query = queries[q - 1];
+      for (std::size_t k = begin; k < stop; ++k) {
+        pairs.a[k - begin] = query.grid_a->placeOf(high(keys_[k]));
+        pairs.b[k - begin] = query.grid_b->placeOf(low(keys_[k]));
+      }
+      if (begin < stop) cpuKernels().evaluate(query.setup, stop - begin, pairs);
+      for (std::size_t k = begin; k < stop; ++k) {
+        const auto value = [&](int i) { return pairs.of[static_cast<std::size_t>(i)][k - begin]; };
+        constexpr int kMoment = PairValues::moment, kArea = PairValues::area;
+        values_[k] = {value(PairValues::volume),
+                      {value(kMoment), value(kMoment + 1), value(kMoment + 2)},
+                      {value(kArea), value(kArea + 1), value(kArea + 2)}};
+      }
+      begin = stop;
+      if (begin == first_[q]) ++q;
+    }
+  });
+}
+
+/// The hits are sorted by sphere of A, and keep that order among those of one sphere of B.
+void HitSorter::regroupByB(const std::vector<PreparedQuery>& queries, Workers& workers) {
+  workers.forRanges(queries.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t q = begin; q < end; ++q) {
+      std::uint64_t* const group = keys_.data() + first_[q];
+      const std::size_t count = first_[q + 1] - first_[q];
+      assert(count >> 32 == 0);
+      for (std::size_t k = 0; k < count; ++k) group[k] = std::uint64_t{low(group[k])} << 32 | k;
+      if (count < kFew) {
+        std::sort(group, group + count);
+        continue;
+      }
+      std::uint64_t *keys = group, *spare = spare_.data() + first_[q];
+      const auto key = [](std::uint64_t x) { return x; };
+      sortByBits(keys, spare, count, key, 32, std::bit_width(queries[q].setup.b.grid.count - 1));
+      if (keys != group) std::copy_n(keys, count, group);
+    }
+  });
+}
+
+/// Sums the lenses of one sphere with its partners, keys_[begin .. end).
+SphereContact HitSorter::sumContact(std::size_t query, std::size_t begin, std::size_t end, bool of_b) const {
+  Values sum{0, {0, 0, 0}, {0, 0, 0}};
+  for (std::size_t k = begin; k < end; ++k) {
+    const Values& pair = values_[of_b ? first_[query] + low(keys_[k]) : k];
+    sum.volume += pair.volume;
+    sum.moment = sum.moment + pair.moment;
+    sum.area = sum.area + pair.area;
+  }
+  const core::Vec3r centroid = sum.volume > 0 ? 1 / sum.volume * sum.moment : core::Vec3r{0, 0, 0};
+  SphereContact contact;
+  contact.sphere = high(keys_[begin]);
+  contact.volume = static_cast<float>(sum.volume);
+  contact.centroid = {static_cast<float>(centroid.x), static_cast<float>(centroid.y),
+                      static_cast<float>(centroid.z)};
+  contact.area = {static_cast<float>(sum.area.x), static_cast<float>(sum.area.y),
+                  static_cast<float>(sum.area.z)};
+  return contact;
+}
+
+void HitSorter::writeContacts(bool of_b, Workers& workers, QueryResult::Ranges<SphereContact>& contacts) {
   heads_.clear();
-  for (std::size_t q = 0; q < queries.size(); ++q) {
+  for (std::size_t q = 0; q + 1 < first_.size(); ++q) {
     contacts.first[q] = heads_.size();
     for (std::size_t k = first_[q]; k < first_[q + 1]; ++k) {
       if (k == first_[q] || high(keys_[k]) != high(keys_[k - 1])) heads_.push_back(k);
@@ -144,8 +184,8 @@ void HitSorter::writeContacts(const std::vector<PreparedQuery>& queries, bool of
     auto query = std::upper_bound(contacts.first.begin(), contacts.first.end(), begin) - 1;
     for (std::size_t c = begin; c < end; ++c) {
       while (c >= query[1]) ++query;
-      const PreparedQuery& prepared = queries[static_cast<std::size_t>(query - contacts.first.begin())];
-      contacts.items[c] = sumContact(prepared, keys_.data() + heads_[c], heads_[c + 1] - heads_[c], of_b);
+      contacts.items[c] = sumContact(static_cast<std::size_t>(query - contacts.first.begin()), heads_[c],
+                                     heads_[c + 1], of_b);
     }
   });
 }

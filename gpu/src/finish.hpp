@@ -21,16 +21,27 @@ class HitSorter {
            Want want, Workers& workers, QueryResult& result);
 
  private:
-  void groupByQuery(const std::vector<core::Sums>& sums, const Hits& hits, bool by_b);
-  void sortGroups(const std::vector<PreparedQuery>& queries, bool by_b, Workers& workers);
+  /// What one pair adds to the contacts of both of its spheres.
+  struct Values {
+    double volume;
+    core::Vec3r moment, area;
+  };
+
+  void groupByQuery(const std::vector<core::Sums>& sums, const Hits& hits);
+  void sortGroups(const std::vector<PreparedQuery>& queries, Workers& workers);
   void writePairs(QueryResult::Ranges<SpherePair>& pairs) const;
-  void writeContacts(const std::vector<PreparedQuery>& queries, bool of_b, Workers& workers,
-                     QueryResult::Ranges<SphereContact>& contacts);
+  void evaluate(const std::vector<PreparedQuery>& queries, Workers& workers);
+  void regroupByB(const std::vector<PreparedQuery>& queries, Workers& workers);
+  void writeContacts(bool of_b, Workers& workers, QueryResult::Ranges<SphereContact>& contacts);
+  SphereContact sumContact(std::size_t query, std::size_t begin, std::size_t end, bool of_b) const;
 
   std::vector<std::size_t> first_;  ///< hits of all queries before each
   std::vector<std::size_t> cursor_;
-  std::vector<std::uint64_t> keys_;  ///< hits by query: sphere of the one body above that of the other
+  /// Hits by query, sorted: sphere of A above that of B; once regrouped, sphere of B above the hit's number
+  /// in its query.
+  std::vector<std::uint64_t> keys_;
   std::vector<std::uint64_t> spare_;
+  std::vector<Values> values_;      ///< of the hits as they were sorted first
   std::vector<std::size_t> heads_;  ///< where a new sphere begins in keys_
 };
 
