@@ -71,8 +71,8 @@ inline std::uint32_t addRun(const Columns& columns, const Walkers& walkers, std:
       const float dy = std::max(std::max(lo.y - y[k], y[k] - hi.y), 0.0f);
       const float dz = std::max(std::max(lo.z - z[k], z[k] - hi.z), 0.0f);
       const float sum = r[k] + reach;
-      const bool inside = at + k < end;
-      near[k] = (dx * dx + dy * dy + dz * dz > sum * sum) | !inside ? 0 : 1;
+      const std::int32_t inside = at + k < end ? 1 : 0;
+      near[k] = dx * dx + dy * dy + dz * dz > sum * sum ? 0 : inside;
     }
     for (std::size_t k = 0; k < kLanes; ++k) {  // always written, kept where near: no branch to mispredict
       partners.place[n] = at + static_cast<std::uint32_t>(k);
@@ -205,7 +205,7 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
   const std::int64_t last = static_cast<std::int64_t>(candidates.count);
   for (std::size_t k = 0; k < n; ++k) {
     core::Pair pair = core::makePair(frame, spheres.a(k), spheres.b(k));
-    const bool hit = core::isHit(pair, from_a) & (static_cast<std::int64_t>(k) < last);
+    const bool hit = static_cast<std::int64_t>(k) < last ? core::isHit(pair, from_a) : false;
     hits[k] = hit ? 1 : 0;
     const double sum = pair.ra + pair.rb;
     pair.distance2 = hit ? pair.distance2 : sum * sum;  // two balls that touch from outside add nothing
@@ -262,28 +262,27 @@ inline void evaluateImpl(const core::Setup& setup, std::size_t count, PairValues
     static constexpr CpuKernels kKernels{walk, sumAll, sumVolumes, evaluate};                                \
   }
 
-INNERSPHERE_KERNELS(Baseline, );
+INNERSPHERE_KERNELS(Baseline, __attribute__((flatten)));
 #if defined(__x86_64__) && defined(__GNUC__)
 INNERSPHERE_KERNELS(Avx2, __attribute__((target("avx2"), flatten)));
-INNERSPHERE_KERNELS(Avx512,
-                    __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"), flatten)));
+INNERSPHERE_KERNELS(Avx512, __attribute__((target("avx512f,avx512dq,avx512vl"), flatten)));
 #endif
 #undef INNERSPHERE_KERNELS
 
-const CpuKernels& bestKernels() {
-#if defined(__x86_64__) && defined(__GNUC__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
-    return Avx512::kKernels;
-  if (__builtin_cpu_supports("avx2")) return Avx2::kKernels;
-#endif
-  return Baseline::kKernels;
-}
-
 }  // namespace
 
-const CpuKernels& cpuKernels() {
-  static const CpuKernels& kernels = bestKernels();
+const std::vector<const CpuKernels*>& supportedKernels() {
+  static const std::vector<const CpuKernels*> kernels = [] {
+    std::vector<const CpuKernels*> all;
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
+      all.push_back(&Avx512::kKernels);
+    if (__builtin_cpu_supports("avx2")) all.push_back(&Avx2::kKernels);
+#endif
+    all.push_back(&Baseline::kKernels);
+    return all;
+  }();
   return kernels;
 }
 

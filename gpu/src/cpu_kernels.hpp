@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/sums.hpp"
 #include "core/walk.hpp"
@@ -55,7 +56,11 @@ struct CpuKernels {
   void (*evaluate)(const core::Setup& setup, std::size_t count, PairValues& pairs);
 };
 
-/// For this processor.
-const CpuKernels& cpuKernels();
+/// Those that this processor knows, the best one first.
+const std::vector<const CpuKernels*>& supportedKernels();
+
+inline const CpuKernels& cpuKernels() {
+  return *supportedKernels().front();
+}
 
 }  // namespace innersphere

@@ -140,7 +140,7 @@ INNERSPHERE_HD inline bool meetsBounds(const GridView& grid, const Vec3f& p, flo
   const Vec3f a{fabsf(p.x) - grid.half.x, fabsf(p.y) - grid.half.y, fabsf(p.z) - grid.half.z};
   const Vec3f out{a.x > 0 ? a.x : 0, a.y > 0 ? a.y : 0, a.z > 0 ? a.z : 0};
   const float reach = grid.radius + r;
-  return !(dot(out, out) > r * r) & !(dot(p, p) > reach * reach);
+  return !(dot(out, out) > r * r) && !(dot(p, p) > reach * reach);
 }
 
 }  // namespace innersphere::core

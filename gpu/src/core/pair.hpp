@@ -44,7 +44,8 @@ INNERSPHERE_HD inline bool walksToPartner(const Pair& pair, bool from_a) {
 
 /// True if a candidate of a cluster overlaps and is this side's to report.
 INNERSPHERE_HD inline bool isHit(const Pair& pair, bool from_a) {
-  return walksToPartner(pair, from_a) & overlaps(pair);
+  const bool walks = walksToPartner(pair, from_a);
+  return overlaps(pair) ? walks : false;
 }
 
 /// An overlapping pair's lens, with the unit vector from a to b. Concentric spheres have no direction: n is

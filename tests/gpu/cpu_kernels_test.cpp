@@ -1,0 +1,86 @@
+// The kernels for every generation of processors give the same bits.
+#include "cpu_kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "prepare.hpp"
+#include "sphere_sets.hpp"
+
+namespace innersphere::test {
+namespace {
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// Keeps all candidates, and sums them.
+class Recorder : public CandidateSink {
+ public:
+  Recorder(const CpuKernels& kernels, const core::Setup& setup) : kernels_(kernels), setup_(setup) {}
+  bool take(Candidates& candidates) override {
+    if (candidates.count == 0) return true;
+    for (std::size_t k = 0; k < candidates.count; ++k)
+      pairs.push_back({candidates.walker[k], candidates.partner[k]});
+    tallies.emplace_back();
+    kernels_.sumAll(setup_, true, candidates, tallies.back());
+    tallies.emplace_back();
+    kernels_.sumVolumes(setup_, true, candidates, tallies.back());
+    candidates.count = 0;
+    return true;
+  }
+  Pairs pairs;
+  std::vector<Tally> tallies;
+
+ private:
+  const CpuKernels& kernels_;
+  const core::Setup& setup_;
+};
+
+Recorder record(const CpuKernels& kernels, const PreparedQuery& query) {
+  Recorder recorder(kernels, query.setup);
+  Candidates candidates;
+  const core::Walker walker = core::walkerOf(query.setup, true);
+  for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
+    EXPECT_TRUE(kernels.walk(walker, query.grid_b->columns(), walker.own.clusters[c], candidates, recorder));
+  recorder.take(candidates);
+  return recorder;
+}
+
+TEST(CpuKernels, AllGiveTheSameBits) {
+  const auto a = makeModel(randomSpheres(2000, 0.2, 30, 1), true),
+             b = makeModel(randomSpheres(700, 0.3, 20, 2), true);
+  PairQuery query;
+  query.a = a.get();
+  query.b = b.get();
+  query.placement_b = at({0.4, 0.1, 0});
+  query.margin = 0.001;
+  const PreparedQuery prepared = prepare(query, 0, Estimator::volume_true);
+  const Recorder first = record(*supportedKernels().front(), prepared);
+  EXPECT_GT(first.pairs.size(), 500u);
+  for (const CpuKernels* kernels : supportedKernels()) {
+    const Recorder other = record(*kernels, prepared);
+    EXPECT_EQ(first.pairs, other.pairs);
+    ASSERT_EQ(first.tallies.size(), other.tallies.size());
+    for (std::size_t i = 0; i < first.tallies.size(); ++i) {
+      const Tally &x = first.tallies[i], &y = other.tallies[i];
+      EXPECT_EQ(x.pairs, y.pairs);
+      EXPECT_EQ(std::memcmp(x.terms.data(), y.terms.data(), sizeof x.terms), 0);
+    }
+
+    PairValues ours, theirs;
+    const std::size_t count = 203;  // not a multiple of any vector's length
+    for (std::size_t k = 0; k < count; ++k) {
+      ours.a[k] = theirs.a[k] = first.pairs[k].first;
+      ours.b[k] = theirs.b[k] = first.pairs[k].second;
+    }
+    supportedKernels().front()->evaluate(prepared.setup, count, ours);
+    kernels->evaluate(prepared.setup, count, theirs);
+    for (std::size_t i = 0; i < PairValues::values; ++i)
+      EXPECT_EQ(std::memcmp(ours.of[i].data(), theirs.of[i].data(), count * sizeof(double)), 0);
+  }
+}
+
+}  // namespace
+}  // namespace innersphere::test
