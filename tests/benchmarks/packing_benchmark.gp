@@ -11,4 +11,5 @@ set yrange [5:60]
 set ytics (5, 7, 10, 15, 20, 30, 40)
 set grid
 set key outside right
-plot for [solid in solids] curves index solid using 1:2 with linespoints pt 7 ps 0.7 title solid noenhanced
+plot for [i=1:words(solids)] curves index word(solids, i) using 1:2 with linespoints lt i dt i>8?2:1 \
+  pt (i > 8 ? 6 : 7) ps 0.8 title word(solids, i) noenhanced
