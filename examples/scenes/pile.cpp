@@ -13,7 +13,7 @@ constexpr int kBodies = 24;
 constexpr double kDiagonal = 0.7;    // [m] of each solid's bounding box
 constexpr double kDensity = 1000;    // [kg/m^3]
 constexpr double kHalfWidth = 0.88;  // [m] of the tray, inside
-constexpr double kWallHeight = 0.3;  // [m]
+constexpr double kWallHeight = 0.4;  // [m]
 constexpr double kWall = 0.03;       // [m] half the thickness of floor and walls
 constexpr Colour kTrayColour{0.80f, 0.77f, 0.72f};
 

@@ -46,6 +46,8 @@ SceneWorld::SceneWorld(const ContactOptions& options) {
   world_.setGravity(btVector3(0, 0, -kGravity));
   // Runs repeat exactly, whatever order the broad phase finds pairs in.
   world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
+  // With one friction direction Bullet turns it along the last bit of sliding, and resting bodies creep.
+  world_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   PackingCollisionAlgorithm::registerAlgorithm(&dispatcher_, options);
 }
 

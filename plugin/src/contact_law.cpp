@@ -61,6 +61,7 @@ ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std
 PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   PointLaw law;
   law.depth = depth;
+  law.time_step = law_->time_step_;
   if (law_->rigid_) return law;
   law.spring = true;
   law.stiffness = stiffness_;
@@ -78,7 +79,7 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     law.depth = btMin(depth, kSplitImpulseDepth);
     if (law.depth * rate > law_->fastest_) law.depth = law_->fastest_ / rate;
   }
-  law.push = law.depth * rate;
+  law.push = btMax(law.depth, btScalar(0)) * rate;
   return law;
 }
 

@@ -17,7 +17,8 @@ struct PointLaw {
   btScalar depth = 0;      ///< to report [m]
   btScalar stiffness = 0;  ///< [N/m]
   btScalar damping = 0;    ///< [N s/m]
-  btScalar push = 0;       ///< speed at which the depth alone would drive the bodies apart [m/s]
+  btScalar push = 0;       ///< speed at which the spring alone would drive the bodies apart [m/s]
+  btScalar time_step = 0;  ///< [s]
 };
 
 /// The law of one pair of bodies in one step. A contact with stiffness k and damping c is, in Bullet's

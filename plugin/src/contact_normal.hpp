@@ -22,19 +22,17 @@ bool opposed(const Gap& gap);
 /// A first estimate from one measurement alone: where a line across the contact should point.
 btVector3 normalAlone(const Gap& gap, const btVector3& direction);
 
-/// How much the normal of A counts against that of B. Beside the deepest point both lean away from the normal
-/// of contact, each in proportion to its curvature, so the flatter surface counts for more; a flat one counts
-/// alone.
+/// The direction of contact at each of the measurements of a patch. Beside the deepest point both normals
+/// lean away from it, each in proportion to its curvature, so the flatter surface counts for more; a flat one
+/// counts alone.
 class ContactNormal {
  public:
-  /// `trust_b`: where there are too few measurements to see a curvature, B's normal is the better one.
-  ContactNormal(const std::vector<Measured>& measured, bool trust_b);
+  explicit ContactNormal(const std::vector<Measured>& measured);
 
   btVector3 at(const Measured& measured) const;
 
  private:
-  btScalar weight_a_;  ///< where the surfaces oppose each other
-  bool flat_a_;
+  bool flat_a_;  ///< all of the patch is one face of A
   bool flat_b_;
 };
 

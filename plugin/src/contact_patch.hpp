@@ -14,6 +14,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// Bullet keeps four points in a manifold.
 constexpr int kPatchPoints = 4;
 
+/// Id of the deepest point between curved surfaces; no sphere has it.
+constexpr std::uint64_t kDeepestId = ~std::uint64_t(0);
+
 /// A point of contact. Axes of the world, positions relative to the origin of A's packing.
 struct ContactPoint {
   btVector3 on_b{0, 0, 0};    ///< on the surface of B [m]

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contact_normal.hpp"
+#include "contact_patch.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -15,6 +15,8 @@ struct SurfacePoint {
   btVector3 at{0, 0, 0};
   btVector3 normal{0, 0, 0};  ///< unit, out of the solid
   btScalar facing = 0;        ///< cosine between the triangle's normal and the ray
+  btScalar curvature = 0;     ///< [1/m]
+  btScalar faceting = 0;      ///< angle between both normals [rad]
 };
 
 bool cast(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
@@ -26,7 +28,9 @@ bool cast(const PackingBody& body, const btVector3& from, const btVector3& direc
     return false;
   }
   point.normal = axes * hit.normal;
+  point.curvature = hit.curvature / body.scale();
   point.facing = (axes * hit.face).dot(direction);
+  point.faceting = hit.face.distance(hit.normal);
   point.at = from + direction * (hit.distance * body.scale());
   return true;
 }
@@ -61,8 +65,15 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   if (!leave(a_, centre, towards_b, reach, on_a)) return false;
   gap.on_a = on_a.at;
   gap.normal_a = on_a.normal;
+  gap.curvature_a = on_a.curvature;
   gap.on_b = centre + towards_b * touch.distance;
   gap.normal_b = towards_b;
+  gap.curvature_b = touch.curvature;
+  return true;
+}
+
+bool SurfaceGauge::nearest(std::size_t index, btVector3& direction) const {
+  direction = -touches_[index].normal;
   return true;
 }
 
@@ -91,6 +102,24 @@ bool PackingGauge::measure(std::size_t index, const btVector3& direction, const 
   gap.on_b = of_a ? entered.at : left.at;
   gap.normal_a = of_a ? left.normal : entered.normal;
   gap.normal_b = -(of_a ? entered.normal : left.normal);
+  gap.curvature_a = of_a ? left.curvature : entered.curvature;
+  gap.curvature_b = of_a ? entered.curvature : left.curvature;
+  gap.faceting = left.faceting + entered.faceting;
+  return true;
+}
+
+bool PackingGauge::nearest(std::size_t index, btVector3& direction) const {
+  const bool of_a = index < count_a_;
+  const PackingBody& own = of_a ? a_ : b_;
+  const PackingBody& other = of_a ? b_ : a_;
+  const std::size_t sphere = contacts_[index].sphere;
+  const btMatrix3x3& axes = other.world.getBasis();
+  const btVector3 centre = own.origin() + own.centreOf(sphere) - other.origin();
+  const btScalar reach = 2 * (own.ownRadius(sphere) + a_.slack + b_.slack);
+  NearestTriangle::Result nearest;
+  if (!other.shape().nearestTriangle().find((centre * axes) / other.scale(), reach / other.scale(), nearest))
+    return false;
+  direction = (axes * nearest.normal) * btScalar(of_a ? -1 : 1);
   return true;
 }
 

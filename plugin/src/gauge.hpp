@@ -19,6 +19,9 @@ struct Gap {
   btVector3 on_b{0, 0, 0};
   btVector3 normal_a{0, 0, 0};  ///< unit, out of A
   btVector3 normal_b{0, 0, 0};  ///< unit, into B: equal to normal_a where flat faces meet
+  btScalar curvature_a = 0;     ///< [1/m], positive where A is convex, 0 where it is flat
+  btScalar curvature_b = 0;
+  btScalar faceting = 0;  ///< angle between triangles and the surfaces they stand for, of both bodies [rad]
 };
 
 /// Measures along a line through the centre of a sphere in contact.
@@ -30,6 +33,9 @@ class Gauge {
   /// both surfaces near there.
   virtual bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                        Gap& gap) const = 0;
+  /// The direction from A to B in which the sphere of a contact is nearest to the other solid's surface.
+  /// False if it is too far away to tell.
+  virtual bool nearest(std::size_t index, btVector3& direction) const = 0;
   /// Of the sphere behind a contact: the same from step to step.
   virtual std::uint64_t id(std::size_t index) const = 0;
   /// The normals of B do not come from triangles.
@@ -42,6 +48,7 @@ class SurfaceGauge : public Gauge {
   SurfaceGauge(const PackingBody& a, const std::vector<Touch>& touches) : a_(a), touches_(touches) {}
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                Gap& gap) const override;
+  bool nearest(std::size_t index, btVector3& direction) const override;
   std::uint64_t id(std::size_t index) const override { return touches_[index].sphere; }
   bool exactB() const override { return true; }
 
@@ -58,6 +65,7 @@ class PackingGauge : public Gauge {
       : a_(a), b_(b), contacts_(contacts), count_a_(count_a) {}
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                Gap& gap) const override;
+  bool nearest(std::size_t index, btVector3& direction) const override;
   std::uint64_t id(std::size_t index) const override;
   bool exactB() const override { return false; }
 

@@ -70,14 +70,21 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
             const btCollisionObject& b) {
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
                             BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
-  if (!from.law.spring || (point.m_contactPointFlags & kUsersOwn) != 0) return;
-  point.m_combinedContactStiffness1 = from.law.stiffness;
-  point.m_combinedContactDamping1 = from.law.damping;
-  point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
-  // A bounce starts from the surface: the depth that was reached within the step must not add to it.
-  btScalar depth = from.law.depth;
-  if (depth > 0 && point.m_combinedRestitution * approachSpeed(a, b, from.on_b, from.normal) > from.law.push)
-    depth = 0;
+  const PointLaw& law = from.law;
+  const bool spring = law.spring && (point.m_contactPointFlags & kUsersOwn) == 0;
+  if (spring) {
+    point.m_combinedContactStiffness1 = law.stiffness;
+    point.m_combinedContactDamping1 = law.damping;
+    point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+  }
+  btScalar depth = spring ? law.depth : from.depth;
+  // A bounce starts from the surface: the depth that was reached within the step must not add to it, nor the
+  // distance that is left take from it.
+  const btScalar approach = approachSpeed(a, b, from.on_b, from.normal);
+  const bool meets = depth + approach * law.time_step > 0;
+  const bool bounces = point.m_combinedRestitution * approach > law.push;
+  if (meets && bounces && (depth < 0 || spring)) depth = 0;
+  if (depth == from.depth) return;
   point.m_distance1 = -depth;
   point.m_positionWorldOnA = from.on_b + from.normal * depth;
   point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
@@ -127,10 +134,10 @@ ManifoldSet::~ManifoldSet() {
   for (const Entry& entry : entries_) dispatcher_->releaseManifold(entry.manifold);
 }
 
-void ManifoldSet::report(const btCollisionObject* a, const btCollisionObject* b, const btVector3& origin,
+void ManifoldSet::report(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
                          const std::vector<ContactPatch>& patches, btManifoldResult* result) {
   // The result looks up the order of the bodies in its manifold.
-  btPersistentManifold order(a, b, 0, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  btPersistentManifold order(&a, &b, 0, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
   btPersistentManifold* const before = result->getPersistentManifold();
   result->setPersistentManifold(&order);
   for (const ContactPatch& patch : patches) {
@@ -167,31 +174,41 @@ void ManifoldSet::assign(const btTransform& a, const std::vector<ContactPatch>& 
   }
 }
 
-void ManifoldSet::write(const btCollisionObject* a, const btCollisionObject* b, const btVector3& origin,
-                        const std::vector<ContactPatch>& patches, const ContactLaw& law,
-                        btManifoldResult* result) {
-  assign(a->getWorldTransform(), patches);
-  // Patches that match no manifold take an idle one, or a new one.
-  for (std::size_t p = 0; p < patches.size(); ++p) {
+/// Gives patches that match no manifold an idle one, or a new one.
+void ManifoldSet::provide(const btCollisionObject& a, const btCollisionObject& b, std::size_t count) {
+  for (std::size_t p = 0; p < count; ++p) {
     if (std::find(owner_.begin(), owner_.end(), static_cast<int>(p)) != owner_.end()) continue;
     auto idle = std::find(owner_.begin(), owner_.end(), -1);
     if (idle == owner_.end()) {
-      entries_.push_back({dispatcher_->getNewManifold(a, b), btVector3(0, 0, 0), btVector3(0, 0, 0)});
+      btPersistentManifold* manifold = dispatcher_->getNewManifold(&a, &b);
+      if (manifold == nullptr)
+        return;  // the user has limited their number; Bullet's own algorithms go without, too
+      entries_.push_back(
+          {manifold, manifold->getContactBreakingThreshold(), btVector3(0, 0, 0), btVector3(0, 0, 0)});
       idle = owner_.insert(owner_.end(), -1);
     }
     *idle = static_cast<int>(p);
   }
+}
+
+void ManifoldSet::write(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
+                        const std::vector<ContactPatch>& patches, const ContactLaw& law, btScalar separation,
+                        btManifoldResult* result) {
+  assign(a.getWorldTransform(), patches);
+  provide(a, b, patches.size());
   btPersistentManifold* const before = result->getPersistentManifold();
   for (std::size_t e = 0; e < entries_.size(); ++e) {
+    Entry& entry = entries_[e];
     if (owner_[e] < 0) {
-      while (entries_[e].manifold->getNumContacts() > 0) entries_[e].manifold->removeContactPoint(0);
+      while (entry.manifold->getNumContacts() > 0) entry.manifold->removeContactPoint(0);
       continue;
     }
-    const ContactPatch& patch = patches[owner_[e]];
-    entries_[e].normal = patch.normal * a->getWorldTransform().getBasis();
-    entries_[e].centre = patch.centre * a->getWorldTransform().getBasis();
-    result->setPersistentManifold(entries_[e].manifold);
-    writePatch(*a, *b, origin, patch, law.of(patches, static_cast<std::size_t>(owner_[e])), result);
+    const std::size_t p = static_cast<std::size_t>(owner_[e]);
+    entry.normal = patches[p].normal * a.getWorldTransform().getBasis();
+    entry.centre = patches[p].centre * a.getWorldTransform().getBasis();
+    entry.manifold->setContactBreakingThreshold(btMax(entry.threshold, separation));
+    result->setPersistentManifold(entry.manifold);
+    writePatch(a, b, origin, patches[p], law.of(patches, p), result);
   }
   result->setPersistentManifold(before);
 }

@@ -22,12 +22,14 @@ class ManifoldSet {
   ManifoldSet(const ManifoldSet&) = delete;
   ManifoldSet& operator=(const ManifoldSet&) = delete;
 
-  /// Replaces the contacts between `a` and `b`. `origin`: of A's packing in the world.
-  void write(const btCollisionObject* a, const btCollisionObject* b, const btVector3& origin,
-             const std::vector<ContactPatch>& patches, const ContactLaw& law, btManifoldResult* result);
+  /// Replaces the contacts between `a` and `b`. `origin`: of A's packing in the world. `separation` [m]:
+  /// points that far apart are kept.
+  void write(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
+             const std::vector<ContactPatch>& patches, const ContactLaw& law, btScalar separation,
+             btManifoldResult* result);
 
   /// Only tells `result` of them, as closest-point queries want it: keeps nothing and makes no manifold.
-  static void report(const btCollisionObject* a, const btCollisionObject* b, const btVector3& origin,
+  static void report(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
                      const std::vector<ContactPatch>& patches, btManifoldResult* result);
 
   void append(btManifoldArray& manifolds) const;
@@ -35,10 +37,12 @@ class ManifoldSet {
  private:
   struct Entry {
     btPersistentManifold* manifold;
-    btVector3 normal;  ///< of its last patch, in the frame of a
+    btScalar threshold;  ///< its own, at which Bullet drops contacts [m]
+    btVector3 normal;    ///< of its last patch, in the frame of a
     btVector3 centre;
   };
   void assign(const btTransform& to_a, const std::vector<ContactPatch>& patches);
+  void provide(const btCollisionObject& a, const btCollisionObject& b, std::size_t count);
 
   btDispatcher* dispatcher_;
   std::vector<Entry> entries_;

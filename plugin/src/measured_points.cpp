@@ -17,12 +17,12 @@ constexpr std::size_t kFacing = 6;
 constexpr std::size_t kOthers = 6;
 /// In units of the spacing: how much less deep than the deepest a contact may be.
 constexpr btScalar kBelow = 2;
-/// A sphere whose overlap points within 60 degrees of the patch's direction has a direction of its own.
+/// The nearest point counts if it lies within 60 degrees of the patch's direction.
 constexpr btScalar kOwnDirection = btScalar(0.5);
-/// A line within 5 degrees of the normal is not drawn again.
+/// A line within 5 degrees of the normal is not drawn again where flat faces meet, which it does not matter
+/// to; else one within 0.5 degrees.
 constexpr btScalar kAligned = btScalar(0.996);
-/// Keeps the direction of nothing finite.
-constexpr btScalar kTiny = btScalar(1e-30);
+constexpr btScalar kParallel = btScalar(0.99996);
 
 bool isOld(const PatchContacts& from, std::uint64_t id) {
   return std::find(from.old_ids.begin(), from.old_ids.end(), id) != from.old_ids.end();
@@ -74,30 +74,28 @@ void pick(const PatchContacts& from, std::vector<std::size_t>& picked) {
   picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
 }
 
-/// Along the direction of the patch, or, where the surfaces do not oppose each other there, of the sphere's
-/// own overlap; then along the normal that the surfaces show.
+/// Along a line through the sphere's centre.
+bool measureAlong(const PatchContacts& from, std::size_t i, const btVector3& direction, Measured& m) {
+  m.direction = direction;
+  return from.gauge.measure(i, direction, btVector3(0, 0, 0), m.gap);
+}
+
+/// Towards the nearest point of the other surface, or, where the surfaces do not oppose each other there, in
+/// the direction of the patch; then along the normal that the surfaces show.
 bool measure(const PatchContacts& from, std::size_t i, Measured& m) {
-  const btVector3 still(0, 0, 0);
   m.index = i;
   m.id = from.gauge.id(i);
-  m.direction = from.moments.normal;
-  bool found = from.gauge.measure(i, m.direction, still, m.gap);
+  btVector3 nearest;
+  bool found = from.gauge.nearest(i, nearest) && measureAlong(from, i, nearest, m);
   if (from.gauge.exactB()) return found;
-  if (!found || !opposed(m.gap)) {
-    const btVector3 area = toBullet(from.contacts[i].area);
-    const btVector3 own = area / (area.length() + kTiny);
-    Gap gap;
-    if (own.dot(m.direction) > kOwnDirection && from.gauge.measure(i, own, still, gap) &&
-        (!found || opposed(gap))) {
-      m.direction = own;
-      m.gap = gap;
-      found = true;
-    }
-  }
+  const bool own = found && opposed(m.gap) && nearest.dot(from.moments.normal) > kOwnDirection;
+  if (!own) found = measureAlong(from, i, from.moments.normal, m);
   if (!found) return false;
   const btVector3 normal = normalAlone(m.gap, m.direction);
   Gap gap;
-  if (normal.dot(m.direction) < kAligned && from.gauge.measure(i, normal, still, gap)) {
+  const bool parallel = m.gap.normal_a.dot(m.gap.normal_b) > kParallel;
+  const bool aligned = normal.dot(m.direction) > (parallel ? kAligned : kParallel);
+  if (!aligned && from.gauge.measure(i, normal, btVector3(0, 0, 0), gap)) {
     m.direction = normal;
     m.gap = gap;
   }
@@ -116,7 +114,7 @@ void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found)
     if (measure(from, i, m)) measured.push_back(m);
   }
   appendDeepest(from.gauge, measured);
-  const ContactNormal normals(measured, from.gauge.exactB());
+  const ContactNormal normals(measured);
   const std::size_t first = found.size();
   for (const Measured& m : measured) {
     const btVector3 normal = normals.at(m);

@@ -7,6 +7,7 @@
 #include "innersphere/error.hpp"
 #include "measure.hpp"
 #include "patch_builder.hpp"
+#include "sweep.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -19,6 +20,12 @@ bool same(const btVector3& a, const btVector3& b) {
 bool same(const btTransform& a, const btTransform& b) {
   return same(a.getOrigin(), b.getOrigin()) && same(a.getBasis()[0], b.getBasis()[0]) &&
          same(a.getBasis()[1], b.getBasis()[1]) && same(a.getBasis()[2], b.getBasis()[2]);
+}
+
+/// By how much spheres without volume-true radii are enlarged to fill their solid [m].
+btScalar gapsOf(const PackingShape& shape) {
+  return shape.impl().volume_true == nullptr ? shape.impl().recess() * shape.getLocalScaling().x()
+                                             : btScalar(0);
 }
 
 }  // namespace
@@ -99,41 +106,75 @@ void OverlapBatch::gatherStale(PackingContact& asked) {
 
 void OverlapBatch::runStale() {
   for (PackingContact* contact : stale_) contact->valid = false;
-  // Surfaces are measured with the spheres' own radii; volumes use the estimator's.
-  query(Estimator::raw);
-  query(Estimator::volume_true);
+  run(Pass::surfaces);
+  run(Pass::touch);
+  run(Pass::deep);
+  run(Pass::volumes);
 }
 
-void OverlapBatch::query(Estimator estimator) {
+void OverlapBatch::run(Pass pass) {
   queried_.clear();
   queries_.clear();
   for (PackingContact* contact : stale_) {
-    const Measure measure = measureOf(*contact);
-    if (measure.estimator != estimator) continue;
+    if (!takesPart(pass, *contact)) continue;
     queried_.push_back(contact);
-    queries_.push_back(makeQuery(*contact, measure));
+    queries_.push_back(makeQuery(pass, *contact));
   }
   if (queries_.empty()) return;
   if (!context_) context_ = std::make_unique<QueryContext>(QueryContextOptions{options_.backend, 0});
-  context_->run(queries_.data(), queries_.size(), {Want::contacts, estimator}, result_);
-  for (std::size_t i = 0; i < queried_.size(); ++i) takeResult(i, *queried_[i]);
+  context_->run(queries_.data(), queries_.size(), optionsOf(pass), result_);
+  for (std::size_t i = 0; i < queried_.size(); ++i) takeResult(pass, i, *queried_[i]);
+}
+
+bool OverlapBatch::takesPart(Pass pass, const PackingContact& contact) const {
+  if (!measureOf(contact).on_surfaces) return pass == Pass::volumes;
+  switch (pass) {
+    case Pass::surfaces:
+      return true;
+    case Pass::touch:
+      return contact.near && !contact.touching;
+    case Pass::deep:
+      return contact.deep;
+    default:
+      return false;
+  }
+}
+
+QueryOptions OverlapBatch::optionsOf(Pass pass) const {
+  switch (pass) {
+    case Pass::surfaces:
+      return {Want::contacts, Estimator::raw};
+    case Pass::touch:
+      return {Want::touch, Estimator::raw};
+    case Pass::deep:
+      return {Want::contacts, Estimator::volume_true};
+    default:
+      return {Want::contacts, options_.estimator};
+  }
 }
 
 Measure OverlapBatch::measureOf(const PackingContact& contact) const {
-  return Measure(options_, *contact.a.shape, *contact.b.shape, contact.separation);
+  const btScalar sweep = sweepOf(*contact.a.object, *contact.b.object, contact.time_step);
+  return Measure(options_, *contact.a.shape, *contact.b.shape, btMax(contact.separation, sweep));
 }
 
-PairQuery OverlapBatch::makeQuery(const PackingContact& contact, const Measure& measure) const {
+PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) const {
   PairQuery query;
   query.a = &contact.a.shape->model();
   query.b = &contact.b.shape->model();
-  query.placement_a = PackingBody(*contact.a.shape, contact.a.transform, measure.estimator, 0).placement();
-  query.placement_b = PackingBody(*contact.b.shape, contact.b.transform, measure.estimator, 0).placement();
-  query.margin = measure.slack() + contact.a.margin + contact.b.margin;
+  query.placement_a = PackingBody(*contact.a.shape, contact.a.transform, Estimator::raw, 0).placement();
+  query.placement_b = PackingBody(*contact.b.shape, contact.b.transform, Estimator::raw, 0).placement();
+  query.margin = contact.a.margin + contact.b.margin;
+  if (pass == Pass::surfaces) query.margin += measureOf(contact).slack();
+  if (pass == Pass::deep) query.margin += gapsOf(*contact.a.shape) + gapsOf(*contact.b.shape);
   return query;
 }
 
-void OverlapBatch::takeResult(std::size_t index, PackingContact& contact) {
+void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& contact) {
+  if (pass == Pass::touch) {
+    contact.deep = result_.overlaps[index].pair_count > 0;
+    return;
+  }
   // Every lens belongs to a sphere of A and to one of B: both lists together have all of it twice.
   contacts_.clear();
   const auto append = [&](const QueryResult::Ranges<SphereContact>& ranges) {
@@ -149,10 +190,19 @@ void OverlapBatch::takeResult(std::size_t index, PackingContact& contact) {
   append(result_.contacts_b);
 
   const Measure measure = measureOf(contact);
-  const PackingBody a(*contact.a.shape, contact.a.transform, measure.estimator, measure.slack_a);
-  const PackingBody b(*contact.b.shape, contact.b.transform, measure.estimator, measure.slack_b);
-  const PackingGauge gauge(a, b, contacts_, count_a);
-  buildContactPatches(contacts_, gauge, measure, contact.a.transform.getBasis(), contact.patches);
+  const btMatrix3x3& reference = contact.a.transform.getBasis();
+  if (pass == Pass::surfaces) {
+    const PackingBody a(*contact.a.shape, contact.a.transform, Estimator::raw, measure.slack_a);
+    const PackingBody b(*contact.b.shape, contact.b.transform, Estimator::raw, measure.slack_b);
+    const PackingGauge gauge(a, b, contacts_, count_a);
+    contact.near = !contacts_.empty();
+    contact.touching = measurePatches(contacts_, gauge, measure, reference, contact.patches);
+    contact.deep = false;
+  } else if (pass == Pass::deep) {
+    gradientPatch(contacts_, measure.spacing, reference, contact.patches);
+  } else {
+    volumePatches(contacts_, measure.spacing, reference, contact.patches);
+  }
   contact.valid = true;
 }
 

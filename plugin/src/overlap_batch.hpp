@@ -39,10 +39,14 @@ struct PackingContact {
 
   PackingSide a;
   PackingSide b;
-  btScalar separation = 0;  ///< see Measure
+  btScalar separation = 0;  ///< asked for; see Measure
+  btScalar time_step = 0;   ///< within which contacts may close [s]
   std::vector<ContactPatch> patches;
-  bool valid = false;   ///< patches belong to the transforms in a and b
-  bool wanted = false;  ///< asked for since the last batch
+  bool valid = false;     ///< patches belong to the transforms in a and b
+  bool near = false;      ///< enlarged spheres overlap
+  bool touching = false;  ///< the surfaces are near each other
+  bool deep = false;      ///< they are not, and yet the solids overlap
+  bool wanted = false;    ///< asked for since the last batch
 };
 
 /// Bullet asks for one pair at a time. The first one that is out of date makes one query for all pairs that
@@ -64,10 +68,18 @@ class OverlapBatch {
  private:
   void gatherStale(PackingContact& asked);
   void runStale();
-  void query(Estimator estimator);
+  enum class Pass {
+    surfaces,  ///< spheres enlarged so that they find all contact of the surfaces that they stand for
+    touch,     ///< as they are, where the surfaces showed no overlap: it may be too deep for them
+    deep,      ///< enlarged so that they fill their solids, where it is
+    volumes,   ///< where the volume of overlap is all that is wanted
+  };
+  void run(Pass pass);
+  bool takesPart(Pass pass, const PackingContact& contact) const;
+  QueryOptions optionsOf(Pass pass) const;
   Measure measureOf(const PackingContact& contact) const;
-  PairQuery makeQuery(const PackingContact& contact, const Measure& measure) const;
-  void takeResult(std::size_t index, PackingContact& contact);
+  PairQuery makeQuery(Pass pass, const PackingContact& contact) const;
+  void takeResult(Pass pass, std::size_t index, PackingContact& contact);
 
   std::mutex mutex_;
   ContactOptions options_;

@@ -97,6 +97,10 @@ const SurfaceTree& PackingShape::Impl::surfaceTree() const {
   return surface_tree_.get([this] { return std::make_unique<SurfaceTree>(packing().surface); });
 }
 
+const NearestTriangle& PackingShape::Impl::nearestTriangle() const {
+  return nearest_triangle_.get([this] { return std::make_unique<NearestTriangle>(packing().surface); });
+}
+
 btScalar PackingShape::Impl::recess() const {
   if (packing().quality.gap_max > 0) return btScalar(packing().quality.gap_max);
   return recess_.get([this] { return std::make_unique<btScalar>(measureRecess(packing())); });

@@ -3,6 +3,7 @@
 
 #include "innersphere/packing_shape.hpp"
 #include "lazy.hpp"
+#include "nearest_triangle.hpp"
 #include "principal_frame.hpp"
 #include "sphere_tree.hpp"
 #include "surface_tree.hpp"
@@ -23,6 +24,7 @@ struct PackingShape::Impl {
   const SphereTree& sphereTree() const;
   /// Only if hasSurface(). In the packing's frame.
   const SurfaceTree& surfaceTree() const;
+  const NearestTriangle& nearestTriangle() const;
   /// How far the spheres may end inside of the surface, for scale 1 [m].
   btScalar recess() const;
   /// From the packing's frame to the world for a body at `body`: x_world = result(scale * x).
@@ -42,6 +44,7 @@ struct PackingShape::Impl {
  private:
   Lazy<SphereTree> sphere_tree_;
   Lazy<SurfaceTree> surface_tree_;
+  Lazy<NearestTriangle> nearest_triangle_;
   Lazy<btScalar> recess_;
 };
 

@@ -9,6 +9,7 @@
 #include "log.hpp"
 #include "manifold_set.hpp"
 #include "surface_contact.hpp"
+#include "sweep.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -30,7 +31,7 @@ struct PairAlgorithm::State {
 
   /// Contact of A, a packing, with B.
   const std::vector<ContactPatch>& update(const ContactOptions& options, const Wrapper& a, const Wrapper& b,
-                                          btScalar separation) {
+                                          btScalar separation, btScalar time_step) {
     const PackingShape& packing = *PackingShape::from(a.getCollisionShape());
     if (a.getCollisionShape() != shape_a || b.getCollisionShape() != shape_b) {
       forget();
@@ -43,10 +44,12 @@ struct PairAlgorithm::State {
         packings.emplace(side_a, side_b);
         if (!closest) registration->batch().add(&*packings);
       }
+      packings->time_step = time_step;
       return registration->batch().update(*packings, side_a, side_b, separation);
     }
     if (!surface) surface.emplace(packing, *shape_b);
-    return surface->update(options, a.getWorldTransform(), b.getWorldTransform(), separation);
+    const btScalar sweep = sweepOf(*a.getCollisionObject(), *b.getCollisionObject(), time_step);
+    return surface->update(options, a.getWorldTransform(), b.getWorldTransform(), btMax(separation, sweep));
   }
 
   void forget() {
@@ -86,6 +89,9 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
   const PackingShape* packing = PackingShape::from(a->getCollisionShape());
   if (packing == nullptr) return;  // the user has given both bodies another shape
 
+  const btCollisionObject& object_a = *a->getCollisionObject();
+  const btCollisionObject& object_b = *b->getCollisionObject();
+  const btScalar time_step = state_->closest ? btScalar(0) : dispatch.m_timeStep;
   static const std::vector<ContactPatch> kNone;
   const std::vector<ContactPatch>* patches = &kNone;
   ContactOptions options = state_->registration->options();
@@ -93,13 +99,11 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
     state_->report("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
   } else {
     try {
-      patches = &state_->update(options, *a, *b, result->m_closestPointDistanceThreshold);
+      patches = &state_->update(options, *a, *b, result->m_closestPointDistanceThreshold, time_step);
     } catch (const Error& error) {
       state_->report(std::string("Contacts of a pair of bodies are skipped: ") + error.what());
     }
   }
-  const btCollisionObject& object_a = *a->getCollisionObject();
-  const btCollisionObject& object_b = *b->getCollisionObject();
   // A law of the user's own on a body takes the place of ours.
   if (((object_a.getCollisionFlags() | object_b.getCollisionFlags()) &
        btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) != 0) {
@@ -109,9 +113,10 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
                        sizeOf(*packing, *b->getCollisionShape()));
   const btVector3 origin = packing->impl().toWorld(a->getWorldTransform()).getOrigin();
   if (state_->closest) {
-    state_->manifolds.report(&object_a, &object_b, origin, *patches, result);
+    ManifoldSet::report(object_a, object_b, origin, *patches, result);
   } else {
-    state_->manifolds.write(&object_a, &object_b, origin, *patches, law, result);
+    state_->manifolds.write(object_a, object_b, origin, *patches, law, sweepOf(object_a, object_b, time_step),
+                            result);
   }
 }
 

@@ -1,6 +1,8 @@
 #include "patch_builder.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "innersphere/patch.hpp"
 #include "measured_points.hpp"
@@ -35,52 +37,91 @@ std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& pa
   return best;
 }
 
+/// The contacts of each patch, as moments and indices. Valid until the next call in the same thread.
+struct Sorted {
+  std::vector<Patch> patches;
+  std::vector<std::vector<std::size_t>> members;
+  std::vector<PatchMoments> moments;
+};
+
+const Sorted& sortIntoPatches(const std::vector<SphereContact>& contacts, const btMatrix3x3& reference) {
+  static thread_local Sorted sorted;
+  const PatchOptions options;
+  buildPatches(contacts.data(), contacts.size(), options, sorted.patches);
+  const std::size_t count = sorted.patches.size();
+  if (sorted.members.size() < count) sorted.members.resize(count);
+  for (std::vector<std::size_t>& m : sorted.members) m.clear();
+  if (count > 0) {
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      sorted.members[bestPatch(contacts[i], sorted.patches, options)].push_back(i);
+  }
+  sorted.moments.clear();
+  for (std::size_t p = 0; p < count; ++p)
+    sorted.moments.push_back(patchMoments(contacts, sorted.members[p], reference));
+  return sorted;
+}
+
+/// Where the enlarged spheres of one solid are so large that those of the other vanish in them, their overlap
+/// has no direction. The way to the nearest surface takes its place.
+const std::vector<SphereContact>& aimed(const std::vector<SphereContact>& contacts, const Gauge& gauge) {
+  static thread_local std::vector<SphereContact> result;
+  result = contacts;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    btVector3 direction(0, 0, 0);
+    gauge.nearest(i, direction);
+    result[i].area =
+        toFloats(direction * btScalar(std::cbrt(contacts[i].volume) * std::cbrt(contacts[i].volume)));
+  }
+  return result;
+}
+
+void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vector<ContactPatch>& patches) {
+  if (!(moments.area > 0)) return;
+  ContactPatch patch;
+  patch.normal = moments.normal;
+  patch.centre = moments.centre;
+  patch.area = moments.area;
+  pointsFromMoments(moments, spacing, patch);
+  if (patch.count > 0) patches.push_back(patch);
+}
+
 }  // namespace
 
-void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge& gauge,
-                         const Measure& measure, const btMatrix3x3& reference,
-                         std::vector<ContactPatch>& result) {
-  static thread_local std::vector<Patch> patches;
-  static thread_local std::vector<std::vector<std::size_t>> members;
+bool measurePatches(const std::vector<SphereContact>& contacts, const Gauge& gauge, const Measure& measure,
+                    const btMatrix3x3& reference, std::vector<ContactPatch>& patches) {
   static thread_local std::vector<std::uint64_t> old_ids;
+  static thread_local std::vector<MeasuredPoint> found;
   old_ids.clear();
-  for (const ContactPatch& old : result) {
+  for (const ContactPatch& old : patches) {
     for (int i = 0; i < old.count; ++i) old_ids.push_back(old.points[i].id);
   }
-  result.clear();
-  const PatchOptions options;
-  buildPatches(contacts.data(), contacts.size(), options, patches);
-  if (patches.empty()) return;
-  if (members.size() < patches.size()) members.resize(patches.size());
-  for (std::vector<std::size_t>& m : members) m.clear();
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    members[bestPatch(contacts[i], patches, options)].push_back(i);
+  const Sorted& sorted = sortIntoPatches(contacts, reference);
+  if (sorted.patches.empty()) sortIntoPatches(aimed(contacts, gauge), reference);
+  found.clear();
+  for (std::size_t p = 0; p < sorted.moments.size(); ++p) {
+    const PatchMoments& moments = sorted.moments[p];
+    if (moments.area > 0)
+      measurePoints({contacts, sorted.members[p], moments, old_ids, gauge, measure}, found);
+  }
+  selectPatches(found, old_ids, measure.spacing, patches);
+  return std::any_of(found.begin(), found.end(),
+                     [&](const MeasuredPoint& m) { return m.point.depth > -measure.spacing; });
+}
 
-  static thread_local std::vector<PatchMoments> moments;
-  moments.clear();
-  for (std::size_t p = 0; p < patches.size(); ++p)
-    moments.push_back(patchMoments(contacts, members[p], reference));
-  if (measure.on_surfaces) {
-    static thread_local std::vector<MeasuredPoint> found;
-    found.clear();
-    for (std::size_t p = 0; p < patches.size(); ++p) {
-      if (moments[p].area > 0)
-        measurePoints({contacts, members[p], moments[p], old_ids, gauge, measure}, found);
-    }
-    selectPatches(found, old_ids, measure.spacing, result);
-    if (std::any_of(found.begin(), found.end(), [](const MeasuredPoint& m) { return m.point.depth > 0; }))
-      return;
-  }
-  // Bodies that are deep inside each other have no surface near; their overlap still says which way is out.
-  for (const PatchMoments& m : moments) {
-    if (!(m.area > 0)) continue;
-    ContactPatch patch;
-    patch.normal = m.normal;
-    patch.centre = m.centre;
-    patch.area = m.area;
-    pointsFromMoments(m, measure.slack(), measure.spacing, patch);
-    if (patch.count > 0) result.push_back(patch);
-  }
+void gradientPatch(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,
+                   std::vector<ContactPatch>& patches) {
+  static thread_local std::vector<std::size_t> all;
+  all.resize(contacts.size());
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  patches.clear();
+  appendVolumePatch(patchMoments(contacts, all, reference), spacing, patches);
+}
+
+void volumePatches(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,
+                   std::vector<ContactPatch>& patches) {
+  patches.clear();
+  for (const PatchMoments& m : sortIntoPatches(contacts, reference).moments)
+    appendVolumePatch(m, spacing, patches);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -11,13 +11,22 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Replaces `patches`, which hold those of the step before. Where surfaces are measured, points are contacts
-/// of spheres: the deepest and those that span the patch, the old ones by preference. Else points are placed
-/// by the patch's moments, with the mean depth volume / area and its slope. `reference` are axes that turn
-/// with a body: points keep their places in them.
-void buildContactPatches(const std::vector<SphereContact>& contacts, const Gauge& gauge,
-                         const Measure& measure, const btMatrix3x3& reference,
-                         std::vector<ContactPatch>& patches);
+/// Replaces `patches`, which hold those of the step before, by such whose depth is measured on the solids'
+/// surfaces: points are contacts of spheres, the deepest and those that span the patch, the old ones by
+/// preference. `reference` are axes that turn with a body: points keep their places in them. False if none is
+/// near touching: the solids are apart, or so deep in each other that no surface is near.
+bool measurePatches(const std::vector<SphereContact>& contacts, const Gauge& gauge, const Measure& measure,
+                    const btMatrix3x3& reference, std::vector<ContactPatch>& patches);
+
+/// Replaces `patches` by one in the direction in which the volume of overlap shrinks fastest, or by none: for
+/// bodies deep in each other, where single spheres push everywhere.
+void gradientPatch(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,
+                   std::vector<ContactPatch>& patches);
+
+/// Replaces `patches` by such whose points are placed by the moments of the overlap, with the mean depth
+/// volume / area and its slope. `spacing` [m]: points closer to each other are one.
+void volumePatches(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,
+                   std::vector<ContactPatch>& patches);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -60,9 +60,9 @@ PatchMoments patchMoments(const std::vector<SphereContact>& contacts, const std:
   return m;
 }
 
-void pointsFromMoments(const PatchMoments& m, btScalar slack, btScalar spacing, ContactPatch& patch) {
+void pointsFromMoments(const PatchMoments& m, btScalar spacing, ContactPatch& patch) {
   patch.count = 0;
-  const btScalar depth = m.volume / m.area - slack;
+  const btScalar depth = m.volume / m.area;
   if (!(depth > 0)) return;
   // Symmetric square root of the spread: the corners move smoothly with it, without picking axes.
   const btScalar root_det = btSqrt(btMax(btScalar(0), m.spread[0] * m.spread[2] - m.spread[1] * m.spread[1]));

@@ -26,7 +26,8 @@ class Selection {
   void run() {
     patch_.count = 0;
     const auto deepest = [&](const ContactPoint& point) {
-      return point.depth + (isOld(point) ? kKeepDepth * spacing_ : btScalar(0));
+      const int steps = point.id == kDeepestId ? 2 : isOld(point) ? 1 : 0;
+      return point.depth + btScalar(steps) * kKeepDepth * spacing_;
     };
     const auto farthest = [&](const ContactPoint& point) {
       return worth(point) * point.on_b.distance(at(0));

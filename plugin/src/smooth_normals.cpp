@@ -7,6 +7,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 constexpr btScalar kSmooth = btScalar(0.866);  // cos 30 degrees
+/// Normals that differ by less are those of a flat face, but for rounding [rad].
+constexpr btScalar kFlat = btScalar(1e-4);
 
 /// Twice the area of a triangle along its normal.
 btVector3 areaVector(const Surface& surface, std::size_t t) {
@@ -61,6 +63,21 @@ btVector3 SmoothNormals::at(std::size_t t, const btVector3& point) const {
     sum += toBullet(corners_[3 * t + k]) * (p - point).cross(q - point).dot(normal);
   }
   return unit(sum);
+}
+
+btScalar SmoothNormals::curvature(std::size_t t) const {
+  const auto& triangle = surface_.triangles[t];
+  btScalar most = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    const btVector3 turn = toBullet(corners_[3 * t + next]) - toBullet(corners_[3 * t + k]);
+    const btVector3 edge =
+        toBullet(surface_.vertices[triangle[next]]) - toBullet(surface_.vertices[triangle[k]]);
+    if (turn.length() < kFlat || !(edge.length2() > 0)) continue;
+    const btScalar along = turn.dot(edge) / edge.length2();
+    if (btFabs(along) > btFabs(most)) most = along;
+  }
+  return most;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

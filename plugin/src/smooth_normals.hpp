@@ -20,6 +20,9 @@ class SmoothNormals {
 
   /// Unit normal at a point of a triangle.
   btVector3 at(std::size_t triangle, const btVector3& point) const;
+  /// Of the surface across a triangle [1/m]: the curvature along that edge that shows most of it, positive
+  /// where the solid is convex, exactly 0 where it is flat.
+  btScalar curvature(std::size_t triangle) const;
 
  private:
   const Surface& surface_;

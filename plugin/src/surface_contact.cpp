@@ -44,11 +44,23 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
   const PackingBody a(packing_, packing, measure.estimator, measure.slack_a);
   touches.clear();
   surface_->touch(a, other, touches);
-  contacts.clear();
-  for (const Touch& touch : touches)
-    contacts.push_back(cap(touch, a.centreOf(touch.sphere), a.reach(touch.sphere)));
-  const SurfaceGauge gauge(a, touches);
-  buildContactPatches(contacts, gauge, measure, packing.getBasis(), patches_);
+  const auto caps = [&](btScalar slack) {
+    contacts.clear();
+    for (const Touch& touch : touches) {
+      const btScalar reach = a.radiusOf(touch.sphere) + a.margin + slack;
+      if (touch.distance < reach) contacts.push_back(cap(touch, a.centreOf(touch.sphere), reach));
+    }
+  };
+  if (measure.on_surfaces) {
+    caps(a.slack);
+    if (measurePatches(contacts, SurfaceGauge(a, touches), measure, packing.getBasis(), patches_))
+      return patches_;
+    caps(0);
+    if (contacts.empty()) return patches_;
+  } else {
+    caps(0);
+  }
+  volumePatches(contacts, measure.spacing, packing.getBasis(), patches_);
   return patches_;
 }
 

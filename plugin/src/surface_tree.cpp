@@ -54,6 +54,7 @@ bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScal
   hit.distance = nearest.m_hitFraction * length;
   hit.face = nearest.face.normalized();
   const SmoothNormals& normals = normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
+  hit.curvature = normals.curvature(static_cast<std::size_t>(nearest.triangle));
   hit.normal = normals.at(static_cast<std::size_t>(nearest.triangle), from + direction * hit.distance);
   return true;
 }

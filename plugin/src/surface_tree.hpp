@@ -28,9 +28,10 @@ class SurfaceTree {
 
   /// Where a ray meets the surface first.
   struct Hit {
-    btScalar distance;  ///< [m] along the ray
-    btVector3 face;     ///< unit normal of the triangle, out of the solid
-    btVector3 normal;   ///< the same, smoothed over curved surfaces
+    btScalar distance;   ///< [m] along the ray
+    btVector3 face;      ///< unit normal of the triangle, out of the solid
+    btVector3 normal;    ///< the same, smoothed over curved surfaces
+    btScalar curvature;  ///< there [1/m]; see SmoothNormals
   };
   /// `direction` is a unit vector. False if nothing is met within `length`.
   bool cast(const btVector3& from, const btVector3& direction, btScalar length, Hit& hit) const;

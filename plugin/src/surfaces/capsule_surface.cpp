@@ -20,6 +20,7 @@ class CapsuleSurface : public DistanceSurface {
     btVector3 sideways(0, 0, 0);
     sideways[(axis + 1) % 3] = 1;
     nearest.distance = thickenedDistance(offset, capsule_.getRadius(), sideways, nearest.normal);
+    nearest.curvature = 1 / capsule_.getRadius();
     return true;
   }
 

@@ -14,7 +14,8 @@ void DistanceSurface::touch(const PackingBody& body, const btTransform& world, s
     Nearest found;
     if (!nearest(to_shape(centre(body.shape().packing().spheres[i]) * scale), found)) return;
     if (found.distance >= body.reach(i)) return;
-    touches.push_back({static_cast<std::uint32_t>(i), found.distance, world.getBasis() * found.normal});
+    touches.push_back(
+        {static_cast<std::uint32_t>(i), found.distance, world.getBasis() * found.normal, found.curvature});
   };
   body.shape().sphereTree().forEach(near, test);
 }

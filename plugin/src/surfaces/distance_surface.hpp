@@ -12,8 +12,9 @@ class DistanceSurface : public OtherSurface {
 
  protected:
   struct Nearest {
-    btScalar distance;  ///< [m], negative inside
-    btVector3 normal;   ///< unit, outwards
+    btScalar distance;       ///< [m], negative inside
+    btVector3 normal;        ///< unit, outwards
+    btScalar curvature = 0;  ///< [1/m]
   };
   /// In the frame of the shape. False where the distance is unknown; the point is then taken as far away.
   virtual bool nearest(const btVector3& p, Nearest& nearest) const = 0;

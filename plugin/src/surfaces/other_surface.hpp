@@ -15,6 +15,7 @@ struct Touch {
   std::uint32_t sphere = 0;
   btScalar distance = 0;      ///< of its centre from the other surface [m], negative inside the other solid
   btVector3 normal{0, 0, 0};  ///< unit, out of the other solid at the nearest point; axes of the world
+  btScalar curvature = 0;     ///< of the other surface there [1/m]; 0 if flat, or not known
 };
 
 /// One implementation for each kind of shape. An object belongs to one pair of bodies and may remember things

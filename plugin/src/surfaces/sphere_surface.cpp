@@ -14,6 +14,7 @@ class SphereSurface : public DistanceSurface {
  private:
   bool nearest(const btVector3& p, Nearest& nearest) const override {
     nearest.distance = thickenedDistance(p, sphere_.getRadius(), btVector3(0, 1, 0), nearest.normal);
+    nearest.curvature = 1 / sphere_.getRadius();
     return true;
   }
 
