@@ -155,8 +155,7 @@ void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std:
       toucher.setFromA(from_a);
       const core::Walker walker = core::walkerOf(setup, from_a);
       const core::Cluster& own = walker.own.clusters[cluster - (from_a ? 0 : setup.a.clusters)];
-      const Columns& columns = (from_a ? query.grid_b : query.grid_a)->columns();
-      if (!kernels.walk(walker, columns, own, candidates, toucher) || !toucher.take(candidates)) return;
+      if (!kernels.walk(walker, own, candidates, toucher) || !toucher.take(candidates)) return;
     }
     return;
   }
@@ -164,10 +163,9 @@ void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std:
   for (const bool from_a : {true, false}) {
     summer.setFromA(from_a);
     const core::Walker walker = core::walkerOf(setup, from_a);
-    const Columns& columns = (from_a ? query.grid_b : query.grid_a)->columns();
     const std::size_t before = from_a ? 0 : setup.a.clusters;
     for (std::size_t c = from_a ? begin : split; c < (from_a ? split : end); ++c)
-      kernels.walk(walker, columns, walker.own.clusters[c - before], candidates, summer);
+      kernels.walk(walker, walker.own.clusters[c - before], candidates, summer);
     summer.take(candidates);
   }
   if (summer.sums().pairs == 0) return;

@@ -2,163 +2,81 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 namespace innersphere {
 
 namespace {
 
-using core::Vec3f;
-
 constexpr std::size_t kLanes = 8;
 
-/// The spheres of a cluster that may meet the other grid at all, as that grid sees them.
-struct Walkers {
-  alignas(64) std::array<float, core::kClusterSize> x, y, z, reach;
-  std::array<std::uint32_t, core::kClusterSize> place;
-  std::size_t count = 0;
-  Vec3f lo, hi;             ///< around the centres
-  float largest_reach = 0;  ///< radius with all margins and tolerances
-};
-
-/// Spheres of the grid that are near the walkers.
-struct Partners {
-  static constexpr std::size_t kSize = 512;
-  std::array<std::uint32_t, kSize + kLanes> place;
-  std::size_t count = 0;
-};
-
-inline void makeWalkers(const core::Walker& walker, const core::Cluster& cluster, Walkers& walkers) {
-  constexpr float kMax = std::numeric_limits<float>::max();
-  walkers.lo = {kMax, kMax, kMax};
-  walkers.hi = {-kMax, -kMax, -kMax};
-  const float tolerance = walker.search.tolerance;
-  std::size_t n = 0;
-  for (std::uint32_t k = cluster.first; k < cluster.first + cluster.count; ++k) {
-    const core::Probe probe = core::makeProbe(walker.search, walker.own.spheres[k]);
-    const float reach = probe.radius + walker.search.grid_margin + tolerance;
-    if (!core::meetsBounds(walker.grid, probe.p, reach)) continue;
-    const Vec3f& p = probe.p;
-    walkers.x[n] = p.x;
-    walkers.y[n] = p.y;
-    walkers.z[n] = p.z;
-    walkers.reach[n] = reach;
-    walkers.place[n] = k;
-    walkers.lo = {std::min(walkers.lo.x, p.x), std::min(walkers.lo.y, p.y), std::min(walkers.lo.z, p.z)};
-    walkers.hi = {std::max(walkers.hi.x, p.x), std::max(walkers.hi.y, p.y), std::max(walkers.hi.z, p.z)};
-    walkers.largest_reach = std::max(walkers.largest_reach, reach);
-    ++n;
-  }
-  walkers.count = n;
-}
-
-/// Adds the spheres of a run that may meet the box around the walkers. Reads past the end of the run: the
-/// columns are padded. Returns where it stopped for want of room.
-inline std::uint32_t addRun(const Columns& columns, const Walkers& walkers, std::uint32_t first,
-                            std::uint32_t end, Partners& partners) {
-  const Vec3f lo = walkers.lo, hi = walkers.hi;
-  const float reach = walkers.largest_reach;
-  std::size_t n = partners.count;
-  std::uint32_t at = first;
-  for (; at < end && n + kLanes <= Partners::kSize; at += kLanes) {
-    const float* x = columns.x + at;
-    const float* y = columns.y + at;
-    const float* z = columns.z + at;
-    const float* r = columns.radius + at;
-    alignas(32) std::int32_t near[kLanes];
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const float dx = std::max(std::max(lo.x - x[k], x[k] - hi.x), 0.0f);
-      const float dy = std::max(std::max(lo.y - y[k], y[k] - hi.y), 0.0f);
-      const float dz = std::max(std::max(lo.z - z[k], z[k] - hi.z), 0.0f);
-      const float sum = r[k] + reach;
-      const std::int32_t inside = at + k < end ? 1 : 0;
-      near[k] = dx * dx + dy * dy + dz * dz > sum * sum ? 0 : inside;
-    }
-    for (std::size_t k = 0; k < kLanes; ++k) {  // always written, kept where near: no branch to mispredict
-      partners.place[n] = at + static_cast<std::uint32_t>(k);
-      n += static_cast<std::size_t>(near[k]);
-    }
-  }
-  partners.count = n;
-  return at;
-}
-
-/// Tests each partner against all walkers.
-inline bool testPartners(const Columns& columns, const Walkers& walkers, Partners& partners,
+/// Tests a walker against some spheres of the grid: places[0 .. count), or if there are none the first ones.
+/// `counts` has the last word on those that meet it.
+template <typename Counts>
+inline bool testPartners(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t self,
+                         const std::uint32_t* places, std::uint32_t count, const Counts& counts,
                          Candidates& candidates, CandidateSink& sink) {
-  constexpr std::size_t kSize = Partners::kSize;
+  constexpr std::uint32_t kSize = 32;
   alignas(64) float x[kSize], y[kSize], z[kSize], radius[kSize];
-  alignas(64) std::uint32_t near[kSize];  // a bit for each walker
-  const std::size_t n = (partners.count + kLanes - 1) / kLanes * kLanes;
-  for (std::size_t k = partners.count; k < n; ++k) partners.place[k] = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::uint32_t place = partners.place[k];
-    x[k] = columns.x[place];
-    y[k] = columns.y[place];
-    z[k] = columns.z[place];
-    radius[k] = columns.radius[place];
-    near[k] = 0;
-  }
-  for (std::size_t w = 0; w < walkers.count; ++w) {
-    const float wx = walkers.x[w], wy = walkers.y[w], wz = walkers.z[w], reach = walkers.reach[w];
-    const std::uint32_t bit = 1u << w;
-    for (std::size_t k = 0; k < n; ++k) {
-      const float dx = wx - x[k], dy = wy - y[k], dz = wz - z[k], sum = reach + radius[k];
-      near[k] |= dx * dx + dy * dy + dz * dz > sum * sum ? 0 : bit;
+  alignas(64) std::uint32_t bits[kSize];
+  for (std::uint32_t begin = 0; begin < count; begin += kSize) {
+    const std::uint32_t n = std::min(kSize, count - begin), whole = (n + kLanes - 1) / kLanes * kLanes;
+    if (candidates.count + kSize > Candidates::kSize && !sink.take(candidates)) return false;
+    const auto placeOf = [&](std::uint32_t k) { return places ? places[begin + k] : begin + k; };
+    for (std::uint32_t k = 0; k < whole; ++k) {
+      const Sphere& s = grid.centred[k < n ? placeOf(k) : grid.count];
+      x[k] = s.x;
+      y[k] = s.y;
+      z[k] = s.z;
+      radius[k] = s.radius;
     }
-  }
-  for (std::size_t k = 0; k < partners.count; ++k) {
-    if (near[k] == 0) continue;
-    if (candidates.count + core::kClusterSize > Candidates::kSize && !sink.take(candidates)) return false;
+    for (std::uint32_t k = 0; k < whole; ++k) {
+      const float dx = x[k] - lookup.p.x, dy = y[k] - lookup.p.y, dz = z[k] - lookup.p.z;
+      const float sum = lookup.reach + radius[k];
+      const std::uint32_t large = radius[k] < lookup.smallest ? 0 : 1u << k;
+      bits[k] = dx * dx + dy * dy + dz * dz > sum * sum ? 0 : large;
+    }
+    std::uint32_t met = 0;
+    for (std::uint32_t k = 0; k < whole; ++k) met |= bits[k];
     std::size_t c = candidates.count;
-    for (std::uint32_t left = near[k]; left != 0; left &= left - 1) {
-      candidates.walker[c] = walkers.place[static_cast<std::size_t>(std::countr_zero(left))];
-      candidates.partner[c] = partners.place[k];
-      ++c;
+    for (; met != 0; met &= met - 1) {
+      const std::uint32_t place = placeOf(static_cast<std::uint32_t>(std::countr_zero(met)));
+      candidates.walker[c] = self;
+      candidates.partner[c] = place;
+      c += counts(grid.centred[place]) ? 1 : 0;
     }
     candidates.count = c;
   }
-  partners.count = 0;
   return true;
 }
 
-inline bool walkImpl(const core::Walker& walker, const Columns& columns, const core::Cluster& cluster,
-                     Candidates& candidates, CandidateSink& sink) {
-  if (!core::clusterMeets(walker, cluster)) return true;
-  Walkers walkers;
-  makeWalkers(walker, cluster, walkers);
-  if (walkers.count == 0) return true;
-  const float r = walkers.largest_reach;
-  const Vec3f lo = walkers.lo - Vec3f{r, r, r}, hi = walkers.hi + Vec3f{r, r, r};
-  Partners partners;
+inline bool walkSphere(const core::Walker& walker, std::uint32_t self, Candidates& candidates,
+                       CandidateSink& sink) {
+  core::Lookup lookup;
+  if (!core::makeLookup(walker, walker.own.spheres[self], lookup)) return true;
   const core::GridView& grid = walker.grid;
-  const auto visit = [&](std::uint32_t at, std::uint32_t count) {
-    const std::uint32_t end = at + count;
-    while ((at = addRun(columns, walkers, at, end, partners)) < end) {
-      if (!testPartners(columns, walkers, partners, candidates, sink)) return false;
-    }
-    return true;
-  };
-  for (int l = core::firstLevel(walker, cluster); l < grid.level_count; ++l) {
-    const core::Level& level = grid.levels[l];
-    core::CellBox box;
-    if (level.count == 0 || !core::blockBox(grid, level, walker.search, lo, hi, box)) continue;
-    std::uint64_t blocks = 1;
-    for (int axis = 0; axis < 3; ++axis) blocks *= box.hi[axis] - box.lo[axis] + 1;
-    if (blocks >= level.blocks) {  // all of them, then
-      if (!visit(level.first, level.count)) return false;
-      continue;
-    }
-    for (std::uint32_t z = box.lo[2]; z <= box.hi[2]; ++z) {
-      for (std::uint32_t y = box.lo[1]; y <= box.hi[1]; ++y) {
-        for (std::uint32_t x = box.lo[0]; x <= box.hi[0]; ++x) {
-          const core::Block block = core::findBlock(grid, core::blockKey(l, x, y, z));
-          if (block.count != 0 && !visit(block.first, block.count)) return false;
-        }
-      }
-    }
+  const core::Cells cells = core::cellsOf(grid, lookup);
+  const auto always = [](const Sphere&) { return true; };
+  if (cells.all) return testPartners(grid, lookup, self, nullptr, grid.count, always, candidates, sink);
+  for (std::uint32_t number = 0; number < cells.count; ++number) {
+    std::uint32_t at[3];
+    cells.coordinates(number, at);
+    const core::Cell cell = core::findCell(grid, core::cellKey(cells.tier, at[0], at[1], at[2]));
+    const std::uint32_t* places = grid.listed + cell.first;
+    const auto here = [&](const Sphere& s) { return core::countsIn(grid, cells, at, s); };
+    if (!(cells.count > 1 ? testPartners(grid, lookup, self, places, cell.count, here, candidates, sink)
+                          : testPartners(grid, lookup, self, places, cell.count, always, candidates, sink)))
+      return false;
   }
-  return testPartners(columns, walkers, partners, candidates, sink);
+  return true;
+}
+
+inline bool walkImpl(const core::Walker& walker, const core::Cluster& cluster, Candidates& candidates,
+                     CandidateSink& sink) {
+  if (!core::clusterMeets(walker, cluster)) return true;
+  for (std::uint32_t k = cluster.first; k < cluster.first + cluster.count; ++k) {
+    if (!walkSphere(walker, k, candidates, sink)) return false;
+  }
+  return true;
 }
 
 /// The spheres of some pairs, an array for each coordinate.
@@ -242,24 +160,24 @@ inline void evaluateImpl(const core::Setup& setup, std::size_t count, PairValues
 }
 
 // Each variant is the same code, inlined into a function for its instructions.
-#define INNERSPHERE_KERNELS(name, attributes)                                                                \
-  struct name {                                                                                              \
-    attributes static bool walk(const core::Walker& walker, const Columns& columns,                          \
-                                const core::Cluster& cluster, Candidates& candidates, CandidateSink& sink) { \
-      return walkImpl(walker, columns, cluster, candidates, sink);                                           \
-    }                                                                                                        \
-    attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,       \
-                                  Tally& tally) {                                                            \
-      sumImpl<true>(setup, from_a, candidates, tally);                                                       \
-    }                                                                                                        \
-    attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates,   \
-                                      Tally& tally) {                                                        \
-      sumImpl<false>(setup, from_a, candidates, tally);                                                      \
-    }                                                                                                        \
-    attributes static void evaluate(const core::Setup& setup, std::size_t count, PairValues& pairs) {        \
-      evaluateImpl(setup, count, pairs);                                                                     \
-    }                                                                                                        \
-    static constexpr CpuKernels kKernels{walk, sumAll, sumVolumes, evaluate};                                \
+#define INNERSPHERE_KERNELS(name, attributes)                                                              \
+  struct name {                                                                                            \
+    attributes static bool walk(const core::Walker& walker, const core::Cluster& cluster,                  \
+                                Candidates& candidates, CandidateSink& sink) {                             \
+      return walkImpl(walker, cluster, candidates, sink);                                                  \
+    }                                                                                                      \
+    attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
+                                  Tally& tally) {                                                          \
+      sumImpl<true>(setup, from_a, candidates, tally);                                                     \
+    }                                                                                                      \
+    attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates, \
+                                      Tally& tally) {                                                      \
+      sumImpl<false>(setup, from_a, candidates, tally);                                                    \
+    }                                                                                                      \
+    attributes static void evaluate(const core::Setup& setup, std::size_t count, PairValues& pairs) {      \
+      evaluateImpl(setup, count, pairs);                                                                   \
+    }                                                                                                      \
+    static constexpr CpuKernels kKernels{walk, sumAll, sumVolumes, evaluate};                              \
   }
 
 INNERSPHERE_KERNELS(Baseline, __attribute__((flatten)));

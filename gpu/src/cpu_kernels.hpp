@@ -47,8 +47,8 @@ struct PairValues {
 struct CpuKernels {
   /// Finds the candidates of one cluster, and hands them on where the room ends; the last of them stay in
   /// `candidates`. Returns false if it was stopped.
-  bool (*walk)(const core::Walker& walker, const Columns& columns, const core::Cluster& cluster,
-               Candidates& candidates, CandidateSink& sink);
+  bool (*walk)(const core::Walker& walker, const core::Cluster& cluster, Candidates& candidates,
+               CandidateSink& sink);
   /// Decides candidates and sums those that count: all terms, or only volumes.
   void (*sumAll)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
   void (*sumVolumes)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);

@@ -82,14 +82,13 @@ class CudaBackend : public WalkBackend {
     const std::size_t warps = kWarpsPerProcessor * static_cast<std::size_t>(processors_);
     if (clusters == 0) return jobs_ = 0;
     job_size_ = static_cast<unsigned>(std::clamp<std::size_t>(clusters / warps, 1, kLargestJob));
-    parts_ = static_cast<unsigned>(std::clamp<std::size_t>(warps / clusters, 1, kMostParts));
     jobs_ = 0;
     for (const PreparedQuery& query : queries) jobs_ += jobsOf(query);
     return jobs_;
   }
 
   std::size_t jobsOf(const PreparedQuery& query) const {
-    return (query.clusters() + job_size_ - 1) / job_size_ * parts_;
+    return (query.clusters() + job_size_ - 1) / job_size_;
   }
 
   /// The queries with their grids on the device, and where the jobs of each begin.
@@ -115,7 +114,6 @@ class CudaBackend : public WalkBackend {
     batch.first = layout.first(memory);
     batch.count = static_cast<unsigned>(count);
     batch.job_size = job_size_;
-    batch.parts = parts_;
     batch.sums = layout.sums(memory);
     if (wantsHits(want)) {
       batch.hits = device_hits_.data();
@@ -138,7 +136,6 @@ class CudaBackend : public WalkBackend {
   int device_ = 0;
   int processors_ = 1;
   unsigned job_size_ = 1;
-  unsigned parts_ = 1;
   std::size_t jobs_ = 0;  ///< below 2^31, the most that one launch can have
   cudaStream_t stream_ = nullptr;
   PinnedArray<std::byte> host_;

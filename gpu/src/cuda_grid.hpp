@@ -13,10 +13,11 @@ class CudaGrid : public DeviceGrid {
  public:
   CudaGrid(const HashGrid& grid, int device, cudaStream_t stream) : device_(device), view_(grid.view()) {
     upload(spheres_, view_.spheres, view_.count, stream);
+    upload(centred_, view_.centred, std::size_t{view_.count} + 1, stream);
     upload(ids_, view_.ids, view_.count, stream);
     upload(clusters_, view_.clusters, view_.cluster_count, stream);
-    upload(blocks_, view_.blocks, grid.tableSize(), stream);
-    upload(levels_, view_.levels, static_cast<std::size_t>(view_.level_count), stream);
+    upload(cells_, view_.cells, grid.tableSize(), stream);
+    upload(listed_, view_.listed, view_.listed_count, stream);
     INNERSPHERE_CUDA(cudaStreamSynchronize(stream));  // other streams may read it from now on
   }
 
@@ -34,10 +35,11 @@ class CudaGrid : public DeviceGrid {
   int device_;
   core::GridView view_;
   DeviceArray<Sphere> spheres_;
+  DeviceArray<Sphere> centred_;
   DeviceArray<std::uint32_t> ids_;
   DeviceArray<core::Cluster> clusters_;
-  DeviceArray<core::Block> blocks_;
-  DeviceArray<core::Level> levels_;
+  DeviceArray<core::Cell> cells_;
+  DeviceArray<std::uint32_t> listed_;
 };
 
 /// The grid on a device, which must be current; copied there on first use. Safe to call from several threads.

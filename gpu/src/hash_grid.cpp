@@ -3,9 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -14,13 +12,11 @@
 
 namespace innersphere {
 
-using core::CellBox;
 using core::Vec3f;
 
 namespace {
 
-constexpr float kClusterCells = 8;        ///< of its level, that a cluster may extend over along each axis
-constexpr std::uint32_t kBlockFill = 10;  ///< spheres that an occupied block should hold, at least
+constexpr double kListed = 8;  ///< cells of the finest tier that list a sphere, on average, at most
 
 Vec3f relativeCentre(const Sphere& s, const Vec3f& centre) {
   return Vec3f{s.x, s.y, s.z} - centre;
@@ -49,13 +45,9 @@ void forRanges(std::size_t n, const F& f) {
                     [&](const auto& range) { f(range.begin(), range.end()); });
 }
 
-/// The cell of the finest level that holds the centre.
-std::array<std::uint32_t, 3> cellOf(const core::GridView& grid, const Sphere& s) {
-  const Vec3f p = relativeCentre(s, grid.centre);
-  CellBox box{};
-  [[maybe_unused]] const bool inside = core::cellBox(grid, p, p, box);
-  assert(inside);
-  return {box.lo[0], box.lo[1], box.lo[2]};
+/// How many cells are within `reach` of a point, on average over its place in its cell; lengths in edges.
+double cellsNear(double reach) {
+  return 1 + reach * (6 + reach * (9.42 + reach * 4.19));
 }
 
 }  // namespace
@@ -70,8 +62,14 @@ HashGrid::HashGrid(std::vector<Sphere> spheres) : spheres_(std::move(spheres)) {
   measure();
   orderSpheres();
   makeClusters();
-  makeColumns();
-  fillTable();
+  lists_ = listCells(view_, [&](int tier) {  // levels below the tier's look elsewhere
+    const int level = tier == 0 ? 0 : view_.finest + tier - 1 - lowest_level_;
+    return level_first_[static_cast<std::size_t>(std::max(level, 0))];
+  });
+  view_.cells = lists_.table.data();
+  view_.listed = lists_.listed.data();
+  view_.listed_count = static_cast<std::uint32_t>(lists_.listed.size());
+  view_.hash_shift = lists_.hash_shift;
 }
 
 void HashGrid::measure() {
@@ -106,108 +104,84 @@ void HashGrid::measure() {
   view_.radius = roundUp(radius);
   view_.reach = roundUp(std::sqrt(reach2) + largest);
   view_.largest = largest;
-  // Spheres so small that cell coordinates would need more bits than a key has share a coarser level.
-  const float sizes[3] = {view_.half.x, view_.half.y, view_.half.z};
-  const float widest = *std::max_element(sizes, sizes + 3);
-  view_.finest = std::max(core::levelOf(smallest), core::levelOf(widest) - (core::kAxisBits - 1));
-  view_.level_count = std::max(core::levelOf(largest) - view_.finest, 0) + 1;
-  view_.inverse_cell = std::ldexp(1.0f, -view_.finest);
-  for (int axis = 0; axis < 3; ++axis)
-    view_.last_cell[axis] = std::floor(2 * sizes[axis] * view_.inverse_cell);
+  // Spheres so small that coordinates would need more bits than a key has count as of a coarser level.
+  const float widest = std::max({view_.half.x, view_.half.y, view_.half.z});
+  lowest_level_ = std::max(core::levelOf(smallest), core::levelOf(widest) - (core::kAxisBits - 2));
 }
 
 void HashGrid::orderSpheres() {
-  const float* last = view_.last_cell;
-  curve_bits_ = std::bit_width(static_cast<std::uint32_t>(std::max({last[0], last[1], last[2], 1.0f})));
+  const float inverse_cell = core::powerOfTwo(-lowest_level_);
+  const Vec3f half = view_.half;
+  const auto cellsAlong = [&](float x) { return static_cast<std::uint32_t>(x * inverse_cell); };
+  curve_bits_ = std::bit_width(cellsAlong(2 * std::max({half.x, half.y, half.z})) | 1u);
   std::vector<Place> places(spheres_.size()), spare(spheres_.size());
   forRanges(spheres_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto cell = cellOf(view_, spheres_[i]);
-      const int level = std::max(core::levelOf(spheres_[i].radius) - view_.finest, 0);
+      const Vec3f p = relativeCentre(spheres_[i], view_.centre) + half;
+      const int level = std::max(core::levelOf(spheres_[i].radius) - lowest_level_, 0);
       places[i] = {static_cast<std::uint64_t>(level) << (3 * curve_bits_) |
-                       core::hilbertPlace(cell[0], cell[1], cell[2], curve_bits_),
+                       core::hilbertPlace(cellsAlong(p.x), cellsAlong(p.y), cellsAlong(p.z), curve_bits_),
                    static_cast<std::uint32_t>(i)};
     }
   });
   // Spheres of equal keys keep the order of the packing.
-  const int level_bits = std::bit_width(static_cast<unsigned>(view_.level_count - 1));
+  const int levels = std::max(core::levelOf(view_.largest) - lowest_level_, 0) + 1;
+  level_first_.assign(static_cast<std::size_t>(levels), 0);
   sortByBits(
-      places, spare, [](const Place& place) { return place.key; }, 0, 3 * curve_bits_ + level_bits);
+      places, spare, [](const Place& place) { return place.key; }, 0,
+      3 * curve_bits_ + std::bit_width(static_cast<unsigned>(levels - 1)));
   std::vector<Sphere> sorted(places.size());
+  centred_.resize(places.size() + 1);
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  centred_.back() = {kFar, kFar, kFar, -kFar};
   ids_.resize(places.size());
   places_.resize(places.size());
   forRanges(places.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      sorted[k] = spheres_[places[k].index];
+      const Sphere& s = spheres_[places[k].index];
+      const Vec3f p = relativeCentre(s, view_.centre);
+      sorted[k] = s;
+      centred_[k] = {p.x, p.y, p.z, s.radius};
       ids_[k] = places[k].index;
       places_[places[k].index] = static_cast<std::uint32_t>(k);
     }
   });
   spheres_ = std::move(sorted);
   view_.spheres = spheres_.data();
+  view_.centred = centred_.data();
   view_.ids = ids_.data();
-  splitLevels(places);
+  chooseTiers(places);
 }
 
-/// Finds where each level begins, and the smallest blocks that hold kBlockFill spheres on average.
-void HashGrid::splitLevels(const std::vector<Place>& places) {
-  levels_.assign(static_cast<std::size_t>(view_.level_count), core::Level{});
-  // Two neighbours share a block if their keys differ only in the bits below it.
-  const auto levelOf = [&](const Place& place) {
-    return static_cast<std::size_t>(place.key >> (3 * curve_bits_));
+/// Finds where each level begins, and the finest tier for which cells are not too many.
+void HashGrid::chooseTiers(const std::vector<Place>& places) {
+  const auto begins = [&](std::size_t level) {
+    return std::partition_point(places.begin(), places.end(),
+                                [&](const Place& place) { return place.key >> (3 * curve_bits_) < level; });
   };
-  using Steps = std::array<std::uint32_t, core::kAxisBits + 1>;
-  std::vector<Steps> steps(levels_.size(), Steps{});
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    core::Level& level = levels_[levelOf(places[k])];
-    if (level.count++ == 0) {
-      level.first = static_cast<std::uint32_t>(k);
-    } else {
-      const int differ = std::bit_width(places[k].key ^ places[k - 1].key);
-      ++steps[levelOf(places[k])][static_cast<std::size_t>((differ + 2) / 3)];
+  for (std::size_t l = 0; l < level_first_.size(); ++l)
+    level_first_[l] = static_cast<std::uint32_t>(begins(l) - places.begin());
+  const int levels = static_cast<int>(level_first_.size());
+  int tier = 1;  // above the lowest level
+  for (; tier < levels; ++tier) {
+    double listed = 0;
+    for (int l = 0; l < levels; ++l) {
+      const std::uint32_t end = l + 1 < levels ? level_first_[static_cast<std::size_t>(l) + 1] : view_.count;
+      // A level's radii are from 1/4 to 1/2 of its cells, and walkers reach a quarter of the tier's.
+      listed += (end - level_first_[static_cast<std::size_t>(l)]) *
+                cellsNear(0.36 * std::ldexp(1.0, l - tier) + 0.25);
     }
-    level.largest = std::max(level.largest, spheres_[k].radius);
+    if (listed <= kListed * view_.count) break;
   }
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
-    core::Level& level = levels_[l];
-    if (level.count == 0) continue;
-    level.blocks = 1;
-    int shift = curve_bits_;
-    // Never below the level's own cells, so that the blocks near a sphere stay few.
-    for (; shift > static_cast<int>(l); --shift) {
-      const std::uint32_t blocks = level.blocks + steps[l][static_cast<std::size_t>(shift)];
-      if (std::uint64_t{blocks} * kBlockFill > level.count) break;
-      level.blocks = blocks;
-    }
-    level.block_shift = shift;
-  }
-  view_.levels = levels_.data();
+  view_.finest = lowest_level_ + tier;
+  view_.tiers = levels - tier + 1;
 }
 
-/// Cuts each level's run where a cluster is full, or would become wider than kClusterCells: the partners of
-/// few spheres that are far apart would be all there are.
 void HashGrid::makeClusters() {
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
-    const core::Level& level = levels_[l];
-    const float widest = kClusterCells * std::ldexp(1.0f, view_.finest + static_cast<int>(l));
-    Vec3f lo{}, hi{};
-    core::Cluster cluster{};
-    for (std::uint32_t k = level.first; k < level.first + level.count; ++k) {
-      const Sphere& s = spheres_[k];
-      lo = {std::min(lo.x, s.x), std::min(lo.y, s.y), std::min(lo.z, s.z)};
-      hi = {std::max(hi.x, s.x), std::max(hi.y, s.y), std::max(hi.z, s.z)};
-      const Vec3f size = hi - lo;
-      const bool fits = std::max({size.x, size.y, size.z}) <= widest && cluster.count < core::kClusterSize;
-      if (cluster.count > 0 && fits) {
-        ++cluster.count;
-        continue;
-      }
-      if (cluster.count > 0) clusters_.push_back(cluster);
-      cluster.first = k;
-      cluster.count = 1;
-      lo = hi = {s.x, s.y, s.z};
-    }
-    if (cluster.count > 0) clusters_.push_back(cluster);
+  for (std::size_t l = 0; l < level_first_.size(); ++l) {
+    const std::uint32_t end = l + 1 < level_first_.size() ? level_first_[l + 1] : view_.count;
+    for (std::uint32_t k = level_first_[l]; k < end; k += core::kClusterSize)
+      clusters_.push_back({{}, 0, k, std::min(core::kClusterSize, end - k)});
   }
   forRanges(clusters_.size(), [&](std::size_t from, std::size_t to) {
     for (std::size_t c = from; c < to; ++c) {
@@ -230,53 +204,6 @@ void HashGrid::makeClusters() {
   });
   view_.clusters = clusters_.data();
   view_.cluster_count = static_cast<std::uint32_t>(clusters_.size());
-}
-
-void HashGrid::makeColumns() {
-  const std::size_t n = spheres_.size(), stride = n + Columns::kPadding;
-  coordinates_.assign(4 * stride, 0.0f);
-  float* x = coordinates_.data();
-  forRanges(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const Vec3f p = relativeCentre(spheres_[k], view_.centre);
-      x[k] = p.x;
-      x[stride + k] = p.y;
-      x[2 * stride + k] = p.z;
-      x[3 * stride + k] = spheres_[k].radius;
-    }
-  });
-  columns_ = {x, x + stride, x + 2 * stride, x + 3 * stride};
-}
-
-void HashGrid::fillTable() {
-  std::size_t blocks = 0;
-  for (const core::Level& level : levels_) blocks += level.blocks;
-  const int bits = std::max(1, static_cast<int>(std::bit_width(2 * blocks - 1)));
-  table_.assign(std::size_t{1} << bits, core::Block{});
-  view_.hash_shift = 64 - bits;
-  const std::size_t mask = table_.size() - 1;
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
-    const core::Level& level = levels_[l];
-    core::Block block{};
-    const auto finish = [&] {
-      if (block.count == 0) return;
-      std::size_t at = core::hashBlock(view_, block.key);
-      while (table_[at].count != 0) at = (at + 1) & mask;
-      table_[at] = block;
-    };
-    for (std::uint32_t k = level.first; k < level.first + level.count; ++k) {
-      const auto cell = cellOf(view_, spheres_[k]);
-      const std::uint64_t key = core::blockKey(static_cast<int>(l), cell[0] >> level.block_shift,
-                                               cell[1] >> level.block_shift, cell[2] >> level.block_shift);
-      if (block.count == 0 || key != block.key) {
-        finish();
-        block = {key, k, 0};
-      }
-      ++block.count;
-    }
-    finish();
-  }
-  view_.blocks = table_.data();
 }
 
 }  // namespace innersphere

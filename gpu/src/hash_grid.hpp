@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "cell_lists.hpp"
 #include "core/grid_view.hpp"
 
 namespace innersphere {
@@ -17,20 +18,10 @@ class DeviceGrid {
   virtual int device() const = 0;
 };
 
-/// The spheres in the order of the grid, relative to its centre, an array for each coordinate, so that a CPU
-/// loads several at once. kPadding readable numbers follow the last.
-struct Columns {
-  static constexpr std::size_t kPadding = 32;
-  const float* x;
-  const float* y;
-  const float* z;
-  const float* radius;
-};
-
-/// Immutable once built. Spheres are sorted and the runs that share a block or a cluster are found by
-/// comparing neighbours, so nothing can overflow, and the grid depends on nothing but the input.
+/// Immutable once built. What each cell lists is counted before it is written, so nothing can overflow, and
+/// the grid depends on nothing but the input.
 ///
-/// With volume-true radii the spheres of one packing overlap a little and a cell holds a few more; nothing
+/// With volume-true radii the spheres of one packing overlap a little and a cell lists a few more; nothing
 /// relies on how many.
 class HashGrid {
  public:
@@ -39,9 +30,11 @@ class HashGrid {
 
   /// For the CPU; valid as long as the grid.
   const core::GridView& view() const { return view_; }
-  const Columns& columns() const { return columns_; }
 
-  std::size_t tableSize() const { return table_.size(); }
+  /// Spheres of finer levels count as of this one.
+  int lowestLevel() const { return lowest_level_; }
+
+  std::size_t tableSize() const { return lists_.table.size(); }
 
   /// Where a sphere of the packing is in the grid's order.
   std::uint32_t placeOf(std::uint32_t id) const { return places_[id]; }
@@ -57,20 +50,18 @@ class HashGrid {
   struct Place;
   void measure();
   void orderSpheres();
-  void splitLevels(const std::vector<Place>& places);
+  void chooseTiers(const std::vector<Place>& places);
   void makeClusters();
-  void makeColumns();
-  void fillTable();
 
+  int lowest_level_ = 0;
   int curve_bits_ = 0;  ///< of a cell's coordinate
   std::vector<Sphere> spheres_;
+  std::vector<Sphere> centred_;
   std::vector<std::uint32_t> ids_;
   std::vector<std::uint32_t> places_;
-  std::vector<core::Level> levels_;
+  std::vector<std::uint32_t> level_first_;  ///< place of the first sphere of each level, from the lowest on
   std::vector<core::Cluster> clusters_;
-  std::vector<core::Block> table_;
-  std::vector<float> coordinates_;
-  Columns columns_{};
+  CellLists lists_;
   core::GridView view_{};
   mutable DeviceCopies device_copies_;
 };

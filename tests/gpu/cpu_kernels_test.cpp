@@ -43,7 +43,7 @@ Recorder record(const CpuKernels& kernels, const PreparedQuery& query) {
   Candidates candidates;
   const core::Walker walker = core::walkerOf(query.setup, true);
   for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
-    EXPECT_TRUE(kernels.walk(walker, query.grid_b->columns(), walker.own.clusters[c], candidates, recorder));
+    EXPECT_TRUE(kernels.walk(walker, walker.own.clusters[c], candidates, recorder));
   recorder.take(candidates);
   return recorder;
 }

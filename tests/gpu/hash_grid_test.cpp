@@ -17,72 +17,73 @@
 namespace innersphere::test {
 namespace {
 
-using core::Block;
 using core::GridView;
-using core::Level;
 
-using Cell = std::array<std::uint32_t, 3>;
+/// Coordinates of a cell of the Hilbert curve.
+using Place = std::array<std::uint32_t, 3>;
 
-/// The cell of the finest level that holds the centre.
-Cell cellOf(const GridView& view, const Sphere& s) {
-  const core::Vec3f p = core::Vec3f{s.x, s.y, s.z} - view.centre;
-  core::CellBox box{};
-  EXPECT_TRUE(core::cellBox(view, p, p, box));
-  return {box.lo[0], box.lo[1], box.lo[2]};
+int levelIn(const HashGrid& grid, std::uint32_t place) {
+  return std::max(core::levelOf(grid.view().spheres[place].radius), grid.lowestLevel());
 }
 
-void expectSoundLevels(const GridView& view) {
-  std::uint32_t first = 0;
-  for (int l = 0; l < view.level_count; ++l) {
-    const Level& level = view.levels[l];
-    if (level.count == 0) continue;
-    EXPECT_EQ(level.first, first);
-    first += level.count;
-    const double cell = std::ldexp(1.0, view.finest + l);
-    float largest = 0;
-    for (std::uint32_t k = level.first; k < first; ++k) {
-      const double r = view.spheres[k].radius;
-      largest = std::max(largest, view.spheres[k].radius);
-      EXPECT_LE(2 * r, cell);
-      if (l > 0) {
-        EXPECT_LT(cell, 4 * r);
+/// Spheres come by level, and each level looks in a tier that has cells of its own size or of finer ones.
+void expectSoundLevels(const HashGrid& grid) {
+  const GridView& view = grid.view();
+  for (std::uint32_t k = 1; k < view.count; ++k) EXPECT_LE(levelIn(grid, k - 1), levelIn(grid, k));
+  EXPECT_EQ(core::tierOf(view, levelIn(grid, view.count - 1)), view.tiers - 1);
+  for (int tier = 0; tier < view.tiers; ++tier)
+    EXPECT_EQ(4 * core::reachOf(view, tier), std::ldexp(1.0f, view.finest + tier));
+}
+
+/// What the cell of a point lists.
+std::set<std::uint32_t> listedAt(const GridView& view, int tier, const core::Vec3f& p) {
+  core::CellBox box;
+  std::set<std::uint32_t> places;
+  if (!core::cellBox(view, tier, p, p, box)) return places;
+  const core::Cell cell = core::findCell(view, core::cellKey(tier, box.lo[0], box.lo[1], box.lo[2]));
+  places.insert(view.listed + cell.first, view.listed + cell.first + cell.count);
+  EXPECT_EQ(places.size(), cell.count);
+  return places;
+}
+
+/// A sphere is listed in the cells of all points that a walker of the tier can reach it from, and each cell's
+/// list is in order and near it.
+void expectSoundLists(const HashGrid& grid) {
+  const GridView& view = grid.view();
+  Random random(1);
+  for (int tier = 0; tier < view.tiers; ++tier) {
+    for (std::uint32_t k = 0; k < view.count; k += 1 + view.count / 200) {
+      if (tier > 0 && levelIn(grid, k) < view.finest + tier - 1) continue;
+      const Sphere& s = view.centred[k];
+      const double reach = (double{s.radius} + core::reachOf(view, tier)) * (1 - 1e-5);
+      for (int i = 0; i < 20; ++i) {
+        double d[3], length = 0;
+        for (double& x : d) x = random.uniform(-1, 1), length += x * x;
+        const double step = reach * std::cbrt(random.uniform(0, 1)) / std::max(std::sqrt(length), 1e-3);
+        const core::Vec3f p{static_cast<float>(s.x + step * d[0]), static_cast<float>(s.y + step * d[1]),
+                            static_cast<float>(s.z + step * d[2])};
+        const double slack = 1e-6 * view.radius;  // what rounding of the point may add
+        if (step * std::sqrt(length) + slack < reach) {
+          EXPECT_TRUE(listedAt(view, tier, p).count(k));
+        }
       }
     }
-    EXPECT_EQ(level.largest, largest);
-    EXPECT_GE(level.block_shift, l);
   }
-  EXPECT_EQ(first, view.count);
-}
-
-/// Every sphere is in exactly one block, that of its centre, and is found there.
-void expectSoundBlocks(const HashGrid& grid) {
-  const GridView& view = grid.view();
-  std::vector<bool> seen(view.count, false);
-  std::vector<std::uint32_t> blocks(static_cast<std::size_t>(view.level_count), 0);
-  std::size_t used = 0;
+  std::size_t used = 0, listed = 0;
   for (std::size_t slot = 0; slot < grid.tableSize(); ++slot) {
-    const Block& block = view.blocks[slot];
-    if (block.count == 0) continue;
+    const core::Cell& cell = view.cells[slot];
+    if (cell.count == 0) continue;
     ++used;
-    const int l = static_cast<int>(block.key >> (3 * core::kAxisBits));
-    ASSERT_LT(l, view.level_count);
-    ++blocks[static_cast<std::size_t>(l)];
-    EXPECT_EQ(core::findBlock(view, block.key).first, block.first);
-    for (std::uint32_t k = block.first; k < block.first + block.count; ++k) {
-      ASSERT_LT(k, view.count);
-      EXPECT_FALSE(seen[k]);
-      seen[k] = true;
-      const Cell cell = cellOf(view, view.spheres[k]);
-      const int shift = view.levels[l].block_shift;
-      EXPECT_EQ(core::blockKey(l, cell[0] >> shift, cell[1] >> shift, cell[2] >> shift), block.key);
-      EXPECT_GE(k, view.levels[l].first);
-      EXPECT_LT(k, view.levels[l].first + view.levels[l].count);
-    }
+    listed += cell.count;
+    EXPECT_EQ(core::findCell(view, cell.key).first, cell.first);
+    EXPECT_EQ(cell.first % core::kListStep, 0u);
+    const std::uint32_t* places = view.listed + cell.first;
+    EXPECT_TRUE(std::is_sorted(places, places + cell.count));
+    EXPECT_LT(places[cell.count - 1], view.count);
+    for (std::uint32_t i = cell.count; i % core::kListStep != 0; ++i) EXPECT_EQ(places[i], view.count);
   }
-  EXPECT_EQ(std::count(seen.begin(), seen.end(), false), 0);
-  for (int l = 0; l < view.level_count; ++l)
-    EXPECT_EQ(view.levels[l].blocks, blocks[static_cast<std::size_t>(l)]);
   EXPECT_LE(2 * used, grid.tableSize());
+  EXPECT_LE(listed, view.listed_count);
 }
 
 /// The order is a permutation, every sphere is in one cluster, and a cluster's ball holds its spheres.
@@ -94,10 +95,10 @@ void expectSoundOrder(const HashGrid& grid, const Spheres& spheres) {
     seen.insert(view.ids[k]);
     EXPECT_EQ(grid.placeOf(view.ids[k]), k);
     EXPECT_EQ(std::memcmp(&s, &spheres[view.ids[k]], sizeof s), 0);
-    EXPECT_EQ(grid.columns().x[k], s.x - view.centre.x);
-    EXPECT_EQ(grid.columns().y[k], s.y - view.centre.y);
-    EXPECT_EQ(grid.columns().z[k], s.z - view.centre.z);
-    EXPECT_EQ(grid.columns().radius[k], s.radius);
+    EXPECT_EQ(view.centred[k].x, s.x - view.centre.x);
+    EXPECT_EQ(view.centred[k].y, s.y - view.centre.y);
+    EXPECT_EQ(view.centred[k].z, s.z - view.centre.z);
+    EXPECT_EQ(view.centred[k].radius, s.radius);
   }
   EXPECT_EQ(seen.size(), spheres.size());
   std::uint32_t next = 0;
@@ -107,8 +108,7 @@ void expectSoundOrder(const HashGrid& grid, const Spheres& spheres) {
     next += cluster.count;
     EXPECT_GE(cluster.count, 1u);
     EXPECT_LE(cluster.count, core::kClusterSize);
-    EXPECT_EQ(std::max(core::levelOf(view.spheres[cluster.first].radius), view.finest),
-              std::max(core::levelOf(view.spheres[next - 1].radius), view.finest));
+    EXPECT_EQ(levelIn(grid, cluster.first), levelIn(grid, next - 1));
     float smallest = view.largest;
     for (std::uint32_t k = cluster.first; k < next; ++k) {
       const Sphere &s = view.spheres[k], &ball = cluster.ball;
@@ -122,8 +122,8 @@ void expectSoundOrder(const HashGrid& grid, const Spheres& spheres) {
 }
 
 void expectSound(const HashGrid& grid, const Spheres& spheres) {
-  expectSoundLevels(grid.view());
-  expectSoundBlocks(grid);
+  expectSoundLevels(grid);
+  expectSoundLists(grid);
   expectSoundOrder(grid, spheres);
 }
 
@@ -143,16 +143,13 @@ TEST(HashGrid, IsSound) {
   }
 }
 
-/// A lookup of a cluster visits few blocks if few of them are nearly empty.
-TEST(HashGrid, BlocksOfAPackingAreNeitherEmptyNorCrowded) {
+/// The memory of a grid and the work of a walker stay proportional to the packing.
+TEST(HashGrid, ListsOfAPackingAreShort) {
   for (std::size_t n : {500u, 4000u}) {
     const HashGrid grid(randomSpheres(n, 0.2, 30, n));
-    for (int l = 0; l < grid.view().level_count; ++l) {
-      const Level& level = grid.view().levels[l];
-      if (level.blocks < 2) continue;
-      EXPECT_GE(level.count, 2 * level.blocks);
-      EXPECT_LE(level.count, 200 * level.blocks);
-    }
+    EXPECT_LE(grid.view().listed_count, 20 * n);
+    for (std::size_t slot = 0; slot < grid.tableSize(); ++slot)
+      EXPECT_LE(grid.view().cells[slot].count, 200u);
   }
 }
 
@@ -160,7 +157,7 @@ TEST(HashGrid, NothingOverflows) {
   const Spheres same(5000, Sphere{0.1f, 0.2f, 0.3f, 0.5f});
   const HashGrid grid(same);
   expectSound(grid, same);
-  EXPECT_EQ(grid.view().levels[0].blocks, 1u);
+  EXPECT_EQ(grid.view().tiers, 1);
 }
 
 TEST(HashGrid, IsTheSameEveryTime) {
@@ -168,7 +165,9 @@ TEST(HashGrid, IsTheSameEveryTime) {
   const HashGrid a(spheres), b(spheres);
   ASSERT_EQ(a.tableSize(), b.tableSize());
   ASSERT_EQ(a.view().cluster_count, b.view().cluster_count);
-  EXPECT_EQ(std::memcmp(a.view().blocks, b.view().blocks, a.tableSize() * sizeof(Block)), 0);
+  EXPECT_EQ(std::memcmp(a.view().cells, b.view().cells, a.tableSize() * sizeof(core::Cell)), 0);
+  ASSERT_EQ(a.view().listed_count, b.view().listed_count);
+  EXPECT_EQ(std::memcmp(a.view().listed, b.view().listed, a.view().listed_count * sizeof(std::uint32_t)), 0);
   EXPECT_EQ(std::memcmp(a.view().ids, b.view().ids, a.view().count * sizeof(std::uint32_t)), 0);
 }
 
@@ -176,7 +175,7 @@ TEST(HashGrid, IsTheSameEveryTime) {
 TEST(HashGrid, HilbertCurve) {
   for (int bits : {1, 2, 4}) {
     const std::uint32_t n = 1u << bits;
-    std::map<std::uint64_t, Cell> cells;
+    std::map<std::uint64_t, Place> cells;
     for (std::uint32_t x = 0; x < n; ++x) {
       for (std::uint32_t y = 0; y < n; ++y) {
         for (std::uint32_t z = 0; z < n; ++z) cells[core::hilbertPlace(x, y, z, bits)] = {x, y, z};
@@ -211,15 +210,14 @@ TEST(HashGrid, LevelOfARadius) {
 TEST(HashGrid, CellCoordinatesCannotWrap) {
   Spheres spheres{{0, 0, 0, 1}, {1e9f, 1e9f, 1e9f, 1e-4f}, {-1e9f, 5, 5, 1e-4f}};
   const HashGrid grid(spheres);
-  for (float last : grid.view().last_cell) EXPECT_LT(last, 1 << core::kAxisBits);
-  EXPECT_LE(grid.view().level_count, 1 << core::kLevelBits);
+  const GridView& view = grid.view();
   core::CellBox box;
-  EXPECT_FALSE(core::cellBox(grid.view(), {3e38f, -1, -1}, {3e38f, 1, 1}, box));
-  EXPECT_FALSE(core::cellBox(grid.view(), {-1, -3e38f, -1}, {1, -3e38f, 1}, box));
-  ASSERT_TRUE(core::cellBox(grid.view(), {-3e38f, -3e38f, -3e38f}, {3e38f, 3e38f, 3e38f}, box));
+  EXPECT_FALSE(core::cellBox(view, 0, {3e38f, -1, -1}, {3e38f, 1, 1}, box));
+  EXPECT_FALSE(core::cellBox(view, 0, {-1, -3e38f, -1}, {1, -3e38f, 1}, box));
+  ASSERT_TRUE(core::cellBox(view, 0, {-3e38f, -3e38f, -3e38f}, {3e38f, 3e38f, 3e38f}, box));
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_EQ(box.lo[axis], 0u);
-    EXPECT_EQ(static_cast<float>(box.hi[axis]), grid.view().last_cell[axis]);
+    EXPECT_LT(box.hi[axis], 1u << core::kAxisBits);
   }
 }
 

@@ -1,16 +1,15 @@
 // The hierarchical hash grid as a query reads it (Weller, Frese, Zachmann 2013, with their level rule
 // corrected).
 //
-// Level e has cubic cells with edges of 2^e metres. A sphere of radius r lives on the level with
-// 2r <= 2^e < 4r. All levels share one origin, so the cell of a coarse level is that of a finer one shifted
-// right.
+// A sphere of radius r has the level e with 2r <= 2^e < 4r. The paper has a grid for each level and lists a
+// sphere in the at most eight cells that it touches, so a walker looks into up to eight cells of its own
+// level and of every coarser one, and nearly all of them are empty.
 //
-// The paper lists a sphere in each of the at most eight cells that it touches, for walkers that come one by
-// one. Here neighbours walk together: a cluster of them looks up all cells near it at once, so a sphere is
-// listed once, in the cell of its centre, and the lookup reaches farther by the largest radius of the level.
-// Spheres are stored level by level along a Hilbert curve. On it each cube of 2^k cells along each axis is
-// one run, so the hash table holds blocks of so many cells, chosen for each level such that few are nearly
-// empty.
+// Here a walker looks into one cell. Its tier has cells of 2^t metres, four times the radius of the largest
+// walkers that come there, and a cell lists all spheres, of that level and of all coarser ones, that a walker
+// with its centre in the cell can meet. What the paper proves of cells holds for these, too: spheres that do
+// not overlap and are not smaller than a part of the cell can only be so many. Levels so fine that there
+// would be many more cells than spheres share the finest tier.
 #pragma once
 
 #include <cmath>
@@ -34,23 +33,16 @@ INNERSPHERE_HD inline int levelOf(float radius) {
 }
 
 constexpr int kAxisBits = 19;  ///< a cell coordinate has at most so many bits, whatever the packing
-constexpr int kLevelBits = 5;
 constexpr std::uint32_t kClusterSize = 32;
 
-/// A cube of cells: a run of spheres. An empty slot of the table has none.
-struct alignas(16) Block {
+/// Lists begin at multiples of it, and are filled up with places of no sphere.
+constexpr std::uint32_t kListStep = 4;
+
+/// A cell: a run of GridView::listed. An empty slot of the table has none.
+struct alignas(16) Cell {
   std::uint64_t key;
   std::uint32_t first;
   std::uint32_t count;
-};
-
-/// The spheres of one level: a run, too.
-struct Level {
-  std::uint32_t first;
-  std::uint32_t count;
-  std::uint32_t blocks;  ///< that hold something
-  int block_shift;       ///< a block has 2^block_shift cells of the finest level along each axis
-  float largest;         ///< radius
 };
 
 /// Up to kClusterSize neighbours on one level: a run of spheres with a ball around them.
@@ -61,13 +53,20 @@ struct alignas(16) Cluster {
   std::uint32_t count;
 };
 
-INNERSPHERE_HD inline std::uint64_t blockKey(int level, std::uint32_t bx, std::uint32_t by,
-                                             std::uint32_t bz) {
-  return static_cast<std::uint64_t>(level) << (3 * kAxisBits) |
-         static_cast<std::uint64_t>(bz) << (2 * kAxisBits) | static_cast<std::uint64_t>(by) << kAxisBits | bx;
+INNERSPHERE_HD inline std::uint64_t cellKey(int tier, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  return static_cast<std::uint64_t>(tier) << (3 * kAxisBits) |
+         static_cast<std::uint64_t>(z) << (2 * kAxisBits) | static_cast<std::uint64_t>(y) << kAxisBits | x;
 }
 
-/// Cells of the finest level, or blocks of some level, that a box touches, both ends included.
+/// 2^exponent, for exponents from -126 to 127.
+INNERSPHERE_HD inline float powerOfTwo(int exponent) {
+  const std::uint32_t bits = static_cast<std::uint32_t>(exponent + 127) << 23;
+  float x;
+  memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+/// Cells of a tier, both ends included.
 struct CellBox {
   std::uint32_t lo[3];
   std::uint32_t hi[3];
@@ -77,47 +76,61 @@ struct CellBox {
 /// to `centre`, so that positions keep their digits in single precision where the packing is far from its
 /// origin.
 struct GridView {
-  const Sphere* spheres;     ///< `count` of them
+  const Sphere* spheres;     ///< `count` of them, by level and, within one, along a Hilbert curve
+  const Sphere* centred;     ///< the same, relative to `centre`, and one more that meets nothing
   const std::uint32_t* ids;  ///< their indices in the packing
   const Cluster* clusters;
-  const Block* blocks;  ///< the hash table, at most half full
-  const Level* levels;  ///< `level_count` of them, from the finest to the coarsest
+  const Cell* cells;            ///< the hash table, at most half full
+  const std::uint32_t* listed;  ///< places of spheres: the lists of all cells
   std::uint32_t count;
   std::uint32_t cluster_count;
-  int level_count;
-  int hash_shift;      ///< 64 minus the bits of the table's size
-  int finest;          ///< level, as exponent
-  float inverse_cell;  ///< 2^-finest
+  std::uint32_t listed_count;
+  int hash_shift;  ///< 64 minus the bits of the table's size
+  int finest;      ///< exponent of the finest tier's cells
+  int tiers;
   Vec3f centre;
-  Vec3f half;          ///< half the size of the box around all spheres
-  float last_cell[3];  ///< of the finest level
-  float radius;        ///< of a ball about `centre` around all spheres
-  float reach;         ///< of a ball about the packing's origin around all spheres
-  float largest;       ///< radius of any sphere
+  Vec3f half;     ///< half the size of the box around all spheres
+  float radius;   ///< of a ball about `centre` around all spheres
+  float reach;    ///< of a ball about the packing's origin around all spheres
+  float largest;  ///< radius of any sphere
 };
 
-INNERSPHERE_HD inline std::uint32_t hashBlock(const GridView& grid, std::uint64_t key) {
+/// The tier where a sphere of this level looks for partners that are at least as large; beyond the last one
+/// there are none.
+INNERSPHERE_HD inline int tierOf(const GridView& grid, int level) {
+  const int tier = level + 1 - grid.finest;
+  return tier > 0 ? tier : 0;
+}
+
+/// How far walkers of a tier may reach if they are to look into one cell only.
+INNERSPHERE_HD inline float reachOf(const GridView& grid, int tier) {
+  return powerOfTwo(grid.finest + tier - 2);
+}
+
+INNERSPHERE_HD inline std::uint32_t hashCell(const GridView& grid, std::uint64_t key) {
   return static_cast<std::uint32_t>(key * 0x9e3779b97f4a7c15u >> grid.hash_shift);
 }
 
-/// The block with this key; an empty slot if there is none. The table is never full, so probing ends.
-INNERSPHERE_HD inline Block findBlock(const GridView& grid, std::uint64_t key) {
+/// The cell with this key; an empty slot if there is none. The table is never full, so probing ends.
+INNERSPHERE_HD inline Cell findCell(const GridView& grid, std::uint64_t key) {
   const auto mask = static_cast<std::uint32_t>((std::uint64_t{1} << (64 - grid.hash_shift)) - 1);
-  for (std::uint32_t at = hashBlock(grid, key);; at = (at + 1) & mask) {
-    const Block block = grid.blocks[at];
-    if (block.count == 0 || block.key == key) return block;
+  for (std::uint32_t at = hashCell(grid, key);; at = (at + 1) & mask) {
+    const Cell cell = grid.cells[at];
+    if (cell.count == 0 || cell.key == key) return cell;
   }
 }
 
 namespace detail {
 
-/// Cells of one axis between lo and hi, relative to the centre; false if they are all outside the grid.
-/// Comparisons are such that a number that is not one gives the whole axis.
-INNERSPHERE_HD inline bool cellRange(float lo, float hi, float half, float inverse_cell, float last,
-                                     std::uint32_t& first, std::uint32_t& end) {
-  lo = (lo + half) * inverse_cell;
-  hi = (hi + half) * inverse_cell;
-  if (hi < 0 || lo >= last + 1) return false;
+/// Cells of one axis between lo and hi, relative to the centre; false if they are all outside the grid, which
+/// goes one cell beyond the box around the spheres. Comparisons are such that a number that is not one gives
+/// the whole axis.
+INNERSPHERE_HD inline bool cellRange(float lo, float hi, float half, float inverse_cell, std::uint32_t& first,
+                                     std::uint32_t& end) {
+  const float last = floorf(2 * half * inverse_cell) + 2;
+  lo = floorf((lo + half) * inverse_cell) + 1;
+  hi = floorf((hi + half) * inverse_cell) + 1;
+  if (hi < 0 || lo > last) return false;
   first = static_cast<std::uint32_t>(lo > 0 ? (lo < last ? lo : last) : 0.0f);
   end = static_cast<std::uint32_t>(hi < last ? hi : last);
   return true;
@@ -125,13 +138,13 @@ INNERSPHERE_HD inline bool cellRange(float lo, float hi, float half, float inver
 
 }  // namespace detail
 
-/// The cells of the finest level between two points (relative to the centre); false if all are outside the
-/// grid.
-INNERSPHERE_HD inline bool cellBox(const GridView& grid, const Vec3f& lo, const Vec3f& hi, CellBox& box) {
-  const float k = grid.inverse_cell;
-  return detail::cellRange(lo.x, hi.x, grid.half.x, k, grid.last_cell[0], box.lo[0], box.hi[0]) &&
-         detail::cellRange(lo.y, hi.y, grid.half.y, k, grid.last_cell[1], box.lo[1], box.hi[1]) &&
-         detail::cellRange(lo.z, hi.z, grid.half.z, k, grid.last_cell[2], box.lo[2], box.hi[2]);
+/// The cells of a tier between two points (relative to the centre); false if all are outside the grid.
+INNERSPHERE_HD inline bool cellBox(const GridView& grid, int tier, const Vec3f& lo, const Vec3f& hi,
+                                   CellBox& box) {
+  const float k = powerOfTwo(-(grid.finest + tier));
+  return detail::cellRange(lo.x, hi.x, grid.half.x, k, box.lo[0], box.hi[0]) &&
+         detail::cellRange(lo.y, hi.y, grid.half.y, k, box.lo[1], box.hi[1]) &&
+         detail::cellRange(lo.z, hi.z, grid.half.z, k, box.lo[2], box.hi[2]);
 }
 
 /// False if the ball about p (relative to the centre) cannot meet the box or the ball around the grid's

@@ -1,13 +1,12 @@
 // The walk of one body's spheres through the other's grid: what both backends share of it.
 //
 // Each sphere of A meets the spheres of B that are at least as large as it, and each sphere of B those of A
-// that are strictly larger: every pair once. A partner that is at least as large lives on the walker's level
-// or a coarser one, where few spheres are near the walker, so the work for one sphere does not depend on how
-// many there are.
+// that are strictly larger: every pair once. All of them are listed in one cell of the walker's tier, so the
+// work for one sphere does not depend on how many there are. What overlaps in single precision is a
+// candidate; pair.hpp decides it in double precision.
 //
-// A cluster of neighbours walks together. It looks up the blocks of each level that its box reaches, keeps
-// the spheres that meet the box, and tests each of them against each of its own. What passes is a candidate;
-// pair.hpp decides it in double precision.
+// Margins make walkers larger than their tier foresees. Then they look into all cells near them, and a sphere
+// that is listed in several of these counts in one.
 #pragma once
 
 #include <cstdint>
@@ -53,23 +52,73 @@ INNERSPHERE_HD inline bool clusterMeets(const Walker& walker, const Cluster& clu
                      around.radius + walker.search.grid_margin + walker.search.tolerance);
 }
 
-/// The finest level of the grid on which spheres can be at least as large as the smallest of the cluster.
-INNERSPHERE_HD inline int firstLevel(const Walker& walker, const Cluster& cluster) {
+/// A sphere on its walk.
+struct Lookup {
+  Vec3f p;         ///< centre, relative to that of the grid
+  float reach;     ///< radius with all margins and tolerances
+  float smallest;  ///< partners below it are not this walker's to find
+};
+
+/// False if the sphere cannot meet any of the grid.
+INNERSPHERE_HD inline bool makeLookup(const Walker& walker, const Sphere& sphere, Lookup& lookup) {
   const Search& search = walker.search;
-  const float smallest = search.ratio * cluster.smallest + search.margin;
-  const int level = levelOf(smallest * (1 - 1e-6f) - search.grid_margin) - walker.grid.finest;
-  return level > 0 ? level : 0;
+  const Probe probe = makeProbe(search, sphere);
+  lookup.p = probe.p;
+  lookup.reach = probe.radius + search.grid_margin + search.tolerance;
+  lookup.smallest = probe.radius * (1 - 1e-6f) - search.grid_margin;
+  return meetsBounds(walker.grid, lookup.p, lookup.reach) && !(lookup.smallest > walker.grid.largest);
 }
 
-/// The blocks of a level that hold the centres of all spheres that may meet the box from lo to hi; false if
-/// there are none.
-INNERSPHERE_HD inline bool blockBox(const GridView& grid, const Level& level, const Search& search,
-                                    const Vec3f& lo, const Vec3f& hi, CellBox& box) {
-  const float r = level.largest + search.grid_margin + search.tolerance;
-  if (!cellBox(grid, {lo.x - r, lo.y - r, lo.z - r}, {hi.x + r, hi.y + r, hi.z + r}, box)) return false;
+/// Where a walker looks.
+struct Cells {
+  int tier;
+  CellBox box;
+  std::uint32_t count;  ///< of cells
+  bool all;  ///< they would be too many: it looks at all spheres of the grid instead, as if in one cell
+
+  /// The coordinates of one of the cells.
+  INNERSPHERE_HD void coordinates(std::uint32_t number, std::uint32_t (&cell)[3]) const {
+    const std::uint32_t nx = box.hi[0] - box.lo[0] + 1, ny = box.hi[1] - box.lo[1] + 1;
+    cell[0] = box.lo[0] + number % nx;
+    cell[1] = box.lo[1] + number / nx % ny;
+    cell[2] = box.lo[2] + number / nx / ny;
+  }
+};
+
+INNERSPHERE_HD inline Cells cellsOf(const GridView& grid, const Lookup& lookup) {
+  Cells cells;
+  cells.tier = tierOf(grid, levelOf(lookup.smallest));
+  const float beyond = lookup.reach - reachOf(grid, cells.tier);
+  const float e = beyond > 0 ? beyond : 0;
+  const Vec3f& p = lookup.p;
+  cells.all = false;
+  cells.count = 0;
+  if (!cellBox(grid, cells.tier, {p.x - e, p.y - e, p.z - e}, {p.x + e, p.y + e, p.z + e}, cells.box))
+    return cells;
+  std::uint64_t count = 1;
+  for (int axis = 0; axis < 3; ++axis) count *= cells.box.hi[axis] - cells.box.lo[axis] + 1;
+  cells.all = count > grid.count;
+  cells.count = cells.all ? 1 : static_cast<std::uint32_t>(count);
+  return cells;
+}
+
+/// `partner` is relative to the centre of the grid.
+INNERSPHERE_HD inline bool meets(const Lookup& lookup, const Sphere& partner) {
+  const Vec3f d{partner.x - lookup.p.x, partner.y - lookup.p.y, partner.z - lookup.p.z};
+  const float sum = lookup.reach + partner.radius;
+  const bool near = !(squaredLength(d) > sum * sum);
+  return partner.radius < lookup.smallest ? false : near;
+}
+
+/// Whether a partner counts in this cell: of those where a walker looks, the one nearest to its centre.
+INNERSPHERE_HD inline bool countsIn(const GridView& grid, const Cells& cells, const std::uint32_t (&cell)[3],
+                                    const Sphere& partner) {
+  const Vec3f p{partner.x, partner.y, partner.z};
+  CellBox own;
+  if (!cellBox(grid, cells.tier, p, p, own)) return false;
   for (int axis = 0; axis < 3; ++axis) {
-    box.lo[axis] >>= level.block_shift;
-    box.hi[axis] >>= level.block_shift;
+    const std::uint32_t lo = cells.box.lo[axis], hi = cells.box.hi[axis], x = own.lo[axis];
+    if (cell[axis] != (x < lo ? lo : x > hi ? hi : x)) return false;
   }
   return true;
 }
