@@ -25,11 +25,9 @@ class ScaledSolid : public Solid {
     for (double& element : m.inertia) element *= std::pow(scale_, 5);
     return m;
   }
-  Surface surface() const override {
-    Surface s = solid_->surface();
-    for (auto& vertex : s.vertices) {
-      for (float& x : vertex) x = static_cast<float>(x * scale_);
-    }
+  Mesh surface() const override {
+    Mesh s = solid_->surface();
+    for (Vec3d& vertex : s.vertices) vertex = times(vertex, scale_);
     return s;
   }
   std::string name() const override { return solid_->name(); }

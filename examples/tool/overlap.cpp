@@ -53,7 +53,8 @@ Vec3d wide(const std::array<T, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-// Centre of the bounding box of a solid, or of its spheres if the file has no surface.
+// Centre of the bounding box of a solid, or of its spheres if the file has no surface; in the packing's
+// frame.
 Vec3d boxCentre(const Packing& packing) {
   Vec3d low{1e300, 1e300, 1e300};
   Vec3d high{-1e300, -1e300, -1e300};
@@ -70,7 +71,7 @@ Vec3d boxCentre(const Packing& packing) {
   return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
 }
 
-Vec3d placed(const Placement& placement, const Vec3d& p) {
+Vec3d moved(const Placement& placement, const Vec3d& p) {
   Vec3d result = placement.translation;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) result[i] += placement.rotation[3 * i + j] * p[j];
@@ -83,7 +84,7 @@ struct Wrench {
   Vec3d torque{};
 };
 
-// A is not moved, so points of the result are in A's coordinates.
+// A's packing is not moved, so points of the result are in its frame.
 Wrench volumeWrench(const Overlap& overlap, const Placement& b, const Vec3d& reference) {
   return {overlap.force, plus(overlap.torque, cross(minus(b.translation, reference), overlap.force))};
 }
@@ -149,14 +150,19 @@ void run(Arguments& arguments) {
   const Progress progress = progressBar();
   for (std::size_t first = 0; first < poses.size(); first += kBatch) {
     std::vector<PairQuery> queries(std::min(kBatch, poses.size() - first), query);
-    for (std::size_t i = 0; i < queries.size(); ++i) queries[i].placement_b = poses[first + i].placement;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      Placement& place = queries[i].placement_b = placed(b->packing(), poses[first + i].placement);
+      place.translation = minus(place.translation, a->packing().origin);
+    }
     context.run(queries.data(), queries.size(), arguments.query, result);
     for (std::size_t i = 0; i < queries.size(); ++i) {
       const Placement& place = queries[i].placement_b;
-      const Vec3d reference = placed(place, centre);
-      appendRow(table, poses[first + i].name, result.overlaps[i],
-                gradient ? gradientWrench(result, i, reference)
-                         : volumeWrench(result.overlaps[i], place, reference));
+      const Vec3d reference = moved(place, centre);
+      Overlap& overlap = result.overlaps[i];
+      const Wrench wrench =
+          gradient ? gradientWrench(result, i, reference) : volumeWrench(overlap, place, reference);
+      if (overlap.pair_count > 0) overlap.centroid = plus(overlap.centroid, a->packing().origin);
+      appendRow(table, poses[first + i].name, overlap, wrench);
     }
     if (!progress("querying",
                   static_cast<double>(first + queries.size()) / static_cast<double>(poses.size()))) {

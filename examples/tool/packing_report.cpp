@@ -105,7 +105,11 @@ Report describe(const Packing& packing) {
   addOverlapErrors(packing.overlap_errors, report);
   addMassWeights(packing.mass_weights, report);
   report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
-  report.add("centre_of_mass", "centre of mass", solid.centre_of_mass, vector(solid.centre_of_mass, "m"));
+  Vec3d centre = solid.centre_of_mass;
+  for (int k = 0; k < 3; ++k) centre[k] += packing.origin[k];
+  report.add("centre_of_mass", "centre of mass", centre, vector(centre, "m"));
+  report.add("origin", packing.origin == Vec3d{} ? "" : "origin of the spheres", packing.origin,
+             vector(packing.origin, "m"));
   report.add("inertia", "inertia, unit density", solid.inertia,
              vector({solid.inertia[0], solid.inertia[4], solid.inertia[8]}, "m^5 (xx yy zz)"));
   report.add("triangles", "triangles", packing.surface.triangles.size());

@@ -6,7 +6,6 @@
 #include "hash.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/solids.hpp"
-#include "mesh_solid.hpp"
 #include "vec3.hpp"
 
 namespace innersphere {
@@ -39,7 +38,7 @@ class AnalyticSolid : public Solid {
   }
   Bounds bounds() const override { return {-half_, half_}; }
   MassProperties massProperties() const override { return mass_; }
-  Surface surface() const override { return surfaceOf(mesh()); }
+  Mesh surface() const override { return mesh(); }
   std::string name() const override { return name_; }
 
   // The kind shows in the mass properties: no two of the four share them.

@@ -45,10 +45,12 @@ void findWorstOverlap(const std::vector<Sphere>& spheres, CheckReport& report) {
   if (spheres.size() > 1) report.worst_overlap = worst;
 }
 
-void findWorstProtrusion(const std::vector<Sphere>& spheres, const Solid& solid, CheckReport& report) {
+void findWorstProtrusion(const Packing& packing, const Solid& solid, CheckReport& report) {
+  const std::vector<Sphere>& spheres = packing.spheres;
+  const Vec3d& o = packing.origin;
   report.worst_protrusion = spheres.empty() ? 0 : -kInfinity;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    const Vec3d centre{spheres[i].x, spheres[i].y, spheres[i].z};
+    const Vec3d centre{o[0] + spheres[i].x, o[1] + spheres[i].y, o[2] + spheres[i].z};
     const double distance = solid.closestPoint(centre).distance;
     const double protrusion = spheres[i].radius + (solid.contains(centre) ? -distance : distance);
     if (!(protrusion <= report.worst_protrusion)) {
@@ -73,7 +75,7 @@ CheckReport check(const Packing& packing, const Solid* solid) {
     if (i > 0 && spheres[i].radius > spheres[i - 1].radius) report.sorted = false;
   }
   findWorstOverlap(spheres, report);
-  if (solid) findWorstProtrusion(spheres, *solid, report);
+  if (solid) findWorstProtrusion(packing, *solid, report);
 
   const double volume = solid ? solid->massProperties().volume : packing.solid.volume;
   if (volume > 0) {

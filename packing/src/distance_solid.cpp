@@ -47,9 +47,7 @@ class DistanceSolid : public Solid {
   bool contains(const Vec3d& p) const override { return signed_distance_(p) < 0; }
   Bounds bounds() const override { return bounds_; }
   MassProperties massProperties() const override { return mass_; }
-  Surface surface() const override {
-    return sampledSurface(field(), bounds_, surfaceResolution(resolution_));
-  }
+  Mesh surface() const override { return sampledSurface(field(), bounds_, surfaceResolution(resolution_)); }
   std::string name() const override { return name_; }
 
  private:
@@ -95,7 +93,7 @@ class Difference : public Solid {
   bool contains(const Vec3d& p) const override { return a_->contains(p) && !b_->contains(p); }
   Bounds bounds() const override { return a_->bounds(); }
   MassProperties massProperties() const override { return mass_; }
-  Surface surface() const override {
+  Mesh surface() const override {
     return sampledSurface(field(), bounds(), surfaceResolution(kDifferenceResolution));
   }
   std::string name() const override { return a_->name() + " minus " + b_->name(); }

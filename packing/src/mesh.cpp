@@ -17,6 +17,8 @@ constexpr double kWeldTolerance = 1e-7;
 // Longest sides [m] outside of these make the user check the units.
 constexpr double kSmall = 0.005;
 constexpr double kLarge = 50;
+// Steps of single precision at a mesh's place, relative to its diagonal, that spoil it.
+constexpr double kCoarse = 1e-5;
 
 // Tries what may close an open mesh without moving its surface; keeps what helps.
 void mendOpenEdges(Mesh& mesh, Topology& topology, MeshReport& report) {
@@ -90,6 +92,20 @@ void noteUnits(MeshReport& report) {
   }
 }
 
+void notePlace(MeshReport& report) {
+  double farthest = 0;
+  for (int k = 0; k < 3; ++k) {
+    farthest = std::max({farthest, std::abs(report.bounds.min[k]), std::abs(report.bounds.max[k])});
+  }
+  const double size = diagonal(report.bounds), step = farthest * std::numeric_limits<float>::epsilon();
+  if (step > kCoarse * size) {
+    report.notes.push_back("the mesh is " + text(farthest / size) +
+                           " of its sizes away from the origin; mesh files are read in single precision, "
+                           "whose numbers are " +
+                           text(step) + " m apart there: move it to the origin before it is exported");
+  }
+}
+
 void noteCuts(const Cuts& cuts, MeshReport& report) {
   report.cuts = cuts.pairs;
   report.cut_at = cuts.at;
@@ -128,6 +144,7 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
   }
   describe(topology, mesh, report);
   noteUnits(report);
+  notePlace(report);
   if (report.non_manifold_edges > 0) {
     report.notes.push_back(counted(report.non_manifold_edges, "edge") + " used by more than two triangles");
   }

@@ -12,17 +12,6 @@ constexpr int kOverlapCells = 64;
 
 }  // namespace
 
-Surface surfaceOf(const Mesh& mesh) {
-  Surface surface;
-  surface.triangles = mesh.triangles;
-  surface.vertices.reserve(mesh.vertices.size());
-  for (const Vec3d& v : mesh.vertices) {
-    surface.vertices.push_back(
-        {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])});
-  }
-  return surface;
-}
-
 MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once)
     : mesh_(std::move(closed)), name_(name), bounds_(emptyBounds()), tree_(mesh_), winding_(mesh_) {
   for (const Vec3d& v : mesh_.vertices) extend(bounds_, v);

@@ -8,9 +8,6 @@
 
 namespace innersphere {
 
-/// The mesh in single precision.
-Surface surfaceOf(const Mesh& mesh);
-
 class MeshSolid : public Solid {
  public:
   /// `closed`: each edge is used as often in one direction as in the other. Inside is where the winding
@@ -22,7 +19,7 @@ class MeshSolid : public Solid {
   bool contains(const Vec3d& p) const override;
   Bounds bounds() const override { return bounds_; }
   MassProperties massProperties() const override { return mass_; }
-  Surface surface() const override { return surfaceOf(mesh_); }
+  Mesh surface() const override { return mesh_; }
   std::string name() const override { return name_; }
   std::string hash() const override;
 

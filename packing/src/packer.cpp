@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "innersphere/error.hpp"
-#include "mesh_report.hpp"
 #include "packer/container.hpp"
 #include "packer/empty_parts.hpp"
 #include "packer/mass_weights.hpp"
@@ -19,6 +18,7 @@
 #include "packer/shares.hpp"
 #include "packer/surface_samples.hpp"
 #include "packer/volume_true.hpp"
+#include "vec3.hpp"
 
 namespace innersphere {
 namespace {
@@ -61,27 +61,24 @@ double volumeOf(const Ball& ball) {
 
 /// The solid and the limits in the packer's coordinates.
 struct Task {
-  Task(const Solid& solid, const PackOptions& wishes, const MassProperties& mass, const Surface& surface)
+  Task(const Solid& solid, const PackOptions& wishes, const MassProperties& mass, const Mesh& surface)
       : container(solid), options(wishes), samples(surface, container) {
     const double side = container.side();
     volume = mass.volume / (side * side * side);
     enough = std::min(options.density > 0 ? options.density : 1.0, kFull) * volume;
-    gap = options.gap / side;
+    gap = options.gap / side - 2 * container.coarseness();
     const Bounds box = solid.bounds();
     const double diagonal =
         std::hypot(box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]);
     const double asked = options.min_radius > 0 ? options.min_radius : 1e-4 * diagonal;
-    // A sphere loses up to the coarseness when its centre is rounded.
-    const double wished = std::max(asked / side + container.coarseness(), 1e-5);
-    limited_by_place = 4 * container.coarseness() > wished;
-    smallest = limited_by_place ? 4 * container.coarseness() : wished;
+    // Rounding makes a sphere smaller, and gaps larger.
+    smallest = std::max((1 + 1e-6) * asked / side + container.coarseness(), 1e-5);
   }
 
   Container container;
   const PackOptions& options;
   SurfaceSamples samples;
   double volume, enough, gap, smallest;
-  bool limited_by_place;  ///< smaller spheres would lose too much by rounding, so far from the origin
 };
 
 /// Calls the user back, and ends the work if the user wants that.
@@ -104,7 +101,7 @@ Rounds::Placed place(const Task& task, tbb::task_arena& arena, const Reporter& r
   double filled = 0;
   std::size_t uncovered = 0;
   const auto stop = [&](const Rounds::Placed& now) {
-    filled += volumeOf(now.grid.balls().back());
+    filled += volumeOf(now.rounded.back());
     return now.top.size() == options.spheres || filled >= task.enough;
   };
   const auto pause = [&](const Rounds::Placed& now, double bound) {
@@ -130,7 +127,7 @@ struct Chosen {
 Chosen choose(const Task& task, const Rounds::Placed& placed) {
   std::vector<std::size_t> order(placed.top.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::vector<Ball>& balls = placed.grid.balls();
+  const std::vector<Ball>& balls = placed.rounded;
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return balls[a].radius > balls[b].radius; });
   // A sphere's bound holds once everything that was placed before it is there, wherever sorting has put that.
@@ -161,9 +158,9 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   Packing packing;
   packing.solid = solid.massProperties();
   require(packing.solid.volume > 0, "the solid's mass properties must have a volume greater than 0");
-  packing.surface = solid.surface();
   packing.provenance = {solid.name(), solid.hash(), commandLine(options), INNERSPHERE_VERSION};
-  const Task task(solid, options, packing.solid, packing.surface);
+  const Mesh surface = solid.surface();
+  const Task task(solid, options, packing.solid, surface);
   require(options.gap == 0 || !task.samples.empty(),
           "a gap can only be asked for if the solid has a surface");
 
@@ -171,18 +168,12 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
   const Chosen chosen = choose(task, place(task, arena, report));
   if (chosen.balls.empty()) {
-    throw Error(
-        ErrorCode::no_sphere_fits,
-        "no sphere of the smallest allowed radius fits into '" + solid.name() + "'; " +
-            (task.limited_by_place ? "it is too far from the origin for single precision, move it there"
-                                   : "ask for a smaller min_radius"));
-  }
-  if (task.limited_by_place && chosen.largest_missing < 1.01 * task.smallest) {
-    packing.warnings.push_back(
-        "the solid is so far from the origin that single precision ended the packing at spheres of " +
-        text(task.smallest * task.container.side()) + " m; move it to the origin");
+    throw Error(ErrorCode::no_sphere_fits, "no sphere of the smallest allowed radius fits into '" +
+                                               solid.name() + "'; ask for a smaller min_radius");
   }
   const double side = task.container.side();
+  packing.origin = task.container.origin();
+  packing.surface = task.container.toSurface(surface);
   for (const Ball& ball : chosen.balls) packing.spheres.push_back(task.container.toSphere(ball));
   packing.certificate = {chosen.delta, side * chosen.largest_missing};
 
@@ -209,6 +200,7 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
     packing.overlap_errors = findOverlapErrors(task.container, chosen.balls, packing.volume_true, task.volume,
                                                task.container.fromWorld(packing.solid.centre_of_mass));
   });
+  packing.solid.centre_of_mass = packing.solid.centre_of_mass - packing.origin;
   for (double& share : shares.volumes) share *= side * side * side;
   packing.mass_weights = findMassWeights(packing.spheres, shares.volumes, packing.solid);
   const Mat3d& inertia = packing.solid.inertia;
@@ -216,7 +208,7 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
     packing.warnings.push_back(
         "no masses of the spheres give the inertia of the solid; use that of the solid");
   }
-  for (std::string& sentence : nameEmptyParts(packing.surface, packing.spheres)) {
+  for (std::string& sentence : nameEmptyParts(surface, packing)) {
     packing.warnings.push_back(std::move(sentence));
   }
   report("measuring", 1);

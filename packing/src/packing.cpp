@@ -92,6 +92,9 @@ void validateSurface(const Surface& surface) {
 
 void validateNumbers(const Packing& packing) {
   const MassProperties& mass = packing.solid;
+  for (double x : packing.origin) {
+    if (!std::isfinite(x)) notFinite("the origin");
+  }
   for (double x : mass.centre_of_mass) {
     if (!std::isfinite(x)) notFinite("the centre of mass of the solid");
   }

@@ -114,7 +114,7 @@ void requireVersion(const Entry& document) {
         "the packing file has version " + std::to_string(static_cast<long long>(std::min(version, 1e9))) +
             ", this program reads up to " + std::to_string(kPackingFormatVersion) + "; use a newer one");
   }
-  if (version != kPackingFormatVersion) damaged("'version' is not a version");
+  if (version != 1 && version != kPackingFormatVersion) damaged("'version' is not a version");
 }
 
 OverlapErrors overlapErrorsOf(const Entry& entry) {
@@ -158,6 +158,7 @@ Packing packingOf(const json& value) {
   }
   packing.surface = surfaceOf(document["surface"]);
   // Entries that came later than the first files.
+  if (document.has("origin")) packing.origin = document["origin"].numbers<3>();
   if (document.has("overlap_errors")) packing.overlap_errors = overlapErrorsOf(document["overlap_errors"]);
   if (document.has("mass_weights")) packing.mass_weights = document["mass_weights"].floats(1);
   if (document.has("warnings")) {

@@ -100,6 +100,7 @@ Entries entriesOf(const Packing& packing, Encoding encoding) {
       {"overlap_errors", overlapErrorsEntry(packing.overlap_errors)},
       {"warnings", packing.warnings},
       {"solid", {{"volume", m.volume}, {"centre_of_mass", m.centre_of_mass}, {"inertia", m.inertia}}},
+      {"origin", packing.origin},
       {"spheres", sphereEntry(packing.spheres, encoding)},
       {"volume_true", volumeTrueEntry(packing.volume_true, encoding)},
       {"mass_weights", floats(packing.mass_weights, encoding)},

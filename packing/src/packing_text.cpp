@@ -1,25 +1,40 @@
 #include "packing_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <sstream>
 
+#include "frame_origin.hpp"
 #include "innersphere/error.hpp"
 #include "vec3.hpp"
 
 namespace innersphere {
 namespace {
 
-void append(std::string& text, float x) {
+template <class Number>
+void append(std::string& text, Number x) {
   char digits[32];
   text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
 }
 
-void appendLines(std::string& text, const std::vector<Sphere>& spheres) {
-  for (const Sphere& s : spheres) {
-    append(text, s.x);
-    for (float x : {s.y, s.z, s.radius}) append(text += ' ', x);
+// In the coordinates of the solid.
+void appendLines(std::string& text, const Packing& packing) {
+  const bool moved = packing.origin != Vec3d{};
+  for (const Sphere& s : packing.spheres) {
+    const std::array<float, 3> centre{s.x, s.y, s.z};
+    for (int k = 0; k < 3; ++k) {
+      if (moved) {
+        append(text, packing.origin[k] + centre[k]);
+      } else {
+        append(text, centre[k]);
+      }
+      text += ' ';
+    }
+    append(text, s.radius);
     text += '\n';
   }
 }
@@ -73,21 +88,29 @@ MassProperties massOf(const std::vector<Sphere>& spheres) {
 
 std::string toXyzr(const Packing& packing) {
   std::string text;
-  appendLines(text, packing.spheres);
+  appendLines(text, packing);
   return text;
 }
 
 std::string toPly(const Packing& packing) {
-  std::string text =
-      "ply\nformat ascii 1.0\ncomment inner-sphere packing, metres\nelement vertex " +
-      std::to_string(packing.spheres.size()) +
-      "\nproperty float x\nproperty float y\nproperty float z\nproperty float radius\nend_header\n";
-  appendLines(text, packing.spheres);
+  const char* place = packing.origin == Vec3d{} ? "float" : "double";
+  std::ostringstream head;
+  head << "ply\nformat ascii 1.0\ncomment inner-sphere packing, metres\nelement vertex "
+       << packing.spheres.size() << '\n';
+  for (char axis : {'x', 'y', 'z'}) head << "property " << place << ' ' << axis << '\n';
+  head << "property float radius\nend_header\n";
+  std::string text = head.str();
+  appendLines(text, packing);
   return text;
 }
 
 Packing fromXyzr(const std::string& text) {
-  Packing packing;
+  struct Ball {
+    Vec3d centre;
+    double radius;
+  };
+  std::vector<Ball> balls;
+  Bounds box = emptyBounds();
   std::vector<double> numbers;
   std::size_t line = 1;
   for (std::size_t begin = 0; begin < text.size(); ++line) {
@@ -97,10 +120,21 @@ Packing fromXyzr(const std::string& text) {
       throw Error(ErrorCode::bad_format, "line " + std::to_string(line) + " is not four numbers x y z r");
     }
     if (!numbers.empty()) {
-      packing.spheres.push_back({static_cast<float>(numbers[0]), static_cast<float>(numbers[1]),
-                                 static_cast<float>(numbers[2]), static_cast<float>(numbers[3])});
+      balls.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3]});
+      for (double side : {-numbers[3], numbers[3]})
+        extend(box, balls.back().centre + Vec3d{side, side, side});
     }
     begin = end + 1;
+  }
+  Packing packing;
+  // Places that are no numbers are for validate() to name.
+  if (isFinite(box.max - box.min) && norm(centre(box)) < std::numeric_limits<float>::max()) {
+    packing.origin = frameOrigin(box);
+  }
+  for (const Ball& ball : balls) {
+    const Vec3d p = ball.centre - packing.origin;
+    packing.spheres.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]),
+                               static_cast<float>(ball.radius)});
   }
   std::stable_sort(packing.spheres.begin(), packing.spheres.end(),
                    [](const Sphere& a, const Sphere& b) { return a.radius > b.radius; });

@@ -7,7 +7,8 @@
 
 namespace innersphere {
 
-/// A line `x y z r` for each sphere, with as many digits as give the same floats back.
+/// A line `x y z r` for each sphere, in the coordinates of the solid, with as many digits as give the same
+/// numbers back.
 std::string toXyzr(const Packing& packing);
 
 /// Lines of four numbers, separated by blanks or commas; empty lines and what follows a # are skipped. The
@@ -15,7 +16,7 @@ std::string toXyzr(const Packing& packing);
 /// bad_format.
 Packing fromXyzr(const std::string& text);
 
-/// PLY points with a radius, as MeshLab, Blender and CloudCompare read them.
+/// PLY points with a radius, as MeshLab, Blender and CloudCompare read them; in the coordinates of the solid.
 std::string toPly(const Packing& packing);
 
 }  // namespace innersphere

@@ -86,10 +86,10 @@ MassProperties sampledMass(const SignedDistance& field, const Bounds& bounds, in
       .massProperties();
 }
 
-Surface sampledSurface(const SignedDistance& field, const Bounds& bounds, int resolution) {
+Mesh sampledSurface(const SignedDistance& field, const Bounds& bounds, int resolution) {
   const DistanceGrid grid(field, bounds, resolution);
   const Node n = grid.nodes();
-  Surface surface;
+  Mesh surface;
   std::vector<std::uint32_t> vertex_of(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   const auto forEachNode = [&](const auto& visit) {
     for (int z = 0; z + 1 < n[2]; ++z) {
@@ -102,8 +102,7 @@ Surface sampledSurface(const SignedDistance& field, const Bounds& bounds, int re
     Vec3d v;
     if (!cellVertex(grid, low, v)) return;
     vertex_of[grid.index(low)] = static_cast<std::uint32_t>(surface.vertices.size());
-    surface.vertices.push_back(
-        {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])});
+    surface.vertices.push_back(v);
   });
   forEachNode([&](const Node& a) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -17,6 +17,6 @@ MassProperties sampledMass(const SignedDistance& field, const Bounds& bounds, in
 
 /// Surface nets (Gibson 1998): closed, a vertex in each of the cells that the surface passes through. Edges
 /// are rounded and parts thinner than a cell can be lost.
-Surface sampledSurface(const SignedDistance& field, const Bounds& bounds, int resolution);
+Mesh sampledSurface(const SignedDistance& field, const Bounds& bounds, int resolution);
 
 }  // namespace innersphere

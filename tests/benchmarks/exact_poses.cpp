@@ -40,7 +40,7 @@ class Row {
 ExactPose poseOf(const Row& row) {
   ExactPose pose;
   for (int i = 0; i < 3; ++i) {
-    const std::string m = "m" + std::to_string(i);
+    const std::string m = std::string("m") + std::to_string(i);
     for (int j = 0; j < 3; ++j) pose.placement.rotation[3 * i + j] = row(m + std::to_string(j));
     pose.placement.translation[i] = row(m + "3");
   }

@@ -87,12 +87,9 @@ MassProperties MovedSolid::massProperties() const {
   return mass;
 }
 
-Surface MovedSolid::surface() const {
-  Surface surface = solid_->surface();
-  for (auto& v : surface.vertices) {
-    const Vec3d moved = to({v[0], v[1], v[2]});
-    for (int k = 0; k < 3; ++k) v[k] = static_cast<float>(moved[k]);
-  }
+Mesh MovedSolid::surface() const {
+  Mesh surface = solid_->surface();
+  for (Vec3d& v : surface.vertices) v = to(v);
   return surface;
 }
 

@@ -19,7 +19,7 @@ class MovedSolid : public Solid {
   bool contains(const Vec3d& p) const override { return solid_->contains(from(p)); }
   Bounds bounds() const override;
   MassProperties massProperties() const override;
-  Surface surface() const override;
+  Mesh surface() const override;
   std::string name() const override { return solid_->name(); }
 
  private:

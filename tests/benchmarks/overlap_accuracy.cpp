@@ -44,18 +44,20 @@ class Comparison {
       : model_(packing), diagonal_(diagonal), context_({Backend::cpu, 0}) {}
 
   Deviation at(const ExactPose& pose, std::uint32_t prefix) {
-    PairQuery query{&model_, &model_, {}, pose.placement, prefix, prefix, 0};
+    PairQuery query{
+        &model_, &model_, placed(model_.packing(), {}), placed(model_.packing(), pose.placement), prefix,
+        prefix,  0};
     const Overlap raw = context_.overlap(query, {Want::wrench, Estimator::raw});
     const Overlap full = context_.overlap(query, {Want::wrench, Estimator::volume_true});
     const Vec3d push{-pose.gradient[0], -pose.gradient[1], -pose.gradient[2]};
     Deviation d;
     d.raw = raw.volume / pose.volume - 1;
     d.volume_true = full.volume / pose.volume - 1;
-    d.centroid = full.volume > 0
-                     ? norm({full.centroid[0] - pose.centroid[0], full.centroid[1] - pose.centroid[1],
-                             full.centroid[2] - pose.centroid[2]}) /
-                           diagonal_
-                     : 1;
+    Vec3d off;
+    for (int k = 0; k < 3; ++k) {
+      off[k] = model_.packing().origin[k] + full.centroid[k] - pose.centroid[k];
+    }
+    d.centroid = full.volume > 0 ? norm(off) / diagonal_ : 1;
     d.angle = norm(full.area) > 0 ? angleBetween(full.area, push) : 180;
     d.force_angle = norm(raw.force) > 0 ? angleBetween(raw.force, push) : 180;
     d.area = norm(full.area) / norm(push) - 1;

@@ -37,7 +37,7 @@ class AnalyticSolid : public Solid {
     mass.centre_of_mass = place_;
     return mass;
   }
-  Surface surface() const override { return {}; }
+  Mesh surface() const override { return {}; }
 
  protected:
   virtual Vec3d nearest(const Vec3d& p) const = 0;
@@ -59,13 +59,12 @@ class Cube : public AnalyticSolid {
  public:
   explicit Cube(double size = 1, const Vec3d& place = {}) : AnalyticSolid(size, place) {}
   std::string name() const override { return "test cube"; }
-  Surface surface() const override {
+  Mesh surface() const override {
     const Bounds b = bounds();
-    Surface s;
+    Mesh s;
     for (int i = 0; i < 8; ++i) {
-      s.vertices.push_back({static_cast<float>(i & 1 ? b.max[0] : b.min[0]),
-                            static_cast<float>(i & 2 ? b.max[1] : b.min[1]),
-                            static_cast<float>(i & 4 ? b.max[2] : b.min[2])});
+      s.vertices.push_back(
+          {i & 1 ? b.max[0] : b.min[0], i & 2 ? b.max[1] : b.min[1], i & 4 ? b.max[2] : b.min[2]});
     }
     s.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};

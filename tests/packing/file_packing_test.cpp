@@ -31,6 +31,7 @@ Packing somePacking(std::size_t n, unsigned seed = 1) {
     for (std::uint32_t i = 0; i < count; ++i) radii.radii.push_back(std::exp(number(random)));
     packing.volume_true.push_back(radii);
   }
+  packing.origin = {1e6, 0, -1.0 / 3};
   packing.solid = {1.0 / 3, {0.1, -0.2, 1e-17}, {1, 2, 3, 4, 5, 6, 7, 8, 1e-300}};
   packing.surface.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.0f / 3}};
   packing.surface.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -58,6 +59,7 @@ void expectSame(const Packing& a, const Packing& b) {
     EXPECT_EQ(a.volume_true[i].radii, b.volume_true[i].radii);
     EXPECT_EQ(a.volume_true[i].sampling_error, b.volume_true[i].sampling_error);
   }
+  EXPECT_EQ(a.origin, b.origin);
   EXPECT_EQ(a.solid.volume, b.solid.volume);
   EXPECT_EQ(a.solid.centre_of_mass, b.solid.centre_of_mass);
   EXPECT_EQ(a.solid.inertia, b.solid.inertia);
@@ -122,7 +124,11 @@ TEST(FilePacking, EmptySurfaceAndPrefixesAreFine) {
 TEST(FilePacking, FilesWithoutTheLaterEntriesAreFine) {
   Packing packing = somePacking(3);
   nlohmann::json document = nlohmann::json::parse(toJson(packing));
-  for (const char* key : {"overlap_errors", "mass_weights", "warnings"}) EXPECT_EQ(document.erase(key), 1u);
+  for (const char* key : {"origin", "overlap_errors", "mass_weights", "warnings"}) {
+    EXPECT_EQ(document.erase(key), 1u);
+  }
+  document["version"] = 1;
+  packing.origin = {};
   packing.overlap_errors = {};
   packing.mass_weights.clear();
   packing.warnings.clear();
@@ -176,7 +182,8 @@ TEST(FilePacking, PathsThatAreNotUtf8DoNotStopTheWriter) {
 
 TEST(FilePacking, XyzrKeepsTheSpheres) {
   const Scratch scratch;
-  const Packing packing = somePacking(100);
+  Packing packing = somePacking(100);
+  packing.origin = {};
   writePacking(packing, scratch.path("p.xyzr"));
   const Packing back = readPacking(scratch.path("p.xyzr"));
   ASSERT_EQ(back.spheres.size(), 100u);
@@ -185,6 +192,21 @@ TEST(FilePacking, XyzrKeepsTheSpheres) {
     EXPECT_EQ(back.spheres[i].radius, packing.spheres[i].radius);
   }
   EXPECT_EQ(back.certificate.delta, 0);
+}
+
+// Text is in the solid's coordinates, wherever it was.
+TEST(FilePacking, XyzrFarFromTheOriginKeepsTheSpheresToo) {
+  const Scratch scratch;
+  Packing packing = somePacking(100);
+  packing.origin = {1e6, 0, -1e9};
+  writePacking(packing, scratch.path("p.xyzr"));
+  const Packing back = readPacking(scratch.path("p.xyzr"));
+  for (std::size_t i = 0; i < 100; ++i) {
+    EXPECT_NEAR(back.origin[0] - 1e6 + back.spheres[i].x, packing.spheres[i].x, 1e-6);
+    EXPECT_EQ(back.spheres[i].y, packing.spheres[i].y);
+    EXPECT_NEAR(back.origin[2] + 1e9 + back.spheres[i].z, packing.spheres[i].z, 1e-6);
+    EXPECT_EQ(back.spheres[i].radius, packing.spheres[i].radius);
+  }
 }
 
 TEST(FilePacking, XyzrFromOtherProgramsIsSortedAndWeighed) {
@@ -207,7 +229,11 @@ TEST(FilePacking, XyzrFromOtherProgramsIsSortedAndWeighed) {
 
 TEST(FilePacking, PlyNamesItsColumns) {
   const Scratch scratch;
-  writePacking(somePacking(7), scratch.path("p.ply"));
+  Packing packing = somePacking(7);
+  writePacking(packing, scratch.path("far.ply"));
+  EXPECT_NE(bytesOf(scratch.path("far.ply")).find("vertex 7\nproperty double x\n"), std::string::npos);
+  packing.origin = {};
+  writePacking(packing, scratch.path("p.ply"));
   const std::string text = bytesOf(scratch.path("p.ply"));
   EXPECT_EQ(text.rfind("ply\nformat ascii 1.0\n", 0), 0u);
   EXPECT_NE(
@@ -293,9 +319,9 @@ TEST(FilePacking, SaysWhatIsWrong) {
     EXPECT_NE(at, std::string::npos) << from;
     return text.replace(at, from.size(), to);
   };
-  expect("1.json", with("\"version\": 1", "\"version\": 2"), ErrorCode::unsupported_version, "version 2");
-  expect("2.json", with("\"version\": 1", "\"version\": 1e300"), ErrorCode::unsupported_version, "version");
-  expect("3.json", with("\"version\": 1", "\"version\": 0"), ErrorCode::bad_format, "version");
+  expect("1.json", with("\"version\": 2", "\"version\": 3"), ErrorCode::unsupported_version, "version 3");
+  expect("2.json", with("\"version\": 2", "\"version\": 1e300"), ErrorCode::unsupported_version, "version");
+  expect("3.json", with("\"version\": 2", "\"version\": 0"), ErrorCode::bad_format, "version");
   expect("4.json", with("\"spheres\"", "\"sphere\""), ErrorCode::bad_format, "'spheres' is missing");
   expect("5.json", with("\"delta\":0.1", "\"delta\":\"x\""), ErrorCode::bad_format, "'certificate.delta'");
   expect("6.json", with("\"spheres\": [", "\"spheres\": [1,"), ErrorCode::bad_format, "groups of 4");

@@ -12,13 +12,6 @@
 namespace innersphere::test {
 namespace {
 
-Mesh meshOf(const Surface& surface) {
-  Mesh mesh;
-  for (const auto& v : surface.vertices) mesh.vertices.push_back({v[0], v[1], v[2]});
-  mesh.triangles = surface.triangles;
-  return mesh;
-}
-
 struct Shape {
   const char* name;
   std::function<std::unique_ptr<Solid>()> make;
@@ -54,7 +47,7 @@ class SolidsAnalytic : public testing::TestWithParam<Shape> {};
 
 TEST_P(SolidsAnalytic, ClosestPointIsOnTheSurfaceAndNearest) {
   const auto solid = GetParam().make();
-  const auto mesh = makeSolid(meshOf(solid->surface()), "mesh");
+  const auto mesh = makeSolid(solid->surface(), "mesh");
   const Bounds box = solid->bounds();
   std::mt19937 random(11);
   for (int trial = 0; trial < 3000; ++trial) {
@@ -99,7 +92,7 @@ TEST_P(SolidsAnalytic, MassPropertiesMatchAGridSum) {
 
 TEST_P(SolidsAnalytic, SurfaceIsClosedAndCloseInVolume) {
   const auto solid = GetParam().make();
-  const Mesh mesh = meshOf(solid->surface());
+  const Mesh mesh = solid->surface();
   EXPECT_TRUE(isClosedManifold(mesh));
   EXPECT_NEAR(volumeOf(mesh) / solid->massProperties().volume, 1, 0.01);
 }

@@ -71,10 +71,7 @@ TEST_P(SolidsGenerated, IsACleanClosedMesh) {
   EXPECT_EQ(report.components, 1u);
 
   const auto solid = makeNamedSolid(GetParam().name);
-  const Surface surface = solid->surface();
-  Mesh mesh;
-  for (const auto& v : surface.vertices) mesh.vertices.push_back({v[0], v[1], v[2]});
-  mesh.triangles = surface.triangles;
+  const Mesh mesh = solid->surface();
   EXPECT_TRUE(isClosedManifold(mesh));
   EXPECT_EQ(eulerCharacteristic(mesh), GetParam().euler);
   EXPECT_EQ(selfIntersections(mesh), 0u);

@@ -12,13 +12,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Mesh meshOf(const Surface& surface) {
-  Mesh mesh;
-  for (const auto& v : surface.vertices) mesh.vertices.push_back({v[0], v[1], v[2]});
-  mesh.triangles = surface.triangles;
-  return mesh;
-}
-
 TEST(SolidsDistance, BallFromAFunction) {
   const Vec3d middle{3, -2, 1};
   const auto ball = makeDistanceSolid(
@@ -36,7 +29,7 @@ TEST(SolidsDistance, BallFromAFunction) {
     EXPECT_NEAR(std::hypot(c.point[0] - 3, c.point[1] + 2, c.point[2] - 1), 0.5, 1e-9);
     EXPECT_NEAR(std::hypot(c.point[0] - p[0], c.point[1] - p[1], c.point[2] - p[2]), c.distance, 1e-8);
   }
-  const Mesh mesh = meshOf(ball->surface());
+  const Mesh mesh = ball->surface();
   EXPECT_TRUE(isClosedManifold(mesh));
   EXPECT_EQ(eulerCharacteristic(mesh), 2);
   EXPECT_NEAR(volumeOf(mesh) / (kPi / 6), 1, 0.01);
@@ -73,7 +66,7 @@ TEST(SolidsDifference, NapkinRing) {
     EXPECT_NEAR(ring->closestPoint(p).distance, exact, 1e-14);
     EXPECT_TRUE(std::isinf(ring->closestPoint(p, 0.99 * exact).distance));
   }
-  const Mesh mesh = meshOf(ring->surface());
+  const Mesh mesh = ring->surface();
   EXPECT_TRUE(isClosed(mesh));
   EXPECT_NEAR(volumeOf(mesh) / mass.volume, 1, 0.03);
 }

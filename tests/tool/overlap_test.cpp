@@ -152,6 +152,45 @@ TEST_F(Overlap, RawMeetsBruteForce) {
   }
 }
 
+// A tetrahedron 100,000 of its sizes away, at a place that single precision can hold, and the same pose.
+TEST_F(Overlap, FarFromTheOriginItIsTheSame) {
+  const std::array<double, 3> place{65536, -131072, 98304};
+  std::string far;
+  for (const std::array<double, 3>& v : {std::array<double, 3>{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
+    far += "v " + std::to_string(place[0] + v[0]) + ' ' + std::to_string(place[1] + v[1]) + ' ' +
+           std::to_string(place[2] + v[2]) + '\n';
+  }
+  writeFile(path("near.obj"), kTetrahedron);
+  writeFile(path("far.obj"), far + kTetrahedron.substr(kTetrahedron.find("f ")));
+  succeed("pack near.obj --spheres 200 -o near.cbor");
+  const Outcome packed = run("pack far.obj --spheres 200 -o far.cbor");
+  EXPECT_EQ(packed.exit_code, 0);
+  EXPECT_NE(packed.err.find("single precision"), std::string::npos) << packed.err;
+  EXPECT_EQ(run("check far.cbor --mesh far.obj").exit_code, 0);
+
+  // x -> R x + t becomes x -> R (x - place) + place + t.
+  const double c = 0.6, s = 0.8;
+  const std::array<double, 3> turned{c * place[0] - s * place[1], s * place[0] + c * place[1], place[2]};
+  char row[200];
+  std::snprintf(row, sizeof row, "0,0.6,-0.8,0,%.17g,0.8,0.6,0,%.17g,0,0,1,%.17g\n",
+                0.5 + place[0] - turned[0], -0.125 + place[1] - turned[1], 0.0625);
+  writeFile(path("near.csv"), kHeader + "0,0.6,-0.8,0,0.5,0.8,0.6,0,-0.125,0,0,1,0.0625\n");
+  writeFile(path("far.csv"), kHeader + row);
+  for (const char* estimator : {"raw", "volume-true"}) {
+    const std::string options = std::string(" --force --estimator ") + estimator;
+    succeed("overlap near.cbor near.cbor --poses near.csv -o near_out.csv" + options);
+    succeed("overlap far.cbor far.cbor --poses far.csv -o far_out.csv" + options);
+    const Row near = readTable(readFile(path("near_out.csv")))[0];
+    const Row there = readTable(readFile(path("far_out.csv")))[0];
+    EXPECT_NEAR(there.volume / near.volume, 1, 1e-4);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(static_cast<double>(there.centroid[i] - near.centroid[i]), place[i], 1e-4);
+      EXPECT_NEAR(static_cast<double>(there.force[i] / near.force[i]), 1, 1e-3);
+      EXPECT_NEAR(static_cast<double>(there.torque[i] - near.torque[i]) / near.volume, 0, 1e-3);
+    }
+  }
+}
+
 TEST_F(Overlap, FewerSpheresAreThePrefix) {
   succeed("pack box --spheres 200 -o box.cbor");
   writeFile(path("poses.csv"), kHeader + "0,1,0,0,0.3,0,1,0,0.1,0,0,1,0\n");

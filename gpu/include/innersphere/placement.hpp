@@ -1,7 +1,7 @@
 // Where a packing is in the world.
 #pragma once
 
-#include "innersphere/geometry.hpp"
+#include "innersphere/packing.hpp"
 
 namespace innersphere {
 
@@ -15,5 +15,16 @@ struct Placement {
   Vec3d translation{};         ///< [m]
   double scale = 1;            ///< uniform, > 0
 };
+
+/// Where the packing of a solid is, when the solid itself is at `solid`: the packing has a frame of its own
+/// (see Packing::origin).
+inline Placement placed(const Packing& packing, Placement solid) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      solid.translation[i] += solid.scale * solid.rotation[3 * i + j] * packing.origin[j];
+    }
+  }
+  return solid;
+}
 
 }  // namespace innersphere

@@ -20,8 +20,8 @@ struct Bounds {
   Vec3d max{};
 };
 
-/// A ball in single precision: centre and radius [m], in the frame of its solid. Sixteen bytes, so that a GPU
-/// thread reads it with one load.
+/// A ball in single precision: centre and radius [m], in the frame of its packing. Sixteen bytes, so that a
+/// GPU thread reads it with one load.
 struct alignas(16) Sphere {
   float x = 0;
   float y = 0;
@@ -33,8 +33,14 @@ struct alignas(16) Sphere {
 /// rho * volume and inertia rho * inertia.
 struct MassProperties {
   double volume = 0;       ///< [m^3]
-  Vec3d centre_of_mass{};  ///< [m], in the frame of the solid
+  Vec3d centre_of_mass{};  ///< [m], in the frame of the solid, or of the packing that holds this
   Mat3d inertia{};         ///< [m^5] about the centre of mass, along the axes of the solid
+};
+
+/// Vertices [m] and triangles, in double.
+struct Mesh {
+  std::vector<Vec3d> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
 /// A closed triangle surface, wound counter-clockwise seen from outside. It serves drawing, ray tests and

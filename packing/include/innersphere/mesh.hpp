@@ -1,8 +1,6 @@
 // A user's triangle mesh: read, judged, mended where that is safe, and turned into a solid.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,12 +9,6 @@
 #include "innersphere/solid.hpp"
 
 namespace innersphere {
-
-/// Vertices [m] and triangles, in double.
-struct Mesh {
-  std::vector<Vec3d> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-};
 
 struct MeshOptions {
   /// readMesh() multiplies all coordinates with it: 0.001 for a file in millimetres. Over 0. makeSolid()
@@ -47,7 +39,8 @@ struct MeshReport {
 };
 
 /// Reads a mesh through assimp (OBJ, STL, PLY, OFF, glTF, ...), with node transforms applied in double and
-/// equal positions welded. assimp keeps coordinates in single precision. Throws Error: file_not_found,
+/// equal positions welded. assimp keeps coordinates in single precision: what is far
+/// from its origin is read coarsely, and makeSolid() notes it. Throws Error: file_not_found,
 /// bad_format, empty_input, not_finite, bad_argument (the scale).
 Mesh readMesh(const std::string& path, const MeshOptions& options = {});
 

@@ -14,8 +14,7 @@ namespace innersphere {
 struct PackOptions {
   std::size_t spheres = 10000;  ///< stop at exactly this many; 0: no limit
   /// [m] place no smaller sphere, and every one that is 0.25 % larger; 0: 1e-4 of the solid's bounding-box
-  /// diagonal. At least 1e-5 of the longest side, and four times the step of single precision at the solid's
-  /// place: a solid far from the origin ends with larger spheres.
+  /// diagonal. At least 1e-5 of the longest side.
   double min_radius = 0;
   double density = 0;  ///< stop when the spheres fill this fraction of the solid, 0 to 1
   double gap = 0;      ///< [m] stop when no surface point is farther than this from a sphere
@@ -28,7 +27,9 @@ struct PackOptions {
 };
 
 /// Packs a solid by certified greedy insertion. Ends before all limits when the solid is full: a ball after
-/// one sphere. Whatever ended it, the certificate says how large a sphere could still fit. Throws Error:
+/// one sphere. Whatever ended it, the certificate says how large a sphere could still fit. Size and place of
+/// the solid do not matter: the same solid gives the same spheres, to single precision, unless rounding
+/// decides between equally good places, as in symmetric solids or a million sizes away. Throws Error:
 /// bad_argument, no_sphere_fits, not_finite (the solid's distances), cancelled.
 Packing pack(const Solid& solid, const PackOptions& options = {}, const Progress& progress = {});
 

@@ -67,7 +67,11 @@ struct Provenance {
 
 /// Spheres inside a solid that do not overlap each other, sorted by falling radius: the first n of them are a
 /// valid, coarser packing. Immutable by convention once made; share it with std::shared_ptr<const Packing>.
+/// All places are in the packing's own frame, which is the solid's, moved to `origin`.
 struct Packing {
+  /// Where the frame of the packing is in the solid's coordinates [m]: x_solid = origin + x. Zero unless the
+  /// solid is farther than eight of its sizes away, where single precision would coarsen the spheres.
+  Vec3d origin{};
   std::vector<Sphere> spheres;
   std::vector<VolumeTrueRadii>
       volume_true;       ///< by rising count: 64, 128, 256, ..., spheres.size(); may be empty

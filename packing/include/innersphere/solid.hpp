@@ -35,8 +35,8 @@ class Solid {
   /// Exact where the representation allows it, in double.
   virtual MassProperties massProperties() const = 0;
 
-  /// A triangle surface for drawing, ray tests and measuring gaps.
-  virtual Surface surface() const = 0;
+  /// A triangle surface for drawing, ray tests and measuring gaps, wound counter-clockwise seen from outside.
+  virtual Mesh surface() const = 0;
 
   /// Name for messages and provenance.
   virtual std::string name() const = 0;

@@ -39,9 +39,8 @@ bool CellSearch::climb(Point x) {
       half /= 2;
     }
   }
-  const Point snapped = container_.snap(x);
-  const Ball ball = container_.fit(snapped, probe(snapped, 0, brick_balls_, 0, 0).value);
-  if (ball.radius < wanted_ - 2 * container_.coarseness()) return false;
+  if (best.value <= wanted_) return false;
+  const Ball ball{x, best.value};
   for (const Candidate& other : result_.candidates) {
     if (other.ball.distance(ball.centre) < ball.radius) return true;
   }

@@ -4,9 +4,18 @@
 #include <cmath>
 #include <limits>
 
+#include "frame_origin.hpp"
 #include "innersphere/error.hpp"
+#include "mesh_report.hpp"
+#include "vec3.hpp"
 
 namespace innersphere {
+namespace {
+
+// Sizes of a solid that it may be away from the origin: double precision then resolves 1e-8 of it.
+constexpr double kFarthest = 1e8;
+
+}  // namespace
 
 Container::Container(const Solid& solid) : solid_(solid) {
   const Bounds box = solid.bounds();
@@ -26,19 +35,36 @@ Container::Container(const Solid& solid) : solid_(solid) {
     throw Error(ErrorCode::bad_argument,
                 "the size of '" + solid.name() + "' is outside of 1e-20 to 1e20 m; scale it");
   }
+  if (farthest > kFarthest * longest) {
+    throw Error(ErrorCode::no_sphere_fits,
+                "'" + solid.name() + "' is " + text(farthest / longest) +
+                    " of its sizes away from the origin, too far for double precision; move it there");
+  }
+  origin_ = frameOrigin(box);
   // A little room, so that no corner of the solid lies on the boundary of the unit cube.
   side_ = longest * (1 + 1e-9);
-  for (int k = 0; k < 3; ++k) origin_[k] = 0.5 * (box.min[k] + box.max[k]) - 0.5 * side_;
-  coarseness_ = std::sqrt(3.0) / 2 * std::numeric_limits<float>::epsilon() * farthest / side_;
+  corner_ = centre(box) - origin_ - 0.5 * Vec3d{side_, side_, side_};
+  const Vec3d low = box.min - origin_, high = box.max - origin_;
+  double reach = 0;
+  for (int k = 0; k < 3; ++k) reach = std::max({reach, std::abs(low[k]), std::abs(high[k])});
   margin_ = 16 * std::numeric_limits<double>::epsilon() * (1 + farthest / side_);
+  coarseness_ = std::sqrt(3.0) / 2 * std::numeric_limits<float>::epsilon() * reach / side_ + margin_;
+}
+
+Vec3d Container::inFrame(const Point& x) const {
+  return {corner_[0] + side_ * x[0], corner_[1] + side_ * x[1], corner_[2] + side_ * x[2]};
+}
+
+Point Container::fromFrame(const Vec3d& p) const {
+  return Point(p[0] - corner_[0], p[1] - corner_[1], p[2] - corner_[2]) / side_;
 }
 
 Vec3d Container::toWorld(const Point& x) const {
-  return {origin_[0] + side_ * x[0], origin_[1] + side_ * x[1], origin_[2] + side_ * x[2]};
+  return origin_ + inFrame(x);
 }
 
 Point Container::fromWorld(const Vec3d& p) const {
-  return Point(p[0] - origin_[0], p[1] - origin_[1], p[2] - origin_[2]) / side_;
+  return fromFrame(p - origin_);
 }
 
 Container::Nearest Container::closest(const Point& x, double cutoff) const {
@@ -50,27 +76,35 @@ Container::Nearest Container::closest(const Point& x, double cutoff) const {
   return {hit.distance / side_, fromWorld(hit.point)};
 }
 
-Point Container::snap(const Point& x) const {
-  Vec3d p = toWorld(x);
+Ball Container::rounded(const Ball& ball) const {
+  Vec3d p = inFrame(ball.centre);
   for (double& component : p) {
     // Volatile: GCC 12 drops the rounding when it vectorises two such conversions.
     const volatile float rounded = static_cast<float>(component);
     component = rounded;
   }
-  return fromWorld(p);
-}
-
-Ball Container::fit(const Point& snapped, double room) const {
-  const double radius = (room - margin_) * side_;
+  const Point centre = fromFrame(p);
+  const double radius = (ball.radius - (centre - ball.centre).norm() - margin_) * side_;
   float rounded = static_cast<float>(radius);
   if (rounded > radius) rounded = std::nextafter(rounded, 0.0f);
-  return {snapped, rounded / side_};
+  return {centre, rounded / side_};
 }
 
 Sphere Container::toSphere(const Ball& ball) const {
-  const Vec3d p = toWorld(ball.centre);
+  const Vec3d p = inFrame(ball.centre);
   return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]),
           static_cast<float>(ball.radius * side_)};
+}
+
+Surface Container::toSurface(const Mesh& mesh) const {
+  Surface surface;
+  surface.triangles = mesh.triangles;
+  for (const Vec3d& v : mesh.vertices) {
+    const Vec3d p = v - origin_;
+    surface.vertices.push_back(
+        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  }
+  return surface;
 }
 
 }  // namespace innersphere

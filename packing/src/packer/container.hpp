@@ -15,11 +15,15 @@ class Container {
     Point point;
   };
 
-  /// Throws Error bad_argument if the bounds are not finite, no_sphere_fits if they are empty.
+  /// Throws Error bad_argument if the bounds are not finite or out of range, no_sphere_fits if they are empty
+  /// or too far away for double precision.
   explicit Container(const Solid& solid);
 
   const Solid& solid() const { return solid_; }
   double side() const { return side_; }  ///< metres per unit
+
+  /// Of the packing's frame (see Packing::origin).
+  const Vec3d& origin() const { return origin_; }
 
   Nearest closest(const Point& x, double cutoff) const;
   bool contains(const Point& x) const { return solid_.contains(toWorld(x)); }
@@ -30,22 +34,27 @@ class Container {
   /// More than the rounding error of a distance.
   double margin() const { return margin_; }
 
-  /// snap() moves a point by at most this.
+  /// The largest ball inside this one that a Sphere can be, less a margin, so that whoever computes distances
+  /// in double agrees that it is inside. Single precision comes in here, after all decisions, so that these
+  /// are the same for all sizes and places.
+  Ball rounded(const Ball& ball) const;
+
+  /// A radius is at most this much smaller than before rounding, and a relative 1e-7.
   double coarseness() const { return coarseness_; }
 
-  /// The nearest point that a Sphere can have as its centre.
-  Point snap(const Point& x) const;
-
-  /// The largest ball about a snapped point that fits into `room` and has a radius in single precision. A
-  /// rounding margin is taken off first, so that whoever computes distances in double agrees that it fits.
-  Ball fit(const Point& snapped, double room) const;
-
-  /// The ball as it is stored; exact for balls made by fit().
+  /// The ball as it is stored, in the packing's frame; exact for rounded ones.
   Sphere toSphere(const Ball& ball) const;
 
+  /// The mesh as it is stored.
+  Surface toSurface(const Mesh& mesh) const;
+
  private:
+  Vec3d inFrame(const Point& x) const;
+  Point fromFrame(const Vec3d& p) const;
+
   const Solid& solid_;
   Vec3d origin_{};
+  Vec3d corner_{};  // of the unit cube, in the packing's frame
   double side_ = 1;
   double margin_ = 0;
   double coarseness_ = 0;

@@ -32,7 +32,7 @@ void append(Mesh& mesh, const Mesh& more) {
 }
 
 /// Triangles that share vertices, in the order of their first triangles.
-std::vector<Shell> shellsOf(const Surface& surface) {
+std::vector<Shell> shellsOf(const Mesh& surface) {
   std::vector<std::uint32_t> root(surface.vertices.size());
   std::iota(root.begin(), root.end(), 0u);
   const auto find = [&](std::uint32_t v) {
@@ -53,8 +53,7 @@ std::vector<Shell> shellsOf(const Surface& surface) {
     }
     Mesh triangle{{}, {{0, 1, 2}}};
     for (std::uint32_t v : t) {
-      const auto& x = surface.vertices[v];
-      triangle.vertices.push_back({x[0], x[1], x[2]});
+      triangle.vertices.push_back(surface.vertices[v]);
       extend(shells[*shell].box, triangle.vertices.back());
     }
     append(shells[*shell].mesh, triangle);
@@ -64,22 +63,22 @@ std::vector<Shell> shellsOf(const Surface& surface) {
 }
 
 /// Whether a sphere lies between shell `number` and the cavities in it.
-bool isFilled(const std::vector<Shell>& shells, std::size_t number, const std::vector<Sphere>& spheres) {
+bool isFilled(const std::vector<Shell>& shells, std::size_t number, const Packing& packing) {
   const Bounds& box = shells[number].box;
   Mesh mesh = shells[number].mesh;
   for (const Shell& other : shells) {
     if (other.volume < 0 && holds(box, other.box)) append(mesh, other.mesh);
   }
   const WindingTree winding(mesh);
-  return std::any_of(spheres.begin(), spheres.end(), [&](const Sphere& s) {
-    const Vec3d centre{s.x, s.y, s.z};
+  return std::any_of(packing.spheres.begin(), packing.spheres.end(), [&](const Sphere& s) {
+    const Vec3d centre = packing.origin + Vec3d{s.x, s.y, s.z};
     return holds(box, centre) && winding.windingNumber(centre) > 0.5;
   });
 }
 
 }  // namespace
 
-std::vector<std::string> nameEmptyParts(const Surface& surface, const std::vector<Sphere>& spheres) {
+std::vector<std::string> nameEmptyParts(const Mesh& surface, const Packing& packing) {
   const std::vector<Shell> shells = shellsOf(surface);
   const auto parts = static_cast<std::size_t>(
       std::count_if(shells.begin(), shells.end(), [](const Shell& s) { return s.volume > 0; }));
@@ -89,7 +88,7 @@ std::vector<std::string> nameEmptyParts(const Surface& surface, const std::vecto
   for (std::size_t i = 0; i < shells.size(); ++i) {
     if (!(shells[i].volume > 0)) continue;
     ++part;
-    if (isFilled(shells, i, spheres)) continue;
+    if (isFilled(shells, i, packing)) continue;
     if (++empty > kNamed) continue;
     sentences.push_back("part " + std::to_string(part) + " of " + std::to_string(parts) + ", " +
                         text(diagonal(shells[i].box)) + " m large near " + text(centre(shells[i].box)) +

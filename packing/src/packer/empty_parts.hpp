@@ -10,6 +10,6 @@ namespace innersphere {
 
 /// A sentence for each closed shell of the surface with material right inside and no sphere's centre in that
 /// material; of more than ten, the first ten and a sentence with the number of the others.
-std::vector<std::string> nameEmptyParts(const Surface& surface, const std::vector<Sphere>& spheres);
+std::vector<std::string> nameEmptyParts(const Mesh& surface, const Packing& packing);
 
 }  // namespace innersphere

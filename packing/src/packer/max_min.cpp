@@ -2,9 +2,22 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace innersphere {
+namespace {
+
+// Digits of a function that count. The solid's distances carry rounding errors that depend on its size and
+// place; without them, the search takes the same way for all sizes and places, also where two ways are
+// equally good.
+constexpr double kDigits = 0x1p22;
+
+double rounded(double x, double unit) {
+  return std::nearbyint(x / unit * kDigits) * unit / kDigits;
+}
+
+}  // namespace
 
 void MaxMin::add(double value, const Point& gradient) {
   if (rows_.empty()) {
@@ -17,7 +30,9 @@ void MaxMin::add(double value, const Point& gradient) {
       }
     }
   }
-  rows_.push_back({Eigen::Vector4d(1, -gradient[0], -gradient[1], -gradient[2]), value});
+  const auto slope = [&](int k) { return -rounded(gradient[k], 1); };
+  rows_.push_back(
+      {Eigen::Vector4d(1, slope(0), slope(1), slope(2)), rounded(value, std::exp2(std::ilogb(half_)))});
   if (size() == 1) {
     start();
     return;

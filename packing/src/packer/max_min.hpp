@@ -10,8 +10,8 @@ namespace innersphere {
 
 /// Maximises the smallest of a few linear functions over a cube about the origin:
 ///   max over |y_j| <= half of min over k of (value_k + gradient_k . y).
-/// Functions are added one by one; after each the optimum is restored by the dual simplex method, with a
-/// basis of four of the functions and faces of the cube.
+/// Functions are rounded and added one by one; after each the optimum is restored by the dual simplex method,
+/// with a basis of four of the functions and faces of the cube.
 class MaxMin {
  public:
   explicit MaxMin(double half) : half_(half) {}

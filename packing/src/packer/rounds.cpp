@@ -103,12 +103,15 @@ Rounds::Placed Rounds::run(tbb::task_arena& arena, const std::function<bool(cons
         candidates.insert(candidates.end(), result.candidates.begin(), result.candidates.end());
       }
       std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-        return a.ball.radius != b.ball.radius ? a.ball.radius > b.ball.radius : a.order < b.order;
+        // In single precision: what differs by rounding only is equal.
+        const auto r = static_cast<float>(a.ball.radius), s = static_cast<float>(b.ball.radius);
+        return r != s ? r > s : a.order < b.order;
       });
       for (const CellSearch::Candidate& candidate : candidates) {
         const Ball& ball = candidate.ball;
         if (grid.nearest(ball.centre, ball.radius).distance < ball.radius) continue;
         grid.insert(ball);
+        placed.rounded.push_back(container_.rounded(ball));
         placed.top.push_back(top);
         if (stop(placed)) return placed;
       }

@@ -20,6 +20,7 @@ class Rounds {
   /// What has been placed, in the order of placing.
   struct Placed {
     SphereGrid grid;
+    std::vector<Ball> rounded;  ///< the balls as they are stored
     std::vector<float> top;     ///< for each ball: nothing larger was possible when it was placed
     float largest_missing = 0;  ///< nothing larger is possible now
   };

@@ -18,10 +18,9 @@ constexpr double kStepV = 0.5698402909980532;
 
 }  // namespace
 
-SurfaceSamples::SurfaceSamples(const Surface& surface, const Container& container) {
+SurfaceSamples::SurfaceSamples(const Mesh& surface, const Container& container) {
   const auto corner = [&](std::size_t triangle, int k) {
-    const auto& v = surface.vertices[surface.triangles[triangle][k]];
-    return container.fromWorld({v[0], v[1], v[2]});
+    return container.fromWorld(surface.vertices[surface.triangles[triangle][k]]);
   };
   std::vector<double> area(surface.triangles.size());
   for (std::size_t t = 0; t < area.size(); ++t) {

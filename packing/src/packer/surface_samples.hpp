@@ -14,7 +14,7 @@ namespace innersphere {
 class SurfaceSamples {
  public:
   /// `surface` in metres; no points if it has no area.
-  SurfaceSamples(const Surface& surface, const Container& container);
+  SurfaceSamples(const Mesh& surface, const Container& container);
 
   bool empty() const { return points_.empty(); }
 

@@ -16,10 +16,10 @@ constexpr double kBallVolume = 4.0 / 3.0 * std::numbers::pi;
 // surface too little is filled, from 1.5 s to 4 s too much. So shallow overlaps come out too small. The same
 // profile is found on all solids and for all numbers of spheres, in units of s. Radii with their centres near
 // the surface grow by this much, falling off within kNear s of depth, ...
-constexpr double kGrowth = 0.15;
-constexpr double kNear = 0.5;
+constexpr double kGrowth = 0.12;
+constexpr double kNear = 0.35;
 // ... and what that adds is taken from the spheres down to about kFar s.
-constexpr double kFar = 3;
+constexpr double kFar = 4;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ VolumeTrueRadii volumeTrueRadii(const Container& container, std::span<const Ball
   for (double share : shares.volumes) volume += share;
   // How far the centres are deeper than that of a smallest sphere that touches the surface, in units of s.
   std::vector<double> depth(balls.size());
-  const double cutoff = 10 * kFar * smallest;
+  const double cutoff = 5 * kFar * smallest;
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
     const double distance = std::min(container.closest(balls[i].centre, cutoff).distance, cutoff);
     depth[i] = std::max(0.0, distance / smallest - 1);
