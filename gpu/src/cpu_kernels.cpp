@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace innersphere {
 
@@ -49,32 +50,101 @@ inline bool testPartners(const core::GridView& grid, const core::Lookup& lookup,
   return true;
 }
 
-inline bool walkSphere(const core::Walker& walker, std::uint32_t self, Candidates& candidates,
-                       CandidateSink& sink) {
-  core::Lookup lookup;
-  if (!core::makeLookup(walker, walker.own.spheres[self], lookup)) return true;
-  const core::GridView& grid = walker.grid;
+/// Tests a walker against the spheres in all cells where it looks.
+inline bool walkCells(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t self,
+                      Candidates& candidates, CandidateSink& sink) {
   const core::Cells cells = core::cellsOf(grid, lookup);
-  const auto always = [](const Sphere&) { return true; };
-  if (cells.all) return testPartners(grid, lookup, self, nullptr, grid.count, always, candidates, sink);
+  if (cells.all) {
+    const auto always = [](const Sphere&) { return true; };
+    return testPartners(grid, lookup, self, nullptr, grid.count, always, candidates, sink);
+  }
   for (std::uint32_t number = 0; number < cells.count; ++number) {
     std::uint32_t at[3];
     cells.coordinates(number, at);
     const core::Cell cell = core::findCell(grid, core::cellKey(cells.tier, at[0], at[1], at[2]));
-    const std::uint32_t* places = grid.listed + cell.first;
     const auto here = [&](const Sphere& s) { return core::countsIn(grid, cells, at, s); };
-    if (!(cells.count > 1 ? testPartners(grid, lookup, self, places, cell.count, here, candidates, sink)
-                          : testPartners(grid, lookup, self, places, cell.count, always, candidates, sink)))
+    if (!testPartners(grid, lookup, self, grid.listed + cell.first, cell.count, here, candidates, sink))
       return false;
   }
   return true;
 }
 
+/// The walkers of a cluster, all of them side by side: what core::makeLookup and core::cellsOf do for one
+/// that looks into one cell.
+struct Lookups {
+  static constexpr std::size_t kSize = core::kClusterSize;
+  enum State : std::int32_t { none, one_cell, several };
+  alignas(64) float x[kSize], y[kSize], z[kSize], reach[kSize], smallest[kSize];
+  alignas(64) std::int32_t tier[kSize], cell_x[kSize], cell_y[kSize], cell_z[kSize], state[kSize];
+
+  core::Lookup lookup(std::uint32_t k) const { return {{x[k], y[k], z[k]}, reach[k], smallest[k]}; }
+  std::uint64_t key(std::uint32_t k) const {
+    return core::cellKey(tier[k], static_cast<std::uint32_t>(cell_x[k]),
+                         static_cast<std::uint32_t>(cell_y[k]), static_cast<std::uint32_t>(cell_z[k]));
+  }
+};
+
+inline void makeLookups(const core::Walker& walker, const core::Cluster& cluster, Lookups& to) {
+  const core::Search search = walker.search;
+  const Sphere* spheres = walker.own.spheres + cluster.first;
+  const std::uint32_t count = cluster.count;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const core::Probe probe = core::makeProbe(search, spheres[k]);
+    to.x[k] = probe.p.x;
+    to.y[k] = probe.p.y;
+    to.z[k] = probe.p.z;
+    to.reach[k] = probe.radius + search.grid_margin + search.tolerance;
+    to.smallest[k] = core::smallestPartner(search, probe.radius);
+  }
+  const core::GridView grid = walker.grid;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    constexpr float kEnd = 1 << core::kAxisBits;
+    const core::Vec3f p{to.x[k], to.y[k], to.z[k]};
+    const int tier = core::tierOf(grid, core::levelOf(to.smallest[k]));
+    const float inverse = core::powerOfTwo(-(grid.finest + tier));
+    const float x = std::floor((p.x + grid.half.x) * inverse) + 1;
+    const float y = std::floor((p.y + grid.half.y) * inverse) + 1;
+    const float z = std::floor((p.z + grid.half.z) * inverse) + 1;
+    const float lowest = std::min(std::min(x, y), z), highest = std::max(std::max(x, y), z);
+    const float clear = core::reachOf(grid, tier) - to.reach[k];
+    std::int32_t state = clear >= 0 ? Lookups::one_cell : Lookups::several;
+    state = lowest >= 0 ? state : Lookups::several;
+    state = highest < kEnd ? state : Lookups::several;
+    state = core::meetsBounds(grid, p, to.reach[k]) ? state : Lookups::none;
+    to.state[k] = to.smallest[k] > grid.largest ? Lookups::none : state;
+    to.tier[k] = tier;
+    to.cell_x[k] = static_cast<std::int32_t>(std::min(std::max(x, 0.0f), kEnd));
+    to.cell_y[k] = static_cast<std::int32_t>(std::min(std::max(y, 0.0f), kEnd));
+    to.cell_z[k] = static_cast<std::int32_t>(std::min(std::max(z, 0.0f), kEnd));
+  }
+}
+
 inline bool walkImpl(const core::Walker& walker, const core::Cluster& cluster, Candidates& candidates,
                      CandidateSink& sink) {
   if (!core::clusterMeets(walker, cluster)) return true;
-  for (std::uint32_t k = cluster.first; k < cluster.first + cluster.count; ++k) {
-    if (!walkSphere(walker, k, candidates, sink)) return false;
+  const core::GridView& grid = walker.grid;
+  Lookups lookups;
+  makeLookups(walker, cluster, lookups);
+  core::Cell cells[Lookups::kSize];
+  for (std::uint32_t k = 0; k < cluster.count; ++k) {
+    if (lookups.state[k] == Lookups::one_cell)
+      __builtin_prefetch(grid.cells + core::hashCell(grid, lookups.key(k)));
+  }
+  for (std::uint32_t k = 0; k < cluster.count; ++k) {
+    if (lookups.state[k] != Lookups::one_cell) continue;
+    cells[k] = core::findCell(grid, lookups.key(k));
+    __builtin_prefetch(grid.listed + cells[k].first);
+  }
+  const auto always = [](const Sphere&) { return true; };
+  for (std::uint32_t k = 0; k < cluster.count; ++k) {
+    const std::uint32_t self = cluster.first + k;
+    if (lookups.state[k] == Lookups::one_cell) {
+      if (!testPartners(grid, lookups.lookup(k), self, grid.listed + cells[k].first, cells[k].count, always,
+                        candidates, sink))
+        return false;
+    } else if (lookups.state[k] == Lookups::several) {
+      if (!walkCells(grid, lookups.lookup(k), self, candidates, sink)) return false;
+    }
   }
   return true;
 }

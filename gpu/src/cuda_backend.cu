@@ -1,13 +1,14 @@
-// The CUDA backend: one launch for a whole batch, two copies, and what they need on the host.
+// The CUDA backend: launches for a whole batch, two copies, and what they need on the host.
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <vector>
 
 #include "cuda_backend.hpp"
+#include "cuda_find.hpp"
 #include "cuda_grid.hpp"
 #include "cuda_memory.hpp"
-#include "cuda_walk.hpp"
+#include "cuda_sum.hpp"
 
 namespace innersphere {
 
@@ -30,17 +31,15 @@ class CudaBackend : public WalkBackend {
     hits.count = 0;
     if (countJobs(queries) == 0) return;
 
-    Layout layout(queries.size());
+    const Layout layout(queries.size(), slices_.size());
     host_.reserve(layout.size);
+    if (layout.size > device_memory_.capacity()) clean_ = false;
     device_memory_.reserve(layout.size);
     gather(queries, layout);
-    while (true) {
-      launch(layout, queries.size(), want);
-      if (!wantsHits(want)) break;
+    do {
+      launch(queries, layout, want);
       hits.count = *layout.found(host_.data());
-      if (hits.count <= device_hits_.capacity()) break;
-      device_hits_.reserve(hits.count);  // now the room that is needed is known: walk again
-    }
+    } while (grow(layout, hits.count));
     for (std::size_t q = 0; q < queries.size(); ++q)
       toSums(layout.sums(host_.data())[q], queries[q].setup.units, sums[q]);
     if (hits.items.size() < hits.count) hits.items.resize(hits.count);
@@ -51,21 +50,32 @@ class CudaBackend : public WalkBackend {
   }
 
  private:
-  /// One block of memory holds all that goes to the device and, in front, what comes back: two copies a
-  /// batch.
+  /// Queries whose candidates are in memory at once.
+  struct Slice {
+    std::size_t begin, end;
+    std::size_t first_job, jobs;
+    std::size_t clusters;
+  };
+
+  /// One block of memory holds all that goes to the device and, in front, what comes back.
   struct Layout {
-    explicit Layout(std::size_t count)
-        : at_sums(256),
-          at_first(at_sums + count * sizeof(DeviceSums)),
-          at_setups((at_first + (count + 1) * sizeof(unsigned long long) + 15) / 16 * 16),
-          size(at_setups + count * sizeof(core::Setup)) {}
+    Layout(std::size_t queries, std::size_t slices)
+        : at_taken(16),
+          at_sums((at_taken + slices * sizeof(unsigned long long) + 255) / 256 * 256),
+          at_first(at_sums + queries * sizeof(DeviceSums)),
+          at_setups((at_first + (queries + 1) * sizeof(unsigned long long) + 15) / 16 * 16),
+          size(at_setups + queries * sizeof(core::Setup)) {}
     unsigned long long* found(std::byte* p) const { return reinterpret_cast<unsigned long long*>(p); }
+    unsigned* ticket(std::byte* p) const { return reinterpret_cast<unsigned*>(p + 8); }
+    unsigned long long* taken(std::byte* p) const {
+      return reinterpret_cast<unsigned long long*>(p + at_taken);
+    }
     DeviceSums* sums(std::byte* p) const { return reinterpret_cast<DeviceSums*>(p + at_sums); }
     unsigned long long* first(std::byte* p) const {
       return reinterpret_cast<unsigned long long*>(p + at_first);
     }
     core::Setup* setups(std::byte* p) const { return reinterpret_cast<core::Setup*>(p + at_setups); }
-    std::size_t at_sums, at_first, at_setups, size;
+    std::size_t at_taken, at_sums, at_first, at_setups, size;
   };
 
   void open() {
@@ -75,16 +85,30 @@ class CudaBackend : public WalkBackend {
     INNERSPHERE_CUDA(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
   }
 
-  /// A job should be long, to add its sums up once, but all multiprocessors should get some.
+  /// A job should be long, to fill its chunks of candidates, but all multiprocessors should get some.
   std::size_t countJobs(const std::vector<PreparedQuery>& queries) {
+    constexpr std::size_t kWarpsPerProcessor = 64;  // that there should be, at least
+    constexpr std::size_t kSliceClusters = 1 << 20;
+    constexpr unsigned kFew = 64;  // candidates: where there is little work, each warp gets little
     std::size_t clusters = 0;
     for (const PreparedQuery& query : queries) clusters += query.clusters();
-    const std::size_t warps = kWarpsPerProcessor * static_cast<std::size_t>(processors_);
-    if (clusters == 0) return jobs_ = 0;
-    job_size_ = static_cast<unsigned>(std::clamp<std::size_t>(clusters / warps, 1, kLargestJob));
-    jobs_ = 0;
-    for (const PreparedQuery& query : queries) jobs_ += jobsOf(query);
-    return jobs_;
+    slices_.clear();
+    if (clusters == 0) return 0;
+    job_size_ = static_cast<unsigned>(std::clamp<std::size_t>(
+        clusters / (kWarpsPerProcessor * static_cast<std::size_t>(processors_)), 1, kLargestJob));
+    chunk_size_ = job_size_ == kLargestJob ? kLargestChunk : kFew;
+    Slice slice{};
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+      if (slice.clusters > kSliceClusters) {
+        slices_.push_back(slice);
+        slice = {q, q, slice.first_job + slice.jobs, 0, 0};
+      }
+      slice.end = q + 1;
+      slice.jobs += jobsOf(queries[q]);
+      slice.clusters += queries[q].clusters();
+    }
+    slices_.push_back(slice);
+    return slice.first_job + slice.jobs;
   }
 
   std::size_t jobsOf(const PreparedQuery& query) const {
@@ -103,43 +127,105 @@ class CudaBackend : public WalkBackend {
       setups[q].a.grid = viewOnDevice(*queries[q].grid_a, device_, stream_);
       setups[q].b.grid = viewOnDevice(*queries[q].grid_b, device_, stream_);
     }
+    std::size_t chunks = chunks_.capacity();
+    for (const Slice& slice : slices_)  // a guess
+      chunks = std::max(chunks, slice.jobs + slice.clusters * kWarp / 2 / chunk_size_);
+    reserveChunks(chunks);
   }
 
-  void launch(const Layout& layout, std::size_t count, Want want) {
+  void reserveChunks(std::size_t count) {
+    chunks_.reserve(count);
+    candidates_.reserve(count * chunk_size_);
+  }
+
+  /// True if there was not enough room; now that what is needed is known, there is.
+  bool grow(const Layout& layout, std::size_t hits) {
+    const unsigned long long* taken = layout.taken(host_.data());
+    const std::size_t chunks = *std::max_element(taken, taken + slices_.size());
+    const bool few = chunks > chunkCapacity(), few_hits = hits > device_hits_.capacity();
+    if (few) reserveChunks(chunks + chunks / 8);
+    if (few_hits) device_hits_.reserve(hits);
+    return few || few_hits;
+  }
+
+  std::size_t chunkCapacity() const {
+    return std::min(chunks_.capacity(), candidates_.capacity() / chunk_size_);
+  }
+
+  void launch(const std::vector<PreparedQuery>& queries, const Layout& layout, Want want) {
     std::byte* memory = device_memory_.data();
-    std::memset(host_.data(), 0, layout.at_first);
-    copyAsync(memory, host_.data(), layout.size, stream_);
+    const bool returns = queries.size() == 1 && want != Want::touch;  // by itself, without a copy
+    if (!returns || !clean_) INNERSPHERE_CUDA(cudaMemsetAsync(memory, 0, layout.at_first, stream_));
+    clean_ = false;
     Batch batch{};
-    batch.setups = layout.setups(memory);
-    batch.first = layout.first(memory);
-    batch.count = static_cast<unsigned>(count);
     batch.job_size = job_size_;
-    batch.sums = layout.sums(memory);
+    batch.chunks = chunks_.data();
+    batch.candidates = candidates_.data();
+    batch.chunk_size = chunk_size_;
+    batch.chunk_capacity = static_cast<unsigned>(chunkCapacity());
     if (wantsHits(want)) {
       batch.hits = device_hits_.data();
       batch.capacity = device_hits_.capacity();
       batch.found = layout.found(memory);
     }
-    const auto jobs = static_cast<unsigned>(jobs_);
-    if (want == Want::touch) {
-      walkBatch<Goal::touch><<<jobs, kWarp, 0, stream_>>>(batch);
-    } else if (want == Want::volume) {
-      walkBatch<Goal::volume><<<jobs, kWarp, 0, stream_>>>(batch);
+    if (returns) {
+      batch.words = layout.found(memory);
+      batch.host_words = layout.found(host_.data());
+      batch.word_count = static_cast<unsigned>(layout.at_first / sizeof(unsigned long long));
+      batch.ticket = layout.ticket(memory);
+    }
+    if (queries.size() == 1) {
+      batch.single = *layout.setups(host_.data());  // travels with the launch
     } else {
-      walkBatch<Goal::wrench><<<jobs, kWarp, 0, stream_>>>(batch);
+      copyAsync(memory + layout.at_first, host_.data() + layout.at_first, layout.size - layout.at_first,
+                stream_);
+      batch.setups = layout.setups(memory);
+    }
+    for (const Slice& slice : slices_) {
+      if (slice.jobs == 0) continue;
+      if (queries.size() > 1) batch.setups = layout.setups(memory) + slice.begin;
+      batch.first = layout.first(memory) + slice.begin;
+      batch.first_job = slice.first_job;
+      batch.count = static_cast<unsigned>(slice.end - slice.begin);
+      batch.first_query = static_cast<unsigned>(slice.begin);
+      batch.sums = layout.sums(memory) + slice.begin;
+      batch.taken = layout.taken(memory) + (&slice - slices_.data());
+      batch.jobs = static_cast<unsigned>(slice.jobs);
+      launchSlice(batch, want);
+    }
+    if (!returns) copyAsync(host_.data(), memory, layout.at_first, stream_);
+    INNERSPHERE_CUDA(cudaStreamSynchronize(stream_));
+    clean_ = returns;
+  }
+
+  void launchSlice(const Batch& batch, Want want) {
+    const unsigned jobs = (batch.jobs + kFindWarps - 1) / kFindWarps;
+    constexpr unsigned kBlocks = 3;  // of the second kernel, at once on a multiprocessor
+    const unsigned blocks = kBlocks * static_cast<unsigned>(processors_);
+    if (want == Want::touch) {
+      findCandidates<true><<<jobs, kFindWarps * kWarp, 0, stream_>>>(batch);
+    } else {
+      findCandidates<false><<<jobs, kFindWarps * kWarp, 0, stream_>>>(batch);
+      if (want == Want::volume) {
+        sumCandidates<Goal::volume><<<blocks, kSumWarps * kWarp, 0, stream_>>>(batch);
+      } else {
+        sumCandidates<Goal::wrench><<<blocks, kSumWarps * kWarp, 0, stream_>>>(batch);
+      }
     }
     INNERSPHERE_CUDA(cudaGetLastError());
-    copyAsync(host_.data(), memory, layout.at_first, stream_);
-    INNERSPHERE_CUDA(cudaStreamSynchronize(stream_));
   }
 
   int device_ = 0;
   int processors_ = 1;
   unsigned job_size_ = 1;
-  std::size_t jobs_ = 0;  ///< below 2^31, the most that one launch can have
+  unsigned chunk_size_ = kLargestChunk;
+  std::vector<Slice> slices_;
   cudaStream_t stream_ = nullptr;
   PinnedArray<std::byte> host_;
   DeviceArray<std::byte> device_memory_;
+  bool clean_ = false;  ///< what the kernels count in is zero
+  DeviceArray<Chunk> chunks_;
+  DeviceArray<uint2> candidates_;
   DeviceArray<Hit> device_hits_;
 };
 

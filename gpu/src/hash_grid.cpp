@@ -181,7 +181,7 @@ void HashGrid::makeClusters() {
   for (std::size_t l = 0; l < level_first_.size(); ++l) {
     const std::uint32_t end = l + 1 < level_first_.size() ? level_first_[l + 1] : view_.count;
     for (std::uint32_t k = level_first_[l]; k < end; k += core::kClusterSize)
-      clusters_.push_back({{}, 0, k, std::min(core::kClusterSize, end - k)});
+      clusters_.push_back({{}, k, std::min(core::kClusterSize, end - k)});
   }
   forRanges(clusters_.size(), [&](std::size_t from, std::size_t to) {
     for (std::size_t c = from; c < to; ++c) {
@@ -190,11 +190,9 @@ void HashGrid::makeClusters() {
       const Sphere* end = begin + cluster.count;
       constexpr float kMax = std::numeric_limits<float>::max();
       Vec3f lo{kMax, kMax, kMax}, hi{-kMax, -kMax, -kMax};
-      cluster.smallest = kMax;
       for (const Sphere* s = begin; s < end; ++s) {
         lo = {std::min(lo.x, s->x), std::min(lo.y, s->y), std::min(lo.z, s->z)};
         hi = {std::max(hi.x, s->x), std::max(hi.y, s->y), std::max(hi.z, s->z)};
-        cluster.smallest = std::min(cluster.smallest, s->radius);
       }
       const Vec3f middle = 0.5f * (lo + hi);
       double radius = 0;

@@ -48,7 +48,6 @@ struct alignas(16) Cell {
 /// Up to kClusterSize neighbours on one level: a run of spheres with a ball around them.
 struct alignas(16) Cluster {
   Sphere ball;
-  float smallest;  ///< radius
   std::uint32_t first;
   std::uint32_t count;
 };

@@ -59,13 +59,18 @@ struct Lookup {
   float smallest;  ///< partners below it are not this walker's to find
 };
 
+/// A little below what a walker of this radius need look for: pair.hpp has the last word on equals.
+INNERSPHERE_HD inline float smallestPartner(const Search& search, float radius) {
+  return radius * (1 - 1e-6f) - search.grid_margin;
+}
+
 /// False if the sphere cannot meet any of the grid.
 INNERSPHERE_HD inline bool makeLookup(const Walker& walker, const Sphere& sphere, Lookup& lookup) {
   const Search& search = walker.search;
   const Probe probe = makeProbe(search, sphere);
   lookup.p = probe.p;
   lookup.reach = probe.radius + search.grid_margin + search.tolerance;
-  lookup.smallest = probe.radius * (1 - 1e-6f) - search.grid_margin;
+  lookup.smallest = smallestPartner(search, probe.radius);
   return meetsBounds(walker.grid, lookup.p, lookup.reach) && !(lookup.smallest > walker.grid.largest);
 }
 
