@@ -22,7 +22,8 @@ void addScaleOption(CLI::App& command, MeshOptions& options) {
 void addRepairOption(CLI::App& command, MeshOptions& options) {
   command.add_flag(
       "--repair", options.repair,
-      "Take a mesh that does not bound a volume anyway: inside is where its winding number exceeds 1/2");
+      "Take a mesh that does not bound a volume anyway: holes are closed with flat fans, inside is where its "
+      "winding number exceeds 1/2");
 }
 
 std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments) {

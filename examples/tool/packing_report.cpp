@@ -71,19 +71,22 @@ Report describe(const Packing& packing) {
   report.add("source", "source", packing.provenance.source);
   report.add("source_hash", "source hash", packing.provenance.source_hash);
   report.add("options", "options", packing.provenance.options);
-  report.add("version", "written by", packing.provenance.version,
+  report.add("version", packing.provenance.version.empty() ? "" : "written by", packing.provenance.version,
              "InnerSphere " + packing.provenance.version);
   report.add("spheres", "spheres", packing.spheres.size());
   const double largest = packing.spheres.front().radius;
   const double smallest = packing.spheres.back().radius;
   report.add("largest_radius", "largest radius", largest, number(largest, "m"));
   report.add("smallest_radius", "smallest radius", smallest, number(smallest, "m"));
-  report.add("density", "density", quality.density, percent(quality.density));
+  // An import says nothing of its solid.
+  const bool measured = quality.density > 0;
+  report.add("density", "density", quality.density, measured ? percent(quality.density) : "not known");
   const double diagonal = diagonalOf(packing.surface);
-  const auto gap = [diagonal](double length) {
+  const auto gap = [&](double length) {
+    if (!measured) return std::string("not known");
     return number(length, "m") + (diagonal > 0 ? ", " + percent(length / diagonal) + " of the diagonal" : "");
   };
-  report.add("diagonal", "diagonal", diagonal, number(diagonal, "m"));
+  report.add("diagonal", diagonal > 0 ? "diagonal" : "", diagonal, number(diagonal, "m"));
   report.add("gap_mean", "surface gap, mean", quality.gap_mean, gap(quality.gap_mean));
   report.add("gap_p95", "surface gap, p95", quality.gap_p95, gap(quality.gap_p95));
   report.add("gap_max", "surface gap, max", quality.gap_max, gap(quality.gap_max));
@@ -92,7 +95,8 @@ Report describe(const Packing& packing) {
              certificate.delta > 0
                  ? "each radius at least 1/" + number(1 + certificate.delta) + " of the largest possible"
                  : "no");
-  report.add("largest_missing_radius", "no room for", certificate.largest_missing_radius,
+  report.add("largest_missing_radius", certificate.delta > 0 ? "no room for" : "",
+             certificate.largest_missing_radius,
              "radii above " + number(certificate.largest_missing_radius, "m"));
   nlohmann::ordered_json prefixes = nlohmann::ordered_json::array();
   std::string prefix_text;

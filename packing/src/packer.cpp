@@ -3,11 +3,10 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
-#include <sstream>
 
 #include "innersphere/error.hpp"
 #include "packer/container.hpp"
@@ -45,14 +44,16 @@ void checkOptions(const PackOptions& options) {
 }
 
 std::string commandLine(const PackOptions& options) {
-  std::ostringstream line;
-  line.precision(std::numeric_limits<double>::max_digits10);
-  line << "--spheres " << options.spheres;
-  if (options.min_radius > 0) line << " --min-radius " << options.min_radius;
-  if (options.density > 0) line << " --density " << options.density;
-  if (options.gap > 0) line << " --gap " << options.gap;
-  line << " --delta " << options.delta;
-  return line.str();
+  std::string line = "--spheres " + std::to_string(options.spheres);
+  const auto add = [&](const char* name, double x) {
+    char digits[32];  // as few as give the same number back
+    line.append(name).append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+  };
+  if (options.min_radius > 0) add(" --min-radius ", options.min_radius);
+  if (options.density > 0) add(" --density ", options.density);
+  if (options.gap > 0) add(" --gap ", options.gap);
+  add(" --delta ", options.delta);
+  return line;
 }
 
 double volumeOf(const Ball& ball) {

@@ -1,6 +1,9 @@
 #include "innersphere/packing_file.hpp"
 
+#include <sstream>
+
 #include "file_io.hpp"
+#include "innersphere/check.hpp"
 #include "innersphere/error.hpp"
 #include "packing_json.hpp"
 #include "packing_text.hpp"
@@ -12,6 +15,17 @@ namespace {
   // A packing that fails validate() was no bad argument of the caller: the file says so.
   const ErrorCode code = error.code() == ErrorCode::bad_argument ? ErrorCode::bad_format : error.code();
   throw Error(code, path + ": " + error.what());
+}
+
+// Spheres of other programs may overlap, and a user should know.
+void flagOverlaps(Packing& packing) {
+  const CheckReport found = check(packing);
+  const double rounding = 1e-6 * packing.spheres[found.overlap_j].radius;
+  if (found.worst_overlap <= rounding) return;
+  std::ostringstream sentence;
+  sentence << "spheres overlap, worst spheres " << found.overlap_i << " and " << found.overlap_j << " by "
+           << found.worst_overlap << " m: what they share counts twice in overlap volumes";
+  packing.warnings.push_back(sentence.str());
 }
 
 }  // namespace
@@ -32,6 +46,7 @@ Packing readPacking(const std::string& path) {
       throw Error(ErrorCode::bad_format, "a packing is read from .json, .cbor or .xyzr, not from ." + ending);
     }
     validate(packing);
+    if (ending == "xyzr") flagOverlaps(packing);
     return packing;
   } catch (const Error& error) {
     rethrowNaming(path, error);

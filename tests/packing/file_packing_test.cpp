@@ -225,6 +225,14 @@ TEST(FilePacking, XyzrFromOtherProgramsIsSortedAndWeighed) {
   EXPECT_NEAR(packing.solid.inertia[4], unit * (0.4 * (32 + 1) + apart), 1e-12);
   EXPECT_NEAR(packing.solid.inertia[1], 0, 1e-12);
   EXPECT_EQ(packing.provenance.source, path);
+  EXPECT_TRUE(packing.warnings.empty());
+}
+
+TEST(FilePacking, XyzrWhoseSpheresOverlapIsFlagged) {
+  const Scratch scratch;
+  const Packing packing = readPacking(scratch.write("p.xyzr", "9 0 0 2\n0 0 0 1\n1.5 0 0 0.75\n"));
+  ASSERT_EQ(packing.warnings.size(), 1u);
+  EXPECT_NE(packing.warnings[0].find("spheres 1 and 2 by 0.25 m"), std::string::npos) << packing.warnings[0];
 }
 
 TEST(FilePacking, PlyNamesItsColumns) {

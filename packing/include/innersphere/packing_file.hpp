@@ -9,7 +9,7 @@ namespace innersphere {
 
 /// Reads a packing; the format follows from the ending (.json, .cbor, .xyzr). Survives any bytes. An .xyzr
 /// file has spheres only: they are sorted, the mass properties are those of the balls, nothing is certified,
-/// and whether they overlap is for check() to say. Throws Error: file_not_found, bad_format,
+/// and a warning says so if they overlap. Throws Error: file_not_found, bad_format,
 /// unsupported_version, empty_input, not_finite.
 Packing readPacking(const std::string& path);
 

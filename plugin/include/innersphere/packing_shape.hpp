@@ -28,7 +28,8 @@ class PackingShape : public btConcaveShape {
   const CollisionModel& model() const;
 
   /// From the packing's frame to the shape's, for scale 1: graphics are drawn at
-  /// bodyTransform * (scale * (principalTransform() * x)).
+  /// bodyTransform * (scale * (principalTransform() * (x - origin))), with the packing's origin, which is zero
+  /// unless the mesh is far from its own.
   const btTransform& principalTransform() const;
 
   /// The shape behind a btCollisionShape, or null if it is none of ours, whatever its type number.
