@@ -21,7 +21,7 @@ using namespace innersphere::benchmarks;
 
 constexpr std::array<double, 6> kBins{0, 0.001, 0.01, 0.05, 0.15, 1};  // overlap, as a fraction of the solid
 
-/// What is compared at one pose, for one prefix.
+/// What is compared at one pose.
 struct Deviation {
   double raw, volume_true;    ///< relative error of the volume
   double centroid;            ///< of volume-true radii, relative to the diagonal of the solid
@@ -43,10 +43,9 @@ class Comparison {
   Comparison(std::shared_ptr<const Packing> packing, double diagonal)
       : model_(packing), diagonal_(diagonal), context_({Backend::cpu, 0}) {}
 
-  Deviation at(const ExactPose& pose, std::uint32_t prefix) {
+  Deviation at(const ExactPose& pose) {
     PairQuery query{
-        &model_, &model_, placed(model_.packing(), {}), placed(model_.packing(), pose.placement), prefix,
-        prefix,  0};
+        &model_, &model_, placed(model_.packing(), {}), placed(model_.packing(), pose.placement), 0, 0, 0};
     const Overlap raw = context_.overlap(query, {Want::wrench, Estimator::raw});
     const Overlap full = context_.overlap(query, {Want::wrench, Estimator::volume_true});
     const Vec3d push{-pose.gradient[0], -pose.gradient[1], -pose.gradient[2]};
@@ -93,12 +92,12 @@ void printHead() {
       " raw sum V n, degrees |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
-void printRow(const std::string& name, std::uint32_t prefix, int bin, const std::vector<Deviation>& all) {
+void printRow(const std::string& name, std::uint32_t count, int bin, const std::vector<Deviation>& all) {
   const auto volume_true = [](const Deviation& d) { return std::abs(d.volume_true); };
   double worst = 0;
   for (const Deviation& d : all) worst = std::max(worst, volume_true(d));
   std::printf("| %s | %u | %g-%g | %zu | %.1f | %.2f | %+.2f | %.1f | %.3f | %.2f | %.1f | %.1f |\n",
-              name.c_str(), prefix, 100 * kBins[bin], 100 * kBins[bin + 1], all.size(),
+              name.c_str(), count, 100 * kBins[bin], 100 * kBins[bin + 1], all.size(),
               100 * meanOf(all, [](const Deviation& d) { return std::abs(d.raw); }),
               100 * meanOf(all, volume_true),
               100 * meanOf(all, [](const Deviation& d) { return d.volume_true; }), 100 * worst,
@@ -110,41 +109,40 @@ void printRow(const std::string& name, std::uint32_t prefix, int bin, const std:
 
 using Bins = std::array<std::vector<Deviation>, kBins.size() - 1>;
 
-void printRows(const std::string& name, std::uint32_t prefix, const Bins& bins) {
+void printRows(const std::string& name, std::uint32_t count, const Bins& bins) {
   for (int bin = 0; bin < static_cast<int>(bins.size()); ++bin) {
-    if (!bins[bin].empty()) printRow(name, prefix, bin, bins[bin]);
+    if (!bins[bin].empty()) printRow(name, count, bin, bins[bin]);
   }
   std::fflush(stdout);
 }
 
-void compare(const std::string& mesh, const std::string& table, std::size_t spheres, FILE* points,
-             std::map<std::uint32_t, Bins>& all) {
+void compare(const std::string& mesh, const std::string& table, const std::vector<std::size_t>& counts,
+             FILE* points, std::map<std::uint32_t, Bins>& all) {
   const std::vector<ExactPose> poses = readExactPoses(table);
   const auto solid = makeSolid(readMesh(mesh), mesh);
-  PackOptions options;
-  options.spheres = spheres;
-  const auto packing = std::make_shared<const Packing>(pack(*solid, options));
   const Bounds box = solid->bounds();
-  const double volume = packing->solid.volume;
+  const double diagonal = norm({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]});
   const std::string name = mesh.substr(mesh.find_last_of('/') + 1);
-  Comparison comparison(packing,
-                        norm({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]}));
-  for (const VolumeTrueRadii& radii : packing->volume_true) {
-    if (radii.count < 1000) continue;
+  for (const std::size_t spheres : counts) {
+    PackOptions options;
+    options.spheres = spheres;
+    const auto packing = std::make_shared<const Packing>(pack(*solid, options));
+    Comparison comparison(packing, diagonal);
+    const auto count = static_cast<std::uint32_t>(packing->spheres.size());
     Bins bins;
     for (const ExactPose& pose : poses) {
-      const double fraction = pose.volume / volume;
+      const double fraction = pose.volume / packing->solid.volume;
       int bin = 0;
       while (bin + 2 < static_cast<int>(kBins.size()) && fraction >= kBins[bin + 1]) ++bin;
-      bins[bin].push_back(comparison.at(pose, radii.count));
+      bins[bin].push_back(comparison.at(pose));
       if (points) {
-        std::fprintf(points, "%s %u %g %g %g\n", name.c_str(), radii.count, fraction, bins[bin].back().raw,
+        std::fprintf(points, "%s %u %g %g %g\n", name.c_str(), count, fraction, bins[bin].back().raw,
                      bins[bin].back().volume_true);
       }
     }
-    printRows(name, radii.count, bins);
+    printRows(name, count, bins);
     for (std::size_t bin = 0; bin < bins.size(); ++bin) {
-      std::vector<Deviation>& so_far = all[radii.count][bin];
+      std::vector<Deviation>& so_far = all[count][bin];
       so_far.insert(so_far.end(), bins[bin].begin(), bins[bin].end());
     }
   }
@@ -155,12 +153,11 @@ void compare(const std::string& mesh, const std::string& table, std::size_t sphe
 int main(int argc, char** argv) {
   CLI::App app("Error of overlap volumes against exact ones, as a Markdown table on stdout");
   std::vector<std::string> cases;
-  std::size_t spheres = 16384;
+  std::vector<std::size_t> counts{1000, 4000, 16000};
   app.add_option("MESH=POSES", cases,
                  "A mesh, and a table of poses of its copy with the exact overlaps (CSV)")
       ->required();
-  app.add_option("--spheres", spheres, "The packing; all its stored prefixes over 1000 are tried")
-      ->capture_default_str();
+  app.add_option("--spheres", counts, "Numbers of spheres")->capture_default_str()->delimiter(',');
   std::string points_path;
   app.add_option("--points", points_path,
                  "Write solid, spheres, overlap, errors raw and volume-true there, for plots");
@@ -181,9 +178,9 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "%s: give a mesh and a table as MESH=POSES\n", item.c_str());
         return 2;
       }
-      compare(item.substr(0, equals), item.substr(equals + 1), spheres, points.get(), all);
+      compare(item.substr(0, equals), item.substr(equals + 1), counts, points.get(), all);
     }
-    for (const auto& [prefix, bins] : all) printRows("all", prefix, bins);
+    for (const auto& [count, bins] : all) printRows("all", count, bins);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

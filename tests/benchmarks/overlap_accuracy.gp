@@ -12,9 +12,9 @@ set key bottom left
 set multiplot layout 1,2
 set title "plain spheres"
 set ylabel "|error| of the overlap volume, %"
-plot for [n in "1024 4096 16384"] points using ($2 == n ? 100*$3 : 1/0):(100*abs($4)) \
+plot for [n in "1000 4000 16000"] points using ($2 == n ? 100*$3 : 1/0):(100*abs($4)) \
   with points pt 7 ps 0.5 title n." spheres"
 set title "volume-true radii"
-plot for [n in "1024 4096 16384"] points using ($2 == n ? 100*$3 : 1/0):(100*abs($5)) \
+plot for [n in "1000 4000 16000"] points using ($2 == n ? 100*$3 : 1/0):(100*abs($5)) \
   with points pt 7 ps 0.5 title n." spheres"
 unset multiplot
