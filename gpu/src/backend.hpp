@@ -33,6 +33,9 @@ class WalkBackend {
   /// where needed.
   virtual void run(const std::vector<PreparedQuery>& queries, Want want, std::vector<core::Sums>& sums,
                    Hits& hits) = 0;
+
+  /// Of the last run, on a device that was asked to take its time [s].
+  virtual double kernelTime() const { return 0; }
 };
 
 inline bool wantsHits(Want want) {

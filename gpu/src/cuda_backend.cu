@@ -18,9 +18,12 @@ using namespace device;
 
 class CudaBackend : public WalkBackend {
  public:
+  explicit CudaBackend(bool time_kernels) : time_kernels_(time_kernels) {}
   ~CudaBackend() override {
     if (stream_) cudaStreamDestroy(stream_);
   }
+
+  double kernelTime() const override { return kernel_time_; }
 
   void run(const std::vector<PreparedQuery>& queries, Want want, std::vector<core::Sums>& sums,
            Hits& hits) override {
@@ -29,6 +32,7 @@ class CudaBackend : public WalkBackend {
     sums.resize(queries.size());
     for (core::Sums& sum : sums) sum.clear();
     hits.count = 0;
+    kernel_time_ = 0;
     if (countJobs(queries) == 0) return;
 
     const Layout layout(queries.size(), slices_.size());
@@ -181,6 +185,7 @@ class CudaBackend : public WalkBackend {
                 stream_);
       batch.setups = layout.setups(memory);
     }
+    if (time_kernels_) INNERSPHERE_CUDA(cudaEventRecord(start_.get(), stream_));
     for (const Slice& slice : slices_) {
       if (slice.jobs == 0) continue;
       if (queries.size() > 1) batch.setups = layout.setups(memory) + slice.begin;
@@ -193,9 +198,11 @@ class CudaBackend : public WalkBackend {
       batch.jobs = static_cast<unsigned>(slice.jobs);
       launchSlice(batch, want);
     }
+    if (time_kernels_) INNERSPHERE_CUDA(cudaEventRecord(stop_.get(), stream_));
     if (!returns) copyAsync(host_.data(), memory, layout.at_first, stream_);
     INNERSPHERE_CUDA(cudaStreamSynchronize(stream_));
     clean_ = returns;
+    if (time_kernels_) kernel_time_ = secondsBetween(start_, stop_);
   }
 
   void launchSlice(const Batch& batch, Want want) {
@@ -221,6 +228,9 @@ class CudaBackend : public WalkBackend {
   unsigned chunk_size_ = kLargestChunk;
   std::vector<Slice> slices_;
   cudaStream_t stream_ = nullptr;
+  bool time_kernels_;
+  double kernel_time_ = 0;
+  Event start_, stop_;
   PinnedArray<std::byte> host_;
   DeviceArray<std::byte> device_memory_;
   bool clean_ = false;  ///< what the kernels count in is zero
@@ -238,12 +248,12 @@ bool cudaDeviceAnswers() {
   return answers;
 }
 
-std::unique_ptr<WalkBackend> makeCudaBackend() {
+std::unique_ptr<WalkBackend> makeCudaBackend(bool time_kernels) {
   if (!cudaDeviceAnswers()) {
     throw Error(ErrorCode::no_device,
                 "no CUDA device answers; check the driver with nvidia-smi or use the CPU backend");
   }
-  return std::make_unique<CudaBackend>();
+  return std::make_unique<CudaBackend>(time_kernels);
 }
 
 }  // namespace innersphere

@@ -12,6 +12,6 @@ bool cudaDeviceAnswers();
 
 /// Uses the device that is current in the calling thread when it first runs. Throws Error no_device if there
 /// is none.
-std::unique_ptr<WalkBackend> makeCudaBackend();
+std::unique_ptr<WalkBackend> makeCudaBackend(bool time_kernels);
 
 }  // namespace innersphere

@@ -66,6 +66,31 @@ using DeviceArray = CudaArray<T, OnDevice>;
 template <typename T>
 using PinnedArray = CudaArray<T, Pinned>;
 
+/// A moment in a stream, made on first use.
+class Event {
+ public:
+  Event() = default;
+  ~Event() {
+    if (event_) cudaEventDestroy(event_);
+  }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+
+  cudaEvent_t get() {
+    if (!event_) INNERSPHERE_CUDA(cudaEventCreate(&event_));
+    return event_;
+  }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+inline double secondsBetween(Event& start, Event& stop) {
+  float milliseconds = 0;
+  INNERSPHERE_CUDA(cudaEventElapsedTime(&milliseconds, start.get(), stop.get()));
+  return 1e-3 * static_cast<double>(milliseconds);
+}
+
 template <typename T>
 void copyAsync(T* to, const T* from, std::size_t count, cudaStream_t stream) {
   INNERSPHERE_CUDA(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDefault, stream));

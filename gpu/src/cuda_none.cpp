@@ -8,7 +8,7 @@ bool cudaDeviceAnswers() {
   return false;
 }
 
-std::unique_ptr<WalkBackend> makeCudaBackend() {
+std::unique_ptr<WalkBackend> makeCudaBackend(bool) {
   throw Error(
       ErrorCode::no_device,
       "InnerSphere was built without CUDA; install the toolkit and configure with INNERSPHERE_CUDA=ON");

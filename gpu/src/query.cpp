@@ -13,16 +13,17 @@ namespace innersphere {
 namespace {
 
 /// Clusters of spheres in a batch from which on a launch on the device pays: it takes some 30 us, in which
-/// one core walks the 50 clusters of two packings of 500 spheres that overlap by a half, or 200 that hardly
-/// touch.
-constexpr std::size_t kDeviceClusters = 100;
+/// one core walks those of two packings of 600 spheres that overlap by a half.
+constexpr std::size_t kDeviceClusters = 60;
+
+constexpr std::size_t kGrain = 64;  ///< queries of a batch that one thread prepares
 
 }  // namespace
 
 struct QueryContext::Impl {
   explicit Impl(const QueryContextOptions& o) : options(o), workers(o.threads), cpu(workers) {
     if (options.backend != Backend::cuda) return;
-    cuda = makeCudaBackend();
+    cuda = makeCudaBackend(options.time_kernels);
     last = Backend::cuda;
   }
 
@@ -31,9 +32,22 @@ struct QueryContext::Impl {
     std::size_t clusters = 0;
     for (const PreparedQuery& query : prepared) clusters += query.clusters();
     if (clusters < kDeviceClusters) return false;
-    if (!cuda && !looked_for_device && cudaDeviceAnswers()) cuda = makeCudaBackend();
+    if (!cuda && !looked_for_device && cudaDeviceAnswers()) cuda = makeCudaBackend(options.time_kernels);
     looked_for_device = true;
     return cuda != nullptr;
+  }
+
+  void prepare(const PairQuery* queries, std::size_t count, Estimator estimator) {
+    prepared.resize(count);
+    const auto some = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) prepared[i] = innersphere::prepare(queries[i], i, estimator);
+    };
+    try {
+      workers.forRanges(count, kGrain, some);
+    } catch (const Error&) {
+      some(0, count);  // throws that of the first bad query, whoever came first
+      throw;
+    }
   }
 
   WalkBackend& choose() {
@@ -78,13 +92,14 @@ void QueryContext::run(const PairQuery* queries, std::size_t count, const QueryO
   Impl& impl = *impl_;
   if (count > 0 && !queries) throw Error(ErrorCode::bad_argument, "the queries are a null pointer");
   if (count >> 32) throw Error(ErrorCode::bad_argument, "a batch has at most 2^32 - 1 queries; split it");
-  impl.prepared.clear();
-  for (std::size_t i = 0; i < count; ++i) impl.prepared.push_back(prepare(queries[i], i, options.estimator));
+  impl.prepare(queries, count, options.estimator);
   impl.choose().run(impl.prepared, options.want, impl.sums, impl.hits);
   impl.sorter.run(impl.prepared, impl.sums, impl.hits, options.want, impl.workers, result);
   result.overlaps.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
-    result.overlaps[i] = toOverlap(impl.sums[i], impl.prepared[i].setup);
+  impl.workers.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      result.overlaps[i] = toOverlap(impl.sums[i], impl.prepared[i].setup);
+  });
 }
 
 Overlap QueryContext::overlap(const PairQuery& query, const QueryOptions& options) {
@@ -92,6 +107,10 @@ Overlap QueryContext::overlap(const PairQuery& query, const QueryOptions& option
   if (wantsHits(options.want)) sums_only.want = Want::wrench;
   run(&query, 1, sums_only, impl_->single);
   return impl_->single.overlaps[0];
+}
+
+double QueryContext::kernelTime() const {
+  return impl_->last == Backend::cuda ? impl_->cuda->kernelTime() : 0;
 }
 
 Backend QueryContext::lastBackend() const {

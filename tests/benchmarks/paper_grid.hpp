@@ -17,7 +17,17 @@ class PaperGrid {
  public:
   static constexpr std::size_t kBucket = 24;
 
+  struct Bucket {
+    std::uint32_t count = 0;
+    std::uint32_t spheres[kBucket];
+  };
+
   explicit PaperGrid(const std::vector<Sphere>& spheres);
+
+  const std::vector<Sphere>& spheres() const { return spheres_; }
+  const std::vector<Bucket>& buckets() const { return buckets_; }
+  int finest() const { return finest_; }  ///< level, as exponent of its cells
+  int coarsest() const { return coarsest_; }
 
   /// Spheres times cells that found their bucket full: contacts that may be missed.
   std::size_t overflows() const { return overflows_; }
@@ -31,10 +41,6 @@ class PaperGrid {
   Result walk(const std::vector<Sphere>& walkers, const Placement& placement, bool strictly) const;
 
  private:
-  struct Bucket {
-    std::uint32_t count = 0;
-    std::array<std::uint32_t, kBucket> spheres;
-  };
   const Bucket& bucket(int level, const std::array<int, 3>& cell) const;
 
   const std::vector<Sphere>& spheres_;

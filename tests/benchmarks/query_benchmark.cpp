@@ -14,6 +14,9 @@
 #include "innersphere/query.hpp"
 #include "machine.hpp"
 #include "paper_grid.hpp"
+#ifdef INNERSPHERE_PAPER_CUDA
+#include "paper_grid_cuda.hpp"
+#endif
 
 namespace {
 
@@ -67,7 +70,7 @@ const char* nameOf(Backend backend) {
 }
 
 void scenes(QueryContext& context, Backend backend, const CollisionModel& a, const CollisionModel& b,
-            std::size_t batch, std::size_t runs) {
+            std::size_t runs) {
   for (const Scene& scene : kScenes) {
     const PairQuery query = sceneQuery(a, b, scene);
     std::printf(
@@ -78,16 +81,83 @@ void scenes(QueryContext& context, Backend backend, const CollisionModel& a, con
       const Times t = measure(runs, [&] { context.run(&query, 1, {want, Estimator::raw}, result); });
       std::printf(" %.1f (%.1f) |", t.median, t.p99);
     }
-    std::vector<PairQuery> queries;
-    for (std::size_t i = 0; i < batch; ++i)
-      queries.push_back(sceneQuery(a, b, scene, 1e-4 * static_cast<double>(i)));
-    const Times t = measure(std::max<std::size_t>(3, runs / 20), [&] {
-      context.run(queries.data(), queries.size(), {Want::wrench, Estimator::raw}, result);
-    });
-    std::printf(" %.2f |\n", t.median / static_cast<double>(batch));
+    std::printf("\n");
     std::fflush(stdout);
   }
 }
+
+std::vector<PairQuery> sceneBatch(const CollisionModel& a, const CollisionModel& b, const Scene& scene,
+                                  std::size_t count) {
+  std::vector<PairQuery> queries;
+  for (std::size_t i = 0; i < count; ++i)
+    queries.push_back(sceneQuery(a, b, scene, 1e-4 * static_cast<double>(i)));
+  return queries;
+}
+
+/// Time of a batch of wrenches per pair, as the host sees it.
+double batchTime(QueryContext& context, const std::vector<PairQuery>& queries, std::size_t runs) {
+  QueryResult result;
+  const Times t = measure(runs, [&] {
+    context.run(queries.data(), queries.size(), {Want::wrench, Estimator::raw}, result);
+  });
+  return t.median / static_cast<double>(queries.size());
+}
+
+/// The device's share of it.
+double kernelTime(QueryContext& context, const std::vector<PairQuery>& queries, std::size_t runs) {
+  QueryResult result;
+  std::vector<double> times(runs);
+  for (double& time : times) {
+    context.run(queries.data(), queries.size(), {Want::wrench, Estimator::raw}, result);
+    time = 1e6 * context.kernelTime();
+  }
+  std::sort(times.begin(), times.end());
+  return times[runs / 2] / static_cast<double>(queries.size());
+}
+
+/// Where the bodies of a scene are in each other's frame.
+struct RelativePose {
+  Placement b_in_a, a_in_b;
+};
+
+RelativePose relativePose(const Scene& scene, double sideways = 0) {
+  RelativePose pose;
+  const Mat3d r = turned(0.7, 0.4);
+  const Vec3d t{0.8 * scene.distance, 0.6 * scene.distance, sideways};
+  pose.b_in_a = {r, t, 1};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      pose.a_in_b.rotation[3 * i + j] = r[3 * j + i];
+      pose.a_in_b.translation[i] -= r[3 * j + i] * t[j];
+    }
+  }
+  return pose;
+}
+
+#ifdef INNERSPHERE_PAPER_CUDA
+/// One pair and a batch: the paper's query as it is written there, and ours.
+void devices(const CollisionModel& a, const CollisionModel& b, std::size_t batch, std::size_t runs) {
+  QueryContext context({Backend::cuda}), timed({Backend::cuda, 0, true});
+  const benchmarks::PaperGrid grid_a(a.packing().spheres), grid_b(b.packing().spheres);
+  for (const std::size_t count : {std::size_t{1}, batch}) {
+    const std::size_t repeats = count == 1 ? runs : std::max<std::size_t>(5, runs / 20);
+    const auto pairs = static_cast<double>(count);
+    for (const Scene& scene : kScenes) {
+      std::vector<benchmarks::PaperPose> poses;
+      for (std::size_t i = 0; i < count; ++i) {
+        const RelativePose pose = relativePose(scene, 1e-4 * static_cast<double>(i));
+        poses.push_back({pose.a_in_b, pose.b_in_a});
+      }
+      const benchmarks::PaperCuda paper = benchmarks::runPaperOnDevice(grid_a, grid_b, poses, repeats);
+      const std::vector<PairQuery> queries = sceneBatch(a, b, scene, count);
+      const double host = batchTime(context, queries, repeats), kernel = kernelTime(timed, queries, repeats);
+      std::printf("| %zu | %s | %.2f | %.2f | %.2f | %.2f |\n", count, scene.name, paper.kernel / pairs,
+                  paper.host / pairs, kernel, host);
+      std::fflush(stdout);
+    }
+  }
+}
+#endif
 
 void sweep(QueryContext& context, Backend backend, const std::string& name, std::size_t count,
            const CollisionModel& a, const CollisionModel& b, double shift) {
@@ -106,18 +176,10 @@ void sweep(QueryContext& context, Backend backend, const std::string& name, std:
 
 void paper(const Packing& a, const Packing& b) {
   for (const Scene& scene : kScenes) {
-    const Mat3d r = turned(0.7, 0.4);
-    const Vec3d t{0.8 * scene.distance, 0.6 * scene.distance, 0};
-    Placement b_in_a{r, t, 1}, a_in_b;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        a_in_b.rotation[3 * i + j] = r[3 * j + i];
-        a_in_b.translation[i] -= r[3 * j + i] * t[j];
-      }
-    }
+    const auto [b_in_a, a_in_b] = relativePose(scene);
     const benchmarks::PaperGrid grid_a(a.spheres), grid_b(b.spheres);
     benchmarks::PaperGrid::Result from_a, from_b;
-    const Times times = measure(5, [&] {
+    const Times times = measure(5, [&, &b_in_a = b_in_a, &a_in_b = a_in_b] {
       from_a = grid_b.walk(a.spheres, a_in_b, false);
       from_b = grid_a.walk(b.spheres, b_in_a, true);
     });
@@ -151,8 +213,7 @@ int main(int argc, char** argv) {
   app.add_option("--spheres", counts, "Numbers of spheres of the balls; the last is that of the other tables")
       ->capture_default_str()
       ->delimiter(',');
-  app.add_option("--batch", batch, "Pairs in a batch on the GPU; the CPU gets a sixteenth")
-      ->capture_default_str();
+  app.add_option("--batch", batch, "Pairs in a batch on the GPU")->capture_default_str();
   app.add_option("--runs", runs, "Repetitions of a single query")->capture_default_str();
   app.add_option("--threads", threads, "Of the CPU backend; 0: all cores")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
@@ -168,15 +229,26 @@ int main(int argc, char** argv) {
     std::printf(
         "Two unit balls of %zu spheres, raw radii; median (99th percentile) of %zu runs, us; CPU: %d threads "
         "(0: all).\n\n"
-        "| backend | overlap | pairs | touch | volume | wrench | contacts | wrench, batch, per pair |\n"
-        "|---|---|---|---|---|---|---|---|\n",
+        "| backend | overlap | pairs | touch | volume | wrench | contacts |\n"
+        "|---|---|---|---|---|---|---|\n",
         count, runs, threads);
     for (Backend backend : backends) {
       QueryContext context({backend, threads});
       const bool gpu = backend == Backend::cuda;
-      scenes(context, backend, a, b, gpu ? batch : std::max<std::size_t>(1, batch / 16),
-             gpu ? runs : std::max<std::size_t>(5, runs / 5));
+      scenes(context, backend, a, b, gpu ? runs : std::max<std::size_t>(5, runs / 5));
     }
+#ifdef INNERSPHERE_PAPER_CUDA
+    if (cudaAvailable()) {
+      std::printf(
+          "\nThe same on the device, alone and in batches, time per pair, us. Paper: a thread a sphere, "
+          "level after "
+          "level, cell after cell, volume only. InnerSphere: wrench.\n\n"
+          "| pairs at once | overlap | paper, kernel | paper, host | InnerSphere, kernels | InnerSphere, "
+          "host |\n"
+          "|---|---|---|---|---|---|\n");
+      devices(a, b, batch, runs);
+    }
+#endif
 
     std::printf(
         "\nThe paper's grid (DJB2, buckets of %zu), one thread, volume only, us.\n\n"

@@ -63,6 +63,39 @@ TEST_P(DeterminismConformance, AnyThreadsAndRuns) {
   }
 }
 
+/// More than a backend works on at once; and after it one pair, which may come back in another way.
+TEST_P(DeterminismConformance, AnyLengthOfABatch) {
+  QueryContext context = makeContext();
+  std::vector<PairQuery> queries(20000);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    queries[i].a = a.get();
+    queries[i].b = i % 2 == 0 ? a.get() : b.get();
+    queries[i].placement_b = at({1.7 + 0.05 * static_cast<double>(i % 3), 0.1, 0});
+  }
+  QueryResult together;
+  context.run(queries.data(), queries.size(), {Want::wrench, Estimator::raw}, together);
+  std::uint64_t pairs = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Overlap alone = context.overlap(queries[i], {Want::wrench, Estimator::raw});
+    pairs += alone.pair_count;
+    for (std::size_t k = i; k < queries.size(); k += 6)
+      ASSERT_TRUE(sameBits(alone, together.overlaps[k])) << k;
+  }
+  EXPECT_GT(pairs, 0u);
+}
+
+TEST_P(DeterminismConformance, TimeOfTheDevice) {
+  PairQuery query;
+  query.a = a.get();
+  query.b = b.get();
+  QueryContext context({GetParam(), 1, true}), untimed = makeContext();
+  const Overlap timed = context.overlap(query);
+  EXPECT_TRUE(sameBits(timed, untimed.overlap(query)));
+  EXPECT_EQ(context.kernelTime() > 0, GetParam() == Backend::cuda);
+  EXPECT_LT(context.kernelTime(), 10);
+  EXPECT_EQ(untimed.kernelTime(), 0);
+}
+
 TEST_P(DeterminismConformance, AnyPlaceInABatch) {
   QueryContext context = makeContext();
   std::vector<PairQuery> queries = batch(40);

@@ -68,7 +68,8 @@ struct QueryResult {
 
 struct QueryContextOptions {
   Backend backend = Backend::automatic;
-  int threads = 0;  ///< of the CPU backend; 0: all cores. The result does not depend on it.
+  int threads = 0;            ///< of the CPU backend; 0: all cores. The result does not depend on it.
+  bool time_kernels = false;  ///< for kernelTime(); a run then takes some microseconds longer
 };
 
 /// True if CUDA is compiled in and a device answers. Creates no CUDA context.
@@ -95,6 +96,10 @@ class QueryContext {
 
   /// The backend that the last run used: cpu or cuda.
   Backend lastBackend() const;
+
+  /// How long the device worked on the last run, by its own clock [s]; 0 if that ran on the CPU or
+  /// QueryContextOptions::time_kernels is off. Copies of the results, where there are any, are not in it.
+  double kernelTime() const;
 
   struct Impl;
 
