@@ -1,0 +1,117 @@
+#include "innersphere/bounded_query.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "innersphere/error.hpp"
+
+namespace innersphere {
+
+namespace {
+
+constexpr std::uint64_t kShortest = 64;  ///< spheres of the first step
+
+std::uint32_t limitOf(const CollisionModel* model, std::uint32_t prefix) {
+  if (!model) throw Error(ErrorCode::bad_argument, "a model is a null pointer");
+  const auto all = static_cast<std::uint32_t>(model->packing().spheres.size());
+  return prefix == 0 ? all : std::min(prefix, all);
+}
+
+std::uint32_t lengthAt(std::size_t step, std::uint32_t limit) {
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(kShortest << step, limit));
+}
+
+/// The query with the prefixes of a step.
+PairQuery at(std::size_t step, PairQuery query) {
+  query.prefix_a = lengthAt(step, limitOf(query.a, query.prefix_a));
+  query.prefix_b = lengthAt(step, limitOf(query.b, query.prefix_b));
+  return query;
+}
+
+/// How many steps it takes to use all spheres.
+std::size_t stepsOf(const PairQuery& query) {
+  const std::uint32_t longest = std::max(limitOf(query.a, query.prefix_a), limitOf(query.b, query.prefix_b));
+  std::size_t steps = 1;
+  while (kShortest << (steps - 1) < longest) ++steps;
+  return steps;
+}
+
+/// What a packing says of the error of overlaps that take up this share of its solid.
+double errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator, double volume) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const OverlapErrors& errors = packing.overlap_errors;
+  const OverlapErrors::Prefix* best = nullptr;
+  for (const OverlapErrors::Prefix& candidate : errors.prefixes) {
+    if (candidate.count <= prefix) best = &candidate;
+  }
+  if (!best || !(packing.solid.volume > 0)) return kUnknown;
+  const double share = volume / packing.solid.volume;
+  std::size_t bin = 0;
+  while (bin + 1 < errors.poses.size() && share >= kOverlapBins[bin + 1]) ++bin;
+  if (errors.poses[bin] == 0) return kUnknown;
+  return (estimator == Estimator::raw ? best->raw : best->volume_true)[bin];
+}
+
+}  // namespace
+
+void BoundedQuery::warmUp(const PairQuery& query, const QueryOptions& options) {
+  const std::size_t steps = stepsOf(query);
+  for (std::size_t step = 0; step < steps; ++step) {
+    context_.overlap(at(step, query), options);
+    timedRun(query, options, step);
+  }
+}
+
+BoundedOverlap BoundedQuery::overlap(const PairQuery& query, const QueryBudget& budget,
+                                     const QueryOptions& options) {
+  if (!(budget.seconds >= 0))
+    throw Error(ErrorCode::bad_argument, "the seconds of a budget must be 0 (any) or more");
+  const std::size_t step = longestStep(query, budget);
+  const PairQuery bounded = at(step, query);
+  BoundedOverlap result;
+  result.overlap = timedRun(query, options, step);
+  result.prefix_a = bounded.prefix_a;
+  result.prefix_b = bounded.prefix_b;
+  const double volume = result.overlap.volume;
+  const double error_a = errorOf(query.a->packing(), bounded.prefix_a, options.estimator, volume);
+  const double error_b = errorOf(query.b->packing(), bounded.prefix_b, options.estimator, volume);
+  const bool known = volume > 0 && !std::isnan(error_a) && !std::isnan(error_b);
+  result.error = known ? std::max(error_a, error_b) : std::numeric_limits<double>::quiet_NaN();
+  return result;
+}
+
+std::size_t BoundedQuery::longestStep(const PairQuery& query, const QueryBudget& budget) const {
+  const std::size_t steps = stepsOf(query);
+  double seconds = 0;
+  std::size_t step = 0;
+  for (std::size_t next = 0; next < steps; ++next) {
+    const PairQuery bounded = at(next, query);
+    const std::uint64_t spheres = std::uint64_t{bounded.prefix_a} + bounded.prefix_b;
+    if (budget.spheres > 0 && spheres > budget.spheres) break;
+    if (budget.seconds > 0) {
+      const bool known = next < seconds_.size() && seconds_[next] >= 0;
+      if (!known && next == 0) break;                  // learn it first
+      seconds = known ? seconds_[next] : 2 * seconds;  // twice the spheres
+      if (seconds > budget.seconds) break;
+    }
+    step = next;
+  }
+  return step;
+}
+
+Overlap BoundedQuery::timedRun(const PairQuery& query, const QueryOptions& options, std::size_t step) {
+  constexpr double kForget = 0.02;  // of a step's time, with each query that does not confirm it
+  const auto start = std::chrono::steady_clock::now();
+  const Overlap overlap = context_.overlap(at(step, query), options);
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+  if (seconds_.size() <= step) seconds_.resize(step + 1, -1);
+  for (double& seconds : seconds_) {
+    if (seconds > 0) seconds *= 1 - kForget;
+  }
+  seconds_[step] = std::max(seconds_[step], time.count());
+  return overlap;
+}
+
+}  // namespace innersphere

@@ -1,0 +1,110 @@
+// Queries within a budget: as long as it allows, no longer, and with the error that the packings state.
+#include "innersphere/bounded_query.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "conformance.hpp"
+#include "innersphere/error.hpp"
+
+namespace innersphere::test {
+namespace {
+
+class BoundedQueryConformance : public Conformance {
+ protected:
+  BoundedQueryConformance() {
+    const auto packing = makePacking(randomSpheres(1000, 0.2, 30, 1));
+    packing->solid.volume = 7;
+    packing->overlap_errors.poses = {5, 5, 5, 0};
+    packing->overlap_errors.prefixes = {{64, {0.5, 0.4, 0.3, 0}, {0.25, 0.2, 0.1, 0}},
+                                        {512, {0.4, 0.3, 0.2, 0}, {0.05, 0.04, 0.03, 0}}};
+    a = std::make_shared<CollisionModel>(packing);
+    b = makeModel(randomSpheres(300, 0.3, 20, 2));
+    query.a = a.get();
+    query.b = a.get();
+    query.placement_b = at({0.2, 0.1, 0});
+  }
+
+  std::shared_ptr<CollisionModel> a, b;
+  PairQuery query;
+};
+
+TEST_P(BoundedQueryConformance, SpheresChooseTheLength) {
+  QueryContext context = makeContext(1);
+  BoundedQuery bounded(context);
+  query.b = b.get();
+  const auto all_a = static_cast<std::uint32_t>(a->packing().spheres.size());
+  const auto all_b = static_cast<std::uint32_t>(b->packing().spheres.size());
+  ASSERT_GT(all_a, 512u);
+  const std::array<std::uint32_t, 5> steps{64, 128, 256, 512, all_a};
+  const auto expectStep = [&](std::uint64_t budget, std::size_t step) {
+    const BoundedOverlap result = bounded.overlap(query, {0, budget});
+    PairQuery same = query;
+    same.prefix_a = steps[step];
+    same.prefix_b = std::min(steps[step], all_b);
+    EXPECT_EQ(result.prefix_a, same.prefix_a) << budget;
+    EXPECT_EQ(result.prefix_b, same.prefix_b) << budget;
+    EXPECT_TRUE(sameBits(result.overlap, context.overlap(same)));
+  };
+  expectStep(0, 4);
+  expectStep(1, 0);
+  for (std::size_t step = 0; step < steps.size(); ++step) {
+    const std::uint64_t needed = std::uint64_t{steps[step]} + std::min(steps[step], all_b);
+    expectStep(needed, step);
+    expectStep(needed - 1, step == 0 ? 0 : step - 1);
+  }
+  query.prefix_a = 100;
+  EXPECT_EQ(bounded.overlap(query, {}).prefix_a, 100u);
+}
+
+TEST_P(BoundedQueryConformance, TimeChoosesTheLength) {
+  QueryContext context = makeContext(1);
+  BoundedQuery bounded(context);
+  EXPECT_EQ(bounded.overlap(query, {1000, 0}).prefix_a, 64u);  // nothing is known yet
+  bounded.warmUp(query);
+  EXPECT_EQ(bounded.overlap(query, {1000, 0}).prefix_a, a->packing().spheres.size());
+  EXPECT_EQ(bounded.overlap(query, {1e-12, 0}).prefix_a, 64u);
+  EXPECT_EQ(bounded.overlap(query, {1000, 300}).prefix_a, 128u);
+}
+
+TEST_P(BoundedQueryConformance, ErrorIsThatOfThePackings) {
+  QueryContext context = makeContext(1);
+  BoundedQuery bounded(context);
+  const auto error = [&](std::uint64_t spheres, Estimator estimator) {
+    return bounded.overlap(query, {0, spheres}, {Want::volume, estimator});
+  };
+  for (const std::uint64_t spheres : {128u, 1024u}) {
+    const BoundedOverlap result = error(spheres, Estimator::raw);
+    const double share = result.overlap.volume / 7;
+    ASSERT_GT(share, 0);
+    ASSERT_LT(share, 0.15);
+    const std::size_t bin = share < 0.01 ? 0 : share < 0.05 ? 1 : 2;
+    EXPECT_EQ(result.error, a->packing().overlap_errors.prefixes[spheres == 128 ? 0 : 1].raw[bin]);
+  }
+  EXPECT_LT(error(1024, Estimator::volume_true).error, error(1024, Estimator::raw).error);
+  query.placement_b = at({0, 0, 0});
+  query.placement_b.scale = 3;  // deeper than anything that was measured
+  EXPECT_GT(error(0, Estimator::raw).overlap.volume, 0.15 * 7);
+  EXPECT_TRUE(std::isnan(error(0, Estimator::raw).error));
+  query.placement_b = at({50, 0, 0});
+  EXPECT_TRUE(std::isnan(error(0, Estimator::raw).error));
+  query.placement_b = at({0.2, 0.1, 0});
+  query.b = b.get();  // states nothing
+  EXPECT_TRUE(std::isnan(error(0, Estimator::raw).error));
+}
+
+TEST_P(BoundedQueryConformance, BadInput) {
+  QueryContext context = makeContext(1);
+  BoundedQuery bounded(context);
+  for (const double seconds : {-1.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(bounded.overlap(query, {seconds, 0}), Error);
+  query.a = nullptr;
+  EXPECT_THROW(bounded.overlap(query, {}), Error);
+}
+
+INNERSPHERE_FOR_EACH_BACKEND(BoundedQueryConformance);
+
+}  // namespace
+}  // namespace innersphere::test
