@@ -12,7 +12,7 @@ constexpr btScalar kStiffness = 64;
 /// Contacts deeper than 0.04 m lose their spring to Bullet's split impulse by default; stay above.
 constexpr btScalar kSplitImpulseDepth = btScalar(0.03);
 /// Fastest push of the default law, in sizes of the body per second.
-constexpr btScalar kFastest = 1;
+constexpr btScalar kFastest = btScalar(0.5);
 
 btScalar inverseMass(const btCollisionObject& object) {
   if (object.isStaticOrKinematicObject()) return 0;

@@ -30,7 +30,7 @@ struct PointLaw {
 ///                       gravity g sinks by g dt^2 / 64 (0.04 mm at 1/60 s), whatever its size and mass;
 ///   damping along n     C = options.damping 2 sqrt(K m).
 /// Each patch takes the share A / T of both and divides it among its points. The default law drives bodies
-/// that are inside each other apart no faster than the size of the smaller one in a second.
+/// that are inside each other apart no faster than half the size of the smaller one in a second.
 class ContactLaw {
  public:
   /// `size` [m] is that of the smaller body.

@@ -22,21 +22,47 @@ btScalar bend(const std::vector<Measured>& measured, btVector3 Gap::*normal) {
   return btSqrt(squares / count);
 }
 
-/// Where the surfaces oppose each other.
-btVector3 mean(const Gap& gap) {
+/// Where the surfaces oppose each other. `face_a`: weight of A's normal if both are flat.
+btVector3 mean(const Gap& gap, btScalar face_a) {
   const btScalar a = btFabs(gap.curvature_a), b = btFabs(gap.curvature_b);
-  const btScalar weight_a = a + b > 0 ? b / (a + b) : btScalar(0.5);
+  const btScalar weight_a = a + b > 0 ? b / (a + b) : face_a;
   return (gap.normal_a * weight_a + gap.normal_b * (1 - weight_a)).normalized();
+}
+
+/// The deepest contact of two faces that are tilted against each other; null if there is none.
+const Measured* deepestTilted(const std::vector<Measured>& measured) {
+  const Measured* deepest = nullptr;
+  btScalar most = 0;
+  for (const Measured& m : measured) {
+    const Gap& gap = m.gap;
+    if (!opposed(gap) || gap.curvature_a != 0 || gap.curvature_b != 0) continue;
+    if (gap.normal_a.distance(gap.normal_b) < kFlat) continue;
+    const btScalar depth = (gap.on_a - gap.on_b).dot(m.direction);
+    if (deepest == nullptr || depth > most) {
+      deepest = &m;
+      most = depth;
+    }
+  }
+  return deepest;
 }
 
 }  // namespace
 
-ContactNormal::ContactNormal(const std::vector<Measured>& measured)
-    : flat_a_(bend(measured, &Gap::normal_a) < kFlat), flat_b_(bend(measured, &Gap::normal_b) < kFlat) {}
+ContactNormal::ContactNormal(const std::vector<Measured>& measured, const Gauge& gauge)
+    : flat_a_(bend(measured, &Gap::normal_a) < kFlat), flat_b_(bend(measured, &Gap::normal_b) < kFlat) {
+  if (flat_a_ != flat_b_) {
+    face_a_ = flat_a_ ? btScalar(1) : btScalar(0);
+  } else if (const Measured* m = deepestTilted(measured)) {
+    // One face ends where the contact would get deeper.
+    const btVector3 downhill = (m->gap.normal_b - m->gap.normal_a).normalized();
+    const Gauge::Beyond beyond = gauge.beyond(m->index, m->gap, downhill);
+    if (beyond.a != beyond.b) face_a_ = beyond.a ? btScalar(1) : btScalar(0);
+  }
+}
 
 btVector3 ContactNormal::at(const Measured& m) const {
   const btVector3 &a = m.gap.normal_a, &b = m.gap.normal_b;
-  if (opposed(m.gap)) return mean(m.gap);
+  if (opposed(m.gap)) return mean(m.gap, face_a_);
   if (flat_a_ != flat_b_) return flat_a_ ? a : b;
   const btVector3& nearest = a.dot(m.direction) > b.dot(m.direction) ? a : b;
   const bool edges = !flat_a_ && nearest.dot(m.direction) < kFace;
@@ -48,7 +74,7 @@ bool opposed(const Gap& gap) {
 }
 
 btVector3 normalAlone(const Gap& gap, const btVector3& direction) {
-  if (opposed(gap)) return mean(gap);
+  if (opposed(gap)) return mean(gap, btScalar(0.5));
   const btVector3& nearest =
       gap.normal_a.dot(direction) > gap.normal_b.dot(direction) ? gap.normal_a : gap.normal_b;
   return nearest.dot(direction) < kFace ? direction : nearest;

@@ -24,16 +24,17 @@ btVector3 normalAlone(const Gap& gap, const btVector3& direction);
 
 /// The direction of contact at each of the measurements of a patch. Beside the deepest point both normals
 /// lean away from it, each in proportion to its curvature, so the flatter surface counts for more; a flat one
-/// counts alone.
+/// counts alone. Of two faces that meet at an angle, that one counts which the other one's edge lies on.
 class ContactNormal {
  public:
-  explicit ContactNormal(const std::vector<Measured>& measured);
+  ContactNormal(const std::vector<Measured>& measured, const Gauge& gauge);
 
   btVector3 at(const Measured& measured) const;
 
  private:
   bool flat_a_;  ///< all of the patch is one face of A
   bool flat_b_;
+  btScalar face_a_ = btScalar(0.5);  ///< weight of A's normal where two faces meet
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

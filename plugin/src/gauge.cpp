@@ -1,5 +1,7 @@
 #include "gauge.hpp"
 
+#include <algorithm>
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -9,6 +11,10 @@ namespace {
 constexpr btScalar kFacing = btScalar(0.5);
 /// A ray that starts inside a sphere by this fraction of its radius starts inside the solid.
 constexpr btScalar kInside = btScalar(0.95);
+/// Normals within 5 degrees are those of one face; a place this deep, in spheres, is under it.
+constexpr btScalar kSameFace = btScalar(0.996);
+constexpr btScalar kSunk = btScalar(0.1);
+constexpr std::uint64_t kCornerId = std::uint64_t(1) << 62;
 
 /// A point of a body's surface, relative to the body's origin, axes of the world.
 struct SurfacePoint {
@@ -16,7 +22,8 @@ struct SurfacePoint {
   btVector3 normal{0, 0, 0};  ///< unit, out of the solid
   btScalar facing = 0;        ///< cosine between the triangle's normal and the ray
   btScalar curvature = 0;     ///< [1/m]
-  btScalar faceting = 0;      ///< angle between both normals [rad]
+  std::size_t triangle = 0;
+  btScalar faceting = 0;  ///< angle between both normals [rad]
 };
 
 bool cast(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
@@ -29,6 +36,7 @@ bool cast(const PackingBody& body, const btVector3& from, const btVector3& direc
   }
   point.normal = axes * hit.normal;
   point.curvature = hit.curvature / body.scale();
+  point.triangle = hit.triangle;
   point.facing = (axes * hit.face).dot(direction);
   point.faceting = hit.face.distance(hit.normal);
   point.at = from + direction * (hit.distance * body.scale());
@@ -53,6 +61,33 @@ bool enter(const PackingBody& body, const btVector3& from, const btVector3& dire
   return true;
 }
 
+/// Whether a face with this normal is at a place. `size` is that of the things looked at.
+bool faceAt(const PackingBody& body, const btVector3& at, const btVector3& normal, btScalar size) {
+  const btMatrix3x3& axes = body.world.getBasis();
+  // A little inside, where the direction to the face is well defined.
+  const btVector3 place = at - normal * (kSunk * size + body.margin);
+  NearestTriangle::Result nearest;
+  return body.shape().nearestTriangle().find((place * axes) / body.scale(), size / body.scale(), nearest) &&
+         nearest.distance < 0 && (axes * nearest.normal).dot(normal) > kSameFace;
+}
+
+/// Corners uphill from a triangle, relative to the body's origin, for which over(at) holds.
+template <typename Over>
+void appendCorners(const PackingBody& body, std::size_t triangle, const btVector3& direction,
+                   const btVector3& start, btScalar reach, std::uint64_t first_id, const Over& over,
+                   std::vector<Gauge::Corner>& corners) {
+  static thread_local std::vector<std::uint32_t> vertices;
+  const btMatrix3x3& axes = body.world.getBasis();
+  vertices.clear();
+  body.shape().vertexClimb().from(triangle, direction * axes, (start * axes) / body.scale(),
+                                  reach / body.scale(), vertices);
+  for (std::uint32_t v : vertices) {
+    const btVector3 vertex = axes * (toBullet(body.shape().packing().surface.vertices[v]) * body.scale());
+    const Gauge::Corner corner{vertex + direction * body.margin, first_id + 2 * std::uint64_t(v)};
+    if (over(corner.at)) corners.push_back(corner);
+  }
+}
+
 }  // namespace
 
 bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3& shift, Gap& gap) const {
@@ -66,6 +101,7 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   gap.on_a = on_a.at;
   gap.normal_a = on_a.normal;
   gap.curvature_a = on_a.curvature;
+  gap.triangle_a = on_a.triangle;
   gap.on_b = centre + towards_b * touch.distance;
   gap.normal_b = towards_b;
   gap.curvature_b = touch.curvature;
@@ -75,6 +111,20 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
 bool SurfaceGauge::nearest(std::size_t index, btVector3& direction) const {
   direction = -touches_[index].normal;
   return true;
+}
+
+void SurfaceGauge::corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
+                           std::vector<Corner>& corners) const {
+  if (!of_a) return;
+  const auto reachOf = [&](const Touch& touch) { return a_.ownRadius(touch.sphere) + a_.slack; };
+  // The face is known where spheres are near it.
+  const auto over = [&](const btVector3& at) {
+    return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
+      const btScalar reach = reachOf(touch);
+      return a_.centreOf(touch.sphere).distance2(at) < reach * reach && touch.normal.dot(-normal) > kSameFace;
+    });
+  };
+  appendCorners(a_, gap.triangle_a, normal, gap.on_a, reachOf(touches_[index]), kCornerId, over, corners);
 }
 
 std::uint64_t PackingGauge::id(std::size_t index) const {
@@ -104,6 +154,8 @@ bool PackingGauge::measure(std::size_t index, const btVector3& direction, const 
   gap.normal_b = -(of_a ? entered.normal : left.normal);
   gap.curvature_a = of_a ? left.curvature : entered.curvature;
   gap.curvature_b = of_a ? entered.curvature : left.curvature;
+  gap.triangle_a = of_a ? left.triangle : entered.triangle;
+  gap.triangle_b = of_a ? entered.triangle : left.triangle;
   gap.faceting = left.faceting + entered.faceting;
   return true;
 }
@@ -121,6 +173,36 @@ bool PackingGauge::nearest(std::size_t index, btVector3& direction) const {
     return false;
   direction = (axes * nearest.normal) * btScalar(of_a ? -1 : 1);
   return true;
+}
+
+Gauge::Beyond PackingGauge::beyond(std::size_t index, const Gap& gap, const btVector3& towards) const {
+  const btScalar step = reachOf(index);
+  const auto goesOn = [&](const PackingBody& body, const btVector3& at, const btVector3& normal) {
+    const btVector3 along = (towards - normal * towards.dot(normal)).normalized();
+    return faceAt(body, at + along * step, normal, step);
+  };
+  return {goesOn(a_, gap.on_a, gap.normal_a), goesOn(b_, gap.on_b - apart(), -gap.normal_b)};
+}
+
+void PackingGauge::corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
+                           std::vector<Corner>& corners) const {
+  const btScalar reach = reachOf(index);
+  if (of_a) {
+    const btVector3 face = gap.on_b - apart();
+    const auto over = [&](const btVector3& at) {
+      const btVector3 place = at - apart();
+      return faceAt(b_, place - normal * (place - face).dot(normal), -normal, reach);
+    };
+    appendCorners(a_, gap.triangle_a, normal, gap.on_a, reach, kCornerId, over, corners);
+  } else {
+    const std::size_t first = corners.size();
+    const auto over = [&](const btVector3& at) {
+      const btVector3 place = at + apart();
+      return faceAt(a_, place - normal * (place - gap.on_a).dot(normal), normal, reach);
+    };
+    appendCorners(b_, gap.triangle_b, -normal, gap.on_b - apart(), reach, kCornerId + 1, over, corners);
+    for (std::size_t i = first; i < corners.size(); ++i) corners[i].at += apart();
+  }
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

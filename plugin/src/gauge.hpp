@@ -21,6 +21,8 @@ struct Gap {
   btVector3 normal_b{0, 0, 0};  ///< unit, into B: equal to normal_a where flat faces meet
   btScalar curvature_a = 0;     ///< [1/m], positive where A is convex, 0 where it is flat
   btScalar curvature_b = 0;
+  std::size_t triangle_a = 0;  ///< of A's surface
+  std::size_t triangle_b = 0;  ///< of B's, if B is a packing
   btScalar faceting = 0;  ///< angle between triangles and the surfaces they stand for, of both bodies [rad]
 };
 
@@ -36,6 +38,20 @@ class Gauge {
   /// The direction from A to B in which the sphere of a contact is nearest to the other solid's surface.
   /// False if it is too far away to tell.
   virtual bool nearest(std::size_t index, btVector3& direction) const = 0;
+  /// Whether the faces at a gap go on beyond the sphere in direction `towards` (unit).
+  struct Beyond {
+    bool a;
+    bool b;
+  };
+  virtual Beyond beyond(std::size_t index, const Gap& gap, const btVector3& towards) const = 0;
+  /// Appends the corners near a gap where A (or else B) reaches furthest along `normal` (from A to B) and
+  /// that are over the face of the other solid; also the far end of an edge that is level.
+  struct Corner {
+    btVector3 at{0, 0, 0};
+    std::uint64_t id = 0;  ///< no sphere has it
+  };
+  virtual void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
+                       std::vector<Corner>& corners) const = 0;
   /// Of the sphere behind a contact: the same from step to step.
   virtual std::uint64_t id(std::size_t index) const = 0;
   /// The normals of B do not come from triangles.
@@ -49,6 +65,10 @@ class SurfaceGauge : public Gauge {
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                Gap& gap) const override;
   bool nearest(std::size_t index, btVector3& direction) const override;
+  /// Of the other shape only its distance is known: it is taken as large.
+  Beyond beyond(std::size_t, const Gap&, const btVector3&) const override { return {false, true}; }
+  void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
+               std::vector<Corner>& corners) const override;
   std::uint64_t id(std::size_t index) const override { return touches_[index].sphere; }
   bool exactB() const override { return true; }
 
@@ -66,10 +86,20 @@ class PackingGauge : public Gauge {
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                Gap& gap) const override;
   bool nearest(std::size_t index, btVector3& direction) const override;
+  Beyond beyond(std::size_t index, const Gap& gap, const btVector3& towards) const override;
+  void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
+               std::vector<Corner>& corners) const override;
   std::uint64_t id(std::size_t index) const override;
   bool exactB() const override { return false; }
 
  private:
+  btVector3 apart() const { return b_.origin() - a_.origin(); }
+  /// How far away the solid of a contact's sphere may end [m].
+  btScalar reachOf(std::size_t index) const {
+    const PackingBody& own = index < count_a_ ? a_ : b_;
+    return own.ownRadius(contacts_[index].sphere) + own.slack;
+  }
+
   const PackingBody& a_;
   const PackingBody& b_;
   const std::vector<SphereContact>& contacts_;

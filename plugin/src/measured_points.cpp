@@ -23,6 +23,8 @@ constexpr btScalar kOwnDirection = btScalar(0.5);
 /// to; else one within 0.5 degrees.
 constexpr btScalar kAligned = btScalar(0.996);
 constexpr btScalar kParallel = btScalar(0.99996);
+/// A face that leans more than this does not lie flat on the other: a corner is deeper [rad].
+constexpr btScalar kLeans = btScalar(5e-3);
 
 bool isOld(const PatchContacts& from, std::uint64_t id) {
   return std::find(from.old_ids.begin(), from.old_ids.end(), id) != from.old_ids.end();
@@ -102,11 +104,16 @@ bool measure(const PatchContacts& from, std::size_t i, Measured& m) {
   return true;
 }
 
+bool leans(const btVector3& face, btScalar curvature, const btVector3& normal) {
+  return curvature == 0 && face.distance2(normal) > kLeans * kLeans;
+}
+
 }  // namespace
 
 void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found) {
   static thread_local std::vector<std::size_t> picked;
   static thread_local std::vector<Measured> measured;
+  static thread_local std::vector<Gauge::Corner> corners;
   pick(from, picked);
   measured.clear();
   for (std::size_t i : picked) {
@@ -114,12 +121,28 @@ void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found)
     if (measure(from, i, m)) measured.push_back(m);
   }
   appendDeepest(from.gauge, measured);
-  const ContactNormal normals(measured);
+  const ContactNormal normals(measured, from.gauge);
   const std::size_t first = found.size();
+  const auto add = [&](const btVector3& on_b, const btVector3& normal, btScalar depth, std::uint64_t id) {
+    if (depth > -from.measure.separation) found.push_back({{on_b, normal, depth, id}, 0});
+  };
+  const auto isFound = [&](std::uint64_t id) {
+    return std::any_of(found.begin(), found.end(), [&](const MeasuredPoint& f) { return f.point.id == id; });
+  };
   for (const Measured& m : measured) {
     const btVector3 normal = normals.at(m);
-    const btScalar depth = (m.gap.on_a - m.gap.on_b).dot(normal);
-    if (depth > -from.measure.separation) found.push_back({{m.gap.on_b, normal, depth, m.id}, 0});
+    add(m.gap.on_b, normal, (m.gap.on_a - m.gap.on_b).dot(normal), m.id);
+    const bool edge_a = leans(m.gap.normal_a, m.gap.curvature_a, normal),
+               edge_b = leans(m.gap.normal_b, m.gap.curvature_b, normal);
+    if (edge_a == edge_b) continue;
+    corners.clear();
+    from.gauge.corners(m.index, m.gap, normal, edge_a, corners);
+    for (const Gauge::Corner& corner : corners) {
+      if (isFound(corner.id)) continue;
+      const btScalar depth =
+          edge_a ? (corner.at - m.gap.on_b).dot(normal) : (m.gap.on_a - corner.at).dot(normal);
+      add(edge_a ? corner.at - normal * depth : corner.at, normal, depth, corner.id);
+    }
   }
   for (std::size_t i = first; i < found.size(); ++i) {
     found[i].area = from.moments.area / btScalar(found.size() - first);

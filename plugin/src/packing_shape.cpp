@@ -101,6 +101,10 @@ const NearestTriangle& PackingShape::Impl::nearestTriangle() const {
   return nearest_triangle_.get([this] { return std::make_unique<NearestTriangle>(packing().surface); });
 }
 
+const VertexClimb& PackingShape::Impl::vertexClimb() const {
+  return vertex_climb_.get([this] { return std::make_unique<VertexClimb>(packing().surface); });
+}
+
 btScalar PackingShape::Impl::recess() const {
   if (packing().quality.gap_max > 0) return btScalar(packing().quality.gap_max);
   return recess_.get([this] { return std::make_unique<btScalar>(measureRecess(packing())); });

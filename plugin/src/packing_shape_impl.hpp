@@ -7,6 +7,7 @@
 #include "principal_frame.hpp"
 #include "sphere_tree.hpp"
 #include "surface_tree.hpp"
+#include "vertex_climb.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -25,6 +26,7 @@ struct PackingShape::Impl {
   /// Only if hasSurface(). In the packing's frame.
   const SurfaceTree& surfaceTree() const;
   const NearestTriangle& nearestTriangle() const;
+  const VertexClimb& vertexClimb() const;
   /// How far the spheres may end inside of the surface, for scale 1 [m].
   btScalar recess() const;
   /// From the packing's frame to the world for a body at `body`: x_world = result(scale * x).
@@ -45,6 +47,7 @@ struct PackingShape::Impl {
   Lazy<SphereTree> sphere_tree_;
   Lazy<SurfaceTree> surface_tree_;
   Lazy<NearestTriangle> nearest_triangle_;
+  Lazy<VertexClimb> vertex_climb_;
   Lazy<btScalar> recess_;
 };
 

@@ -51,11 +51,12 @@ bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScal
   NearestHit nearest(from, from + direction * length);
   tree_->performRaycast(&nearest, nearest.m_from, nearest.m_to);
   if (nearest.triangle < 0) return false;
+  hit.triangle = static_cast<std::size_t>(nearest.triangle);
   hit.distance = nearest.m_hitFraction * length;
   hit.face = nearest.face.normalized();
   const SmoothNormals& normals = normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
-  hit.curvature = normals.curvature(static_cast<std::size_t>(nearest.triangle));
-  hit.normal = normals.at(static_cast<std::size_t>(nearest.triangle), from + direction * hit.distance);
+  hit.curvature = normals.curvature(hit.triangle);
+  hit.normal = normals.at(hit.triangle, from + direction * hit.distance);
   return true;
 }
 

@@ -28,6 +28,7 @@ class SurfaceTree {
 
   /// Where a ray meets the surface first.
   struct Hit {
+    std::size_t triangle;
     btScalar distance;   ///< [m] along the ray
     btVector3 face;      ///< unit normal of the triangle, out of the solid
     btVector3 normal;    ///< the same, smoothed over curved surfaces

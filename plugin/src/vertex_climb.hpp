@@ -1,0 +1,34 @@
+// The corners of a triangulated surface.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <LinearMath/btVector3.h>
+
+#include "innersphere/bullet_precision.hpp"
+#include "innersphere/geometry.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Walks from triangle to triangle. Refers to the surface: it must stay. Const members are safe to call from
+/// several threads at once.
+class VertexClimb {
+ public:
+  explicit VertexClimb(const Surface& surface);
+
+  /// Appends the vertex that is furthest along `direction` (unit) among its neighbours, uphill from a
+  /// triangle and no further than `reach` from `start`, and the other ends of edges that are level with it,
+  /// wherever they are: those of an edge that lies on a face, say. None if no vertex is near.
+  void from(std::size_t triangle, const btVector3& direction, const btVector3& start, btScalar reach,
+            std::vector<std::uint32_t>& vertices) const;
+
+ private:
+  const Surface& surface_;
+  std::vector<std::uint32_t> first_;  ///< neighbours of vertex v: neighbours_[first_[v]] to first_[v + 1]
+  std::vector<std::uint32_t> neighbours_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
