@@ -8,9 +8,9 @@
 namespace innersphere::tool {
 namespace {
 
-// Below both, nothing is seen to move.
-constexpr double kRestSpeed = 0.02;  // [m/s]
-constexpr double kRestTurn = 0.1;    // [rad/s]
+// Bodies rest if in so long [s] none moves by so much of its size: nothing is seen to move.
+constexpr double kRestTime = 0.5;
+constexpr double kRestMotion = 0.01;
 
 std::size_t movingBodies(const demo::SceneWorld& world) {
   return static_cast<std::size_t>(std::count_if(world.bodies().begin(), world.bodies().end(),
@@ -71,6 +71,26 @@ void addOverlap(Report& report, const demo::Recording& recording) {
   report.add("final_overlap_relative", "", last.relative_overlap, "");
 }
 
+// By how much of its size the most restless body moved over the last kRestTime, turning included.
+double motionAtTheEnd(const demo::SceneWorld& world, const demo::Recording& recording) {
+  const double dt = recording.steps.size() > 1 ? recording.steps[1].time - recording.steps[0].time : 1;
+  const std::size_t last = recording.steps.size() - 1;
+  const std::size_t first = last - std::min(last, static_cast<std::size_t>(std::lround(kRestTime / dt)));
+  const std::size_t count = world.bodies().size();
+  double most = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const demo::Pose& a = recording.poses[first * count + i];
+    const demo::Pose& b = recording.poses[last * count + i];
+    double squared = 0, cosine = 0;
+    for (int k = 0; k < 3; ++k) squared += std::pow(b.position[k] - a.position[k], 2);
+    for (int k = 0; k < 4; ++k) cosine += a.rotation[k] * b.rotation[k];
+    const double turn = 2 * std::acos(std::min(std::fabs(cosine), 1.0));
+    const double size = world.bodies()[i].size;
+    if (size > 0) most = std::max(most, std::sqrt(squared) / size + turn / 2);
+  }
+  return most;
+}
+
 }  // namespace
 
 std::string captionOf(const demo::SceneWorld& world, double dt) {
@@ -100,10 +120,11 @@ Report describe(const std::string& name, const demo::SceneWorld& world, const de
   addStepTimes(report, recording);
   report.add("contacts", "contact points", static_cast<std::size_t>(last.contacts));
   addOverlap(report, recording);
-  const bool rests = last.fastest < kRestSpeed && last.fastest_turn < kRestTurn;
-  report.add("at_rest", "at rest", rests,
-             std::string(rests ? "yes" : "no") + "; fastest body " + number(last.fastest, "m/s, ") +
-                 number(last.fastest_turn, "rad/s"));
+  const double motion = motionAtTheEnd(world, recording);
+  report.add("at_rest", "at rest", motion < kRestMotion,
+             std::string(motion < kRestMotion ? "yes" : "no") + "; over the last " + number(kRestTime, "s") +
+                 " no body moved by more than " + percent(motion) + " of its size");
+  report.add("motion_at_the_end", "", motion, "");
   report.add("fastest", "", last.fastest, "");
   report.add("fastest_turn", "", last.fastest_turn, "");
   const double energy = last.kinetic + last.potential;
