@@ -122,8 +122,8 @@ Report describe(const std::string& name, const demo::SceneWorld& world, const de
   addOverlap(report, recording);
   const double motion = motionAtTheEnd(world, recording);
   report.add("at_rest", "at rest", motion < kRestMotion,
-             std::string(motion < kRestMotion ? "yes" : "no") + "; over the last " + number(kRestTime, "s") +
-                 " no body moved by more than " + percent(motion) + " of its size");
+             std::string(motion < kRestMotion ? "yes" : "no") + "; the most restless body moved by " +
+                 percent(motion) + " of its size in the last " + number(kRestTime, "s"));
   report.add("motion_at_the_end", "", motion, "");
   report.add("fastest", "", last.fastest, "");
   report.add("fastest_turn", "", last.fastest_turn, "");
