@@ -3,27 +3,22 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string>
 
+#include "device.hpp"
 #include "innersphere/query.hpp"
 #include "oracle.hpp"
 #include "sphere_sets.hpp"
 
 namespace innersphere::test {
 
-/// Each test runs once for each backend. Without a device the CUDA ones are skipped, and say so, unless the
-/// environment has INNERSPHERE_REQUIRE_GPU=1: then they fail.
+/// Each test runs once for each backend.
 class Conformance : public testing::TestWithParam<Backend> {
  protected:
   void SetUp() override {
-    if (GetParam() != Backend::cuda || cudaAvailable()) return;
-    const char* required = std::getenv("INNERSPHERE_REQUIRE_GPU");
-    if (required && std::string(required) == "1")
-      FAIL() << "INNERSPHERE_REQUIRE_GPU=1, but no CUDA device answers";
-    GTEST_SKIP() << "no CUDA device answers";
+    if (GetParam() == Backend::cuda) needDevice();
   }
 
   QueryContext makeContext(int threads = 0) const { return QueryContext({GetParam(), threads}); }
