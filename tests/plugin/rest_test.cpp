@@ -30,7 +30,7 @@ TEST_P(Rest, IsAtTheSurfaceAndDoesNotCreep) {
     world.addFloor();
   } else {
     // So large that its gaps are wider than the body's spheres.
-    const auto shape = makeNamedShape("box", 2000, 5);
+    const auto shape = makeNamedShape("box", 500, 5);
     btTransform upright = shape->principalTransform().inverse();
     upright.setOrigin(btVector3(0, 0, 0));
     double top = -1e9;
@@ -40,7 +40,7 @@ TEST_P(Rest, IsAtTheSurfaceAndDoesNotCreep) {
     }
     world.add(shape, 0, btVector3(0, 0, btScalar(-top)), upright.getRotation());
   }
-  const auto shape = makeNamedShape(name, 1000, 0.5);  // 1 m across
+  const auto shape = makeNamedShape(name, 500, 0.5);  // 1 m across
   btTransform place = shape->principalTransform().inverse();
   place.setOrigin(btVector3(btScalar(0.013), btScalar(0.027), 0));
   place.getOrigin().setZ(btScalar(0.02 - lowest(*shape, place)));
