@@ -1,5 +1,7 @@
 #include "deepest_point.hpp"
 
+#include "contact_patch.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "contact_normal.hpp"
-#include "contact_patch.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -105,7 +105,10 @@ void OverlapBatch::gatherStale(PackingContact& asked) {
 }
 
 void OverlapBatch::runStale() {
-  for (PackingContact* contact : stale_) contact->valid = false;
+  for (PackingContact* contact : stale_) {
+    contact->valid = false;
+    contact->measure.emplace(measureOf(*contact));
+  }
   run(Pass::surfaces);
   run(Pass::touch);
   run(Pass::deep);
@@ -127,7 +130,7 @@ void OverlapBatch::run(Pass pass) {
 }
 
 bool OverlapBatch::takesPart(Pass pass, const PackingContact& contact) const {
-  if (!measureOf(contact).on_surfaces) return pass == Pass::volumes;
+  if (!contact.measure->on_surfaces) return pass == Pass::volumes;
   switch (pass) {
     case Pass::surfaces:
       return true;
@@ -165,7 +168,7 @@ PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) cons
   query.placement_a = PackingBody(*contact.a.shape, contact.a.transform, Estimator::raw, 0).placement();
   query.placement_b = PackingBody(*contact.b.shape, contact.b.transform, Estimator::raw, 0).placement();
   query.margin = contact.a.margin + contact.b.margin;
-  if (pass == Pass::surfaces) query.margin += measureOf(contact).slack();
+  if (pass == Pass::surfaces) query.margin += contact.measure->slack();
   if (pass == Pass::deep) query.margin += gapsOf(*contact.a.shape) + gapsOf(*contact.b.shape);
   return query;
 }
@@ -189,7 +192,7 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
   const std::size_t count_a = contacts_.size();
   append(result_.contacts_b);
 
-  const Measure measure = measureOf(contact);
+  const Measure& measure = *contact.measure;
   const btMatrix3x3& reference = contact.a.transform.getBasis();
   if (pass == Pass::surfaces) {
     const PackingBody a(*contact.a.shape, contact.a.transform, Estimator::raw, measure.slack_a);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -39,8 +40,9 @@ struct PackingContact {
 
   PackingSide a;
   PackingSide b;
-  btScalar separation = 0;  ///< asked for; see Measure
-  btScalar time_step = 0;   ///< within which contacts may close [s]
+  btScalar separation = 0;         ///< asked for; see Measure
+  btScalar time_step = 0;          ///< within which contacts may close [s]
+  std::optional<Measure> measure;  ///< of the last query
   std::vector<ContactPatch> patches;
   bool valid = false;     ///< patches belong to the transforms in a and b
   bool near = false;      ///< enlarged spheres overlap

@@ -95,13 +95,14 @@ bool measurePatches(const std::vector<SphereContact>& contacts, const Gauge& gau
   for (const ContactPatch& old : patches) {
     for (int i = 0; i < old.count; ++i) old_ids.push_back(old.points[i].id);
   }
-  const Sorted& sorted = sortIntoPatches(contacts, reference);
-  if (sorted.patches.empty()) sortIntoPatches(aimed(contacts, gauge), reference);
+  const Sorted* sorted = &sortIntoPatches(contacts, reference);
+  if (sorted->patches.empty() && !contacts.empty())
+    sorted = &sortIntoPatches(aimed(contacts, gauge), reference);
   found.clear();
-  for (std::size_t p = 0; p < sorted.moments.size(); ++p) {
-    const PatchMoments& moments = sorted.moments[p];
+  for (std::size_t p = 0; p < sorted->moments.size(); ++p) {
+    const PatchMoments& moments = sorted->moments[p];
     if (moments.area > 0)
-      measurePoints({contacts, sorted.members[p], moments, old_ids, gauge, measure}, found);
+      measurePoints({contacts, sorted->members[p], moments, old_ids, gauge, measure}, found);
   }
   selectPatches(found, old_ids, measure.spacing, patches);
   return std::any_of(found.begin(), found.end(),

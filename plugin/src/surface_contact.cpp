@@ -1,5 +1,6 @@
 #include "surface_contact.hpp"
 
+#include <cassert>
 #include <cmath>
 
 #include "measure.hpp"
@@ -53,6 +54,7 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
   };
   if (measure.on_surfaces) {
     caps(a.slack);
+    assert(contacts.size() == touches.size());  // the gauge counts on it
     if (measurePatches(contacts, SurfaceGauge(a, touches), measure, packing.getBasis(), patches_))
       return patches_;
     caps(0);

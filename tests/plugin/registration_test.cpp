@@ -142,7 +142,7 @@ TEST(Registration, SdfShapesKeepTheirRow) {
   world.add(makeShape(latticeBox({1, 1, 1}, 2)), 1, btVector3(0, 0, 0));
   world.add(std::make_shared<btSphereShape>(btScalar(0.5)), 1, btVector3(0, 0, btScalar(0.2)));
   world.run(0.1);
-  SUCCEED();
+  EXPECT_GT(world.contactCount(), 0);  // of the packing with the sphere
 }
 
 TEST(Registration, AfterGImpact) {
