@@ -36,12 +36,16 @@ btVector3 velocityAt(const btCollisionObject& object, const btVector3& point) {
 
 ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step,
                        btScalar size)
-    : rigid_(options.response == Response::rigid),
+    : response_(options.response),
       given_stiffness_(btScalar(options.stiffness)),
       damping_ratio_(btScalar(options.damping)),
       mass_(reduced_mass > 0 ? reduced_mass : btScalar(1)),
       time_step_(time_step > 0 ? time_step : btScalar(1) / 60),
-      fastest_(kFastest * size) {}
+      fastest_(kFastest * size) {
+  if (!penalty()) return;
+  damping_ratio_ = 1;  // the points' own restitution has a say in it
+  if (given_stiffness_ == 0) given_stiffness_ = mass_ / (time_step_ * time_step_ * SIMD_PI * size * size);
+}
 
 ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std::size_t index) const {
   const ContactPatch& patch = patches[index];
@@ -62,10 +66,12 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   PointLaw law;
   law.depth = depth;
   law.time_step = law_->time_step_;
-  if (law_->rigid_) return law;
-  law.spring = true;
+  if (law_->response_ == Response::rigid) return law;
   law.stiffness = stiffness_;
   law.damping = damping_;
+  law.penalty = law_->penalty();
+  if (law.penalty) return law;
+  law.spring = true;
   // Fraction of the depth that the solver removes in one step.
   const btScalar spring = law_->time_step_ * stiffness_;
   const btScalar rate = spring > 0 ? spring / (spring + damping_) / law_->time_step_ : btScalar(0);

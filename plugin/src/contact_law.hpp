@@ -13,7 +13,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// What Bullet's solver is told of one contact point.
 struct PointLaw {
-  bool spring = false;     ///< stiffness and damping are to be set
+  bool spring = false;     ///< the solver is to use stiffness and damping
+  bool penalty = false;    ///< the solver is to leave the point alone
   btScalar depth = 0;      ///< to report [m]
   btScalar stiffness = 0;  ///< [N/m]
   btScalar damping = 0;    ///< [N s/m]
@@ -49,8 +50,12 @@ class ContactLaw {
   };
   OfPatch of(const std::vector<ContactPatch>& patches, std::size_t index) const;
 
+  bool penalty() const { return response_ == Response::penalty; }
+  /// Of Response::penalty [N/m^3].
+  btScalar penaltyStiffness() const { return given_stiffness_; }
+
  private:
-  bool rigid_;
+  Response response_;
   btScalar given_stiffness_;
   btScalar damping_ratio_;
   btScalar mass_;

@@ -71,6 +71,11 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
                             BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   const PointLaw& law = from.law;
+  if (law.penalty) {
+    point.m_combinedContactStiffness1 = law.stiffness;
+    point.m_combinedContactDamping1 = law.damping;
+    return;
+  }
   const bool spring = law.spring && (point.m_contactPointFlags & kUsersOwn) == 0;
   if (spring) {
     point.m_combinedContactStiffness1 = law.stiffness;
@@ -183,8 +188,8 @@ void ManifoldSet::provide(const btCollisionObject& a, const btCollisionObject& b
       btPersistentManifold* manifold = dispatcher_->getNewManifold(&a, &b);
       if (manifold == nullptr)
         return;  // the user has limited their number; Bullet's own algorithms go without, too
-      entries_.push_back(
-          {manifold, manifold->getContactBreakingThreshold(), btVector3(0, 0, 0), btVector3(0, 0, 0)});
+      entries_.push_back({manifold, manifold->getContactBreakingThreshold(),
+                          manifold->getContactProcessingThreshold(), btVector3(0, 0, 0), btVector3(0, 0, 0)});
       idle = owner_.insert(owner_.end(), -1);
     }
     *idle = static_cast<int>(p);
@@ -207,6 +212,7 @@ void ManifoldSet::write(const btCollisionObject& a, const btCollisionObject& b, 
     entry.normal = patches[p].normal * a.getWorldTransform().getBasis();
     entry.centre = patches[p].centre * a.getWorldTransform().getBasis();
     entry.manifold->setContactBreakingThreshold(btMax(entry.threshold, separation));
+    entry.manifold->setContactProcessingThreshold(law.penalty() ? -BT_LARGE_FLOAT : entry.processing);
     result->setPersistentManifold(entry.manifold);
     writePatch(a, b, origin, patches[p], law.of(patches, p), result);
   }

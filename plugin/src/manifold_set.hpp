@@ -37,8 +37,9 @@ class ManifoldSet {
  private:
   struct Entry {
     btPersistentManifold* manifold;
-    btScalar threshold;  ///< its own, at which Bullet drops contacts [m]
-    btVector3 normal;    ///< of its last patch, in the frame of a
+    btScalar threshold;   ///< its own, at which Bullet drops contacts [m]
+    btScalar processing;  ///< its own: the solver leaves points alone that are further apart [m]
+    btVector3 normal;     ///< of its last patch, in the frame of a
     btVector3 centre;
   };
   void assign(const btTransform& to_a, const std::vector<ContactPatch>& patches);

@@ -13,7 +13,7 @@ Measure::Measure(const ContactOptions& options, const PackingShape& a, const btC
                     b.getContactBreakingThreshold(gContactBreakingThreshold))),
       separation(btMax(spacing, separated)) {
   const PackingShape* packing_b = PackingShape::from(&b);
-  on_surfaces = options.stiffness == 0 && a.impl().hasSurface() &&
+  on_surfaces = options.stiffness == 0 && options.response != Response::penalty && a.impl().hasSurface() &&
                 (packing_b == nullptr || packing_b->impl().hasSurface());
   if (!on_surfaces) {
     estimator = options.estimator;

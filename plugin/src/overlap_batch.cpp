@@ -205,6 +205,7 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
     gradientPatch(contacts_, measure.spacing, reference, contact.patches);
   } else {
     volumePatches(contacts_, measure.spacing, reference, contact.patches);
+    contact.overlap = result_.overlaps[index];
   }
   contact.valid = true;
 }

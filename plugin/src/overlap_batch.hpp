@@ -44,6 +44,7 @@ struct PackingContact {
   btScalar time_step = 0;          ///< within which contacts may close [s]
   std::optional<Measure> measure;  ///< of the last query
   std::vector<ContactPatch> patches;
+  Overlap overlap;        ///< where volumes were asked for
   bool valid = false;     ///< patches belong to the transforms in a and b
   bool near = false;      ///< enlarged spheres overlap
   bool touching = false;  ///< the surfaces are near each other

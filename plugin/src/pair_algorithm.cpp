@@ -8,6 +8,7 @@
 #include "innersphere/error.hpp"
 #include "log.hpp"
 #include "manifold_set.hpp"
+#include "penalty.hpp"
 #include "surface_contact.hpp"
 #include "sweep.hpp"
 
@@ -25,8 +26,8 @@ btScalar sizeOf(const PackingShape& packing, const btCollisionShape& other) {
 }  // namespace
 
 struct PairAlgorithm::State {
-  State(btDispatcher* dispatcher, std::shared_ptr<Registration> owner, bool closest_query)
-      : registration(std::move(owner)), closest(closest_query), manifolds(dispatcher) {}
+  State(btDispatcher* d, std::shared_ptr<Registration> owner, bool closest_query)
+      : dispatcher(d), registration(std::move(owner)), closest(closest_query), manifolds(d) {}
   ~State() { forget(); }
 
   /// Contact of A, a packing, with B.
@@ -58,15 +59,34 @@ struct PairAlgorithm::State {
     surface.reset();
   }
 
+  /// Penalty forces of the last update, once a step. `origin`: of A's packing in the world.
+  void push(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
+            const ContactLaw& law, btScalar damping, const btDispatcherInfo& dispatch) {
+    const std::uint64_t step = registration->steps().of(dispatch);
+    if (step == pushed_step || !(dispatch.m_timeStep > 0)) return;
+    pushed_step = step;
+    if (!dispatcher->needsResponse(&a, &b)) return;
+    static thread_local btManifoldArray all;
+    all.resize(0);
+    manifolds.append(all);
+    const btVector3 arm =
+        packings ? packings->b.shape->impl().toWorld(packings->b.transform).getOrigin() : origin;
+    penalty = Penalty(a, b, damping, dispatch.m_timeStep)
+                  .push(packings ? packings->overlap : surface->overlap(), law.penaltyStiffness(), arm, all);
+  }
+
   /// Once for each pair: a body that is lost stays lost.
   void report(const std::string& message) {
     if (!reported) log(message);
     reported = true;
   }
 
-  std::shared_ptr<Registration> registration;
+  btDispatcher* const dispatcher;
+  const std::shared_ptr<Registration> registration;
   const bool closest;
   bool reported = false;
+  std::uint64_t pushed_step = 0;  ///< when penalty forces acted last
+  PenaltyReport penalty;
   const btCollisionShape* shape_a = nullptr;
   const btCollisionShape* shape_b = nullptr;
   std::optional<PackingContact> packings;
@@ -95,11 +115,13 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
   static const std::vector<ContactPatch> kNone;
   const std::vector<ContactPatch>* patches = &kNone;
   ContactOptions options = state_->registration->options();
+  bool updated = false;
   if (!isFinite(a->getWorldTransform()) || !isFinite(b->getWorldTransform())) {
     state_->report("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
   } else {
     try {
       patches = &state_->update(options, *a, *b, result->m_closestPointDistanceThreshold, time_step);
+      updated = true;
     } catch (const Error& error) {
       state_->report(std::string("Contacts of a pair of bodies are skipped: ") + error.what());
     }
@@ -109,6 +131,8 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
        btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) != 0) {
     options.response = Response::rigid;
   }
+  if (options.response == Response::penalty && !Penalty::applies(object_a, object_b))
+    options.response = Response::compliant;
   const ContactLaw law(options, reducedMass(object_a, object_b), dispatch.m_timeStep,
                        sizeOf(*packing, *b->getCollisionShape()));
   const btVector3 origin = packing->impl().toWorld(a->getWorldTransform()).getOrigin();
@@ -117,6 +141,8 @@ void PairAlgorithm::processCollision(const Wrapper* body0, const Wrapper* body1,
   } else {
     state_->manifolds.write(object_a, object_b, origin, *patches, law, sweepOf(object_a, object_b, time_step),
                             result);
+    if (updated && law.penalty())
+      state_->push(object_a, object_b, origin, law, btScalar(options.damping), dispatch);
   }
 }
 

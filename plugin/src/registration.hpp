@@ -10,6 +10,7 @@
 
 #include "innersphere/contact_options.hpp"
 #include "overlap_batch.hpp"
+#include "step_count.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -44,11 +45,13 @@ class Registration : public std::enable_shared_from_this<Registration> {
   void fillTables(btCollisionDispatcher* dispatcher);
 
   OverlapBatch& batch() { return batch_; }
+  StepCount& steps() { return steps_; }
 
  private:
   mutable std::mutex mutex_;
   ContactOptions options_;
   OverlapBatch batch_;
+  StepCount steps_;
   std::deque<CreateFunc> create_funcs_;
 };
 

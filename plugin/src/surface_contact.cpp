@@ -1,5 +1,6 @@
 #include "surface_contact.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -28,6 +29,39 @@ SphereContact cap(const Touch& touch, const btVector3& centre, double r) {
   contact.centroid = toFloats(centre - touch.normal * btScalar(offset));
   contact.area = toFloats(touch.normal * btScalar(-M_PI * (r * r - s * s)));
   return contact;
+}
+
+/// Potential of a cap's volume as a force along its normal: pi (r h^3 / 3 - h^4 / 12), h = r - s; beyond that
+/// the volume of the ball is constant.
+double capEnergy(double s, double r) {
+  const double h = std::min(r - s, 2 * r);
+  const double ball = 4.0 / 3.0 * M_PI * r * r * r;
+  return M_PI * (r * h * h * h / 3 - h * h * h * h / 12) + ball * std::max(0.0, -s - r);
+}
+
+Overlap sumOf(const PackingBody& a, const std::vector<Touch>& touches) {
+  Overlap sum;
+  btVector3 force(0, 0, 0), torque(0, 0, 0), area(0, 0, 0), moment(0, 0, 0);
+  for (const Touch& touch : touches) {
+    const btScalar r = a.radiusOf(touch.sphere) + a.margin;
+    if (!(touch.distance < r)) continue;
+    const btVector3 centre = a.centreOf(touch.sphere);
+    const SphereContact contact = cap(touch, centre, r);
+    const btVector3 push = touch.normal * btScalar(-contact.volume);
+    force += push;
+    torque += centre.cross(push);
+    area += toBullet(contact.area);
+    moment += toBullet(contact.centroid) * btScalar(contact.volume);
+    sum.volume += contact.volume;
+    sum.stiffness += toBullet(contact.area).length();
+    sum.energy += capEnergy(touch.distance, r);
+    ++sum.pair_count;
+  }
+  sum.force = toDoubles(force);
+  sum.torque = toDoubles(torque);
+  sum.area = toDoubles(area);
+  if (sum.volume > 0) sum.centroid = toDoubles(moment / btScalar(sum.volume));
+  return sum;
 }
 
 }  // namespace
@@ -61,6 +95,7 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
     if (contacts.empty()) return patches_;
   } else {
     caps(0);
+    overlap_ = sumOf(a, touches);
   }
   volumePatches(contacts, measure.spacing, packing.getBasis(), patches_);
   return patches_;

@@ -22,12 +22,15 @@ class SurfaceContact {
   /// A is the packing.
   const std::vector<ContactPatch>& update(const ContactOptions& options, const btTransform& packing,
                                           const btTransform& other, btScalar separation);
+  /// Of the last update, where volumes were asked for. Its torque is about the origin of the packing.
+  const Overlap& overlap() const { return overlap_; }
 
  private:
   const PackingShape& packing_;
   const btCollisionShape& other_;
   std::unique_ptr<OtherSurface> surface_;  ///< null for shapes without one
   std::vector<ContactPatch> patches_;
+  Overlap overlap_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

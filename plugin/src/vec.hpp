@@ -24,6 +24,10 @@ inline std::array<float, 3> toFloats(const btVector3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
+inline Vec3d toDoubles(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
 inline bool isFinite(const btVector3& v) {
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }

@@ -10,6 +10,11 @@ enum class Response {
   compliant,  ///< contact points with stiffness and damping: an implicit spring, stable at any stiffness and
               ///< step
   rigid,      ///< ordinary contact points: the solver removes the penetration
+  penalty,    ///< the force stiffness * sum V n over all overlapping spheres, as impulses before the solver
+              ///< runs: keeps the energy where damping and friction are 0. Explicit: a stiffness that is too
+            ///< high for the step throws bodies apart, see PairOverlap::largest_step. Contacts are reported,
+            ///< with their impulses, but the solver leaves them alone. Links of a btMultiBody, which take no
+            ///< impulses, get compliant contacts
 };
 
 /// Options of a registration; they hold for every pair of the dispatcher.
@@ -18,15 +23,21 @@ struct ContactOptions {
   Backend backend = Backend::automatic;
   /// Radii for overlap volumes, where these decide the depth of contact (see stiffness).
   Estimator estimator = Estimator::volume_true;
-  /// For Response::compliant.
-  /// 0: as stiff as the step can resolve, 64 m / dt^2 with m the reduced mass of the pair, divided among the
-  /// points that push the same way: a body that lies still sinks by 0.04 mm at 60 Hz, whatever its mass.
-  /// Depth is measured on the solids' surfaces, so bodies meet where they are drawn. Above 0: pressure that a
-  /// metre of overlap causes [N/m^3]. A contact pushes with stiffness times overlap volume, which the spheres
-  /// alone decide.
+  /// Pressure that a metre of overlap causes [N/m^3]: a contact pushes with stiffness times overlap volume,
+  /// which the spheres alone decide. 0: a default, which is for
+  ///
+  /// Response::compliant: as stiff as the step can resolve, 64 m / dt^2 with m the reduced mass of the pair,
+  /// divided among the points that push the same way: a body that lies still sinks by 0.04 mm at 60 Hz,
+  /// whatever its mass. Depth is measured on the solids' surfaces, so bodies meet where they are drawn;
+  ///
+  /// Response::penalty: m / (dt^2 pi R^2), with R the radius of the smaller body's bounding sphere, which the
+  /// step dt resolves: a body at rest sinks by g dt^2 pi R^2 / A, A the area of the contact.
+  ///
+  /// Response::rigid has no stiffness.
   double stiffness = 0;
   /// Fraction of critical damping of a contact: 0 is bouncy, 1 has no rebound from the spring itself.
-  /// Bullet's restitution works on top of it.
+  /// Bullet's restitution works on top of it; with Response::penalty a restitution above 0 sets the damping
+  /// in its place, if that is less.
   double damping = 1;
 };
 
