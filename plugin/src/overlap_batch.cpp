@@ -89,6 +89,17 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
   return contact.patches;
 }
 
+Overlap OverlapBatch::volumesOf(const PackingContact& contact) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (contact.valid && !contact.measure->on_surfaces) return contact.overlap;
+  return context().overlap(makeQuery(Pass::volumes, contact), {Want::wrench, options_.estimator});
+}
+
+QueryContext& OverlapBatch::context() {
+  if (!context_) context_ = std::make_unique<QueryContext>(QueryContextOptions{options_.backend, 0});
+  return *context_;
+}
+
 void OverlapBatch::gatherStale(PackingContact& asked) {
   stale_.assign(1, &asked);
   for (PackingContact* other : live_) {
@@ -124,8 +135,7 @@ void OverlapBatch::run(Pass pass) {
     queries_.push_back(makeQuery(pass, *contact));
   }
   if (queries_.empty()) return;
-  if (!context_) context_ = std::make_unique<QueryContext>(QueryContextOptions{options_.backend, 0});
-  context_->run(queries_.data(), queries_.size(), optionsOf(pass), result_);
+  context().run(queries_.data(), queries_.size(), optionsOf(pass), result_);
   for (std::size_t i = 0; i < queried_.size(); ++i) takeResult(pass, i, *queried_[i]);
 }
 

@@ -44,7 +44,7 @@ struct PackingContact {
   btScalar time_step = 0;          ///< within which contacts may close [s]
   std::optional<Measure> measure;  ///< of the last query
   std::vector<ContactPatch> patches;
-  Overlap overlap;        ///< where volumes were asked for
+  Overlap overlap;        ///< only where depth is not measured on the surfaces
   bool valid = false;     ///< patches belong to the transforms in a and b
   bool near = false;      ///< enlarged spheres overlap
   bool touching = false;  ///< the surfaces are near each other
@@ -68,7 +68,11 @@ class OverlapBatch {
   const std::vector<ContactPatch>& update(PackingContact& contact, const PackingSide& a, const PackingSide& b,
                                           btScalar separation);
 
+  /// What two packings share as they were in the last update of `contact`. Throws Error from the query.
+  Overlap volumesOf(const PackingContact& contact);
+
  private:
+  QueryContext& context();
   void gatherStale(PackingContact& asked);
   void runStale();
   enum class Pass {

@@ -10,6 +10,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+class PairContact;
+
 class PairAlgorithm : public btCollisionAlgorithm {
  public:
   /// `closest`: answers one closest-point query, without touching the dispatcher's manifolds.
@@ -24,8 +26,7 @@ class PairAlgorithm : public btCollisionAlgorithm {
   void getAllContactManifolds(btManifoldArray& manifolds) override;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<PairContact> contact_;
 };
 
 /// Bullet allocates algorithms from a pool whose elements have a fixed size and does not check in release

@@ -50,6 +50,7 @@ PenaltyReport Penalty::push(const Overlap& overlap, btScalar stiffness, const bt
   static thread_local std::vector<Row> rows;
   PenaltyReport report;
   report.force = toBullet(overlap.force) * stiffness;
+  report.energy = overlap.energy * stiffness;
   const btVector3 impulse = report.force * time_step_;
   const btVector3 torque = toBullet(overlap.torque) * (stiffness * time_step_);
   b_.push(impulse);
@@ -81,15 +82,15 @@ PenaltyReport Penalty::push(const Overlap& overlap, btScalar stiffness, const bt
     row.point->m_appliedImpulse = row.pushed + row.damped;
     row.point->m_lateralFrictionDir1 = row.tangent[0];
     row.point->m_lateralFrictionDir2 = row.tangent[1];
-    row.point->m_appliedImpulseLateral1 = row.rubbed.dot(row.tangent[0]);
-    row.point->m_appliedImpulseLateral2 = row.rubbed.dot(row.tangent[1]);
+    row.point->m_appliedImpulseLateral1 = -row.rubbed.dot(row.tangent[0]);  // on A, as Bullet has it
+    row.point->m_appliedImpulseLateral2 = -row.rubbed.dot(row.tangent[1]);
   }
   a_.apply();
   b_.apply();
 
   const btScalar inverse_mass = a_.largestInverseMass(reach_a) + b_.largestInverseMass(reach_b);
   const btScalar rate2 = stiffness * btScalar(overlap.stiffness) * inverse_mass;
-  report.largest_step = rate2 > 0 ? 2 / btSqrt(rate2) : BT_LARGE_FLOAT;
+  if (rate2 > 0) report.largest_step = 2 / btSqrt(rate2);
   return report;
 }
 

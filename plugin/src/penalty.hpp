@@ -16,7 +16,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// What was done to a pair of bodies in a step.
 struct PenaltyReport {
   btVector3 force{0, 0, 0};   ///< on B, without damping and friction [N]
-  btScalar largest_step = 0;  ///< a longer time step may be unstable [s]
+  double energy = 0;           ///< potential of that force [J]
+  btScalar largest_step = BT_LARGE_FLOAT;  ///< a longer time step may be unstable [s]
 };
 
 /// The force stiffness * sum V n on the lenses of an overlap has a potential. Given as an impulse F dt before

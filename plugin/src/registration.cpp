@@ -21,14 +21,34 @@ btCollisionAlgorithm* CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmC
   return new (memory) PairAlgorithm(info, registration_.shared_from_this(), closest_);
 }
 
-std::shared_ptr<Registration> Registration::of(btCollisionDispatcher* dispatcher) {
-  static std::mutex mutex;
+namespace {
+
+struct Registrations {
+  std::mutex mutex;
+  std::map<btCollisionDispatcher*, std::shared_ptr<Registration>> of;
+};
+
+Registrations& registrations() {
   // Never destroyed: worlds in static storage may outlive it otherwise.
-  static auto& registrations = *new std::map<btCollisionDispatcher*, std::shared_ptr<Registration>>;
-  const std::lock_guard<std::mutex> lock(mutex);
-  std::shared_ptr<Registration>& registration = registrations[dispatcher];
+  static Registrations& all = *new Registrations;
+  return all;
+}
+
+}  // namespace
+
+std::shared_ptr<Registration> Registration::of(btCollisionDispatcher* dispatcher) {
+  Registrations& all = registrations();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  std::shared_ptr<Registration>& registration = all.of[dispatcher];
   if (!registration) registration = std::make_shared<Registration>();
   return registration;
+}
+
+std::shared_ptr<Registration> Registration::find(btCollisionDispatcher* dispatcher) {
+  Registrations& all = registrations();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  const auto found = all.of.find(dispatcher);
+  return found == all.of.end() ? nullptr : found->second;
 }
 
 void Registration::setOptions(const ContactOptions& options) {

@@ -9,6 +9,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include "innersphere/contact_options.hpp"
+#include "live_pairs.hpp"
 #include "overlap_batch.hpp"
 #include "step_count.hpp"
 
@@ -37,6 +38,8 @@ class Registration : public std::enable_shared_from_this<Registration> {
   /// The registration of a dispatcher, made on first use and kept to the end of the process: a dispatcher
   /// does not tell when it goes, and its table refers to our functions until then.
   static std::shared_ptr<Registration> of(btCollisionDispatcher* dispatcher);
+  /// The same, or null if there is none.
+  static std::shared_ptr<Registration> find(btCollisionDispatcher* dispatcher);
 
   void setOptions(const ContactOptions& options);
   ContactOptions options() const;
@@ -46,12 +49,14 @@ class Registration : public std::enable_shared_from_this<Registration> {
 
   OverlapBatch& batch() { return batch_; }
   StepCount& steps() { return steps_; }
+  LivePairs& pairs() { return pairs_; }
 
  private:
   mutable std::mutex mutex_;
   ContactOptions options_;
   OverlapBatch batch_;
   StepCount steps_;
+  LivePairs pairs_;
   std::deque<CreateFunc> create_funcs_;
 };
 

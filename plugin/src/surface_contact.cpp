@@ -74,6 +74,7 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
                                                         btScalar separation) {
   static thread_local std::vector<Touch> touches;
   static thread_local std::vector<SphereContact> contacts;
+  overlap_.reset();
   if (!surface_) return patches_;
   const Measure measure(options, packing_, other_, separation);
   const PackingBody a(packing_, packing, measure.estimator, measure.slack_a);
@@ -99,6 +100,16 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
   }
   volumePatches(contacts, measure.spacing, packing.getBasis(), patches_);
   return patches_;
+}
+
+const Overlap& SurfaceContact::volumesOf(const ContactOptions& options, const btTransform& packing,
+                                         const btTransform& other) {
+  static thread_local std::vector<Touch> touches;
+  if (overlap_) return *overlap_;
+  const PackingBody a(packing_, packing, options.estimator, 0);
+  touches.clear();
+  if (surface_) surface_->touch(a, other, touches);
+  return overlap_.emplace(sumOf(a, touches));
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -22,15 +23,16 @@ class SurfaceContact {
   /// A is the packing.
   const std::vector<ContactPatch>& update(const ContactOptions& options, const btTransform& packing,
                                           const btTransform& other, btScalar separation);
-  /// Of the last update, where volumes were asked for. Its torque is about the origin of the packing.
-  const Overlap& overlap() const { return overlap_; }
+  /// What both share, at the places of the last update. Its torque is about the origin of the packing.
+  const Overlap& volumesOf(const ContactOptions& options, const btTransform& packing,
+                           const btTransform& other);
 
  private:
   const PackingShape& packing_;
   const btCollisionShape& other_;
   std::unique_ptr<OtherSurface> surface_;  ///< null for shapes without one
   std::vector<ContactPatch> patches_;
-  Overlap overlap_;
+  std::optional<Overlap> overlap_;  ///< once it was asked for
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,0 +1,185 @@
+#include "pair_contact.hpp"
+
+#include <utility>
+
+#include "innersphere/error.hpp"
+#include "log.hpp"
+#include "sweep.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+btScalar sizeOf(const btCollisionShape& packing, const btCollisionShape& other) {
+  const btScalar size = packing.getAngularMotionDisc();
+  return other.isInfinite() ? size : btMin(size, other.getAngularMotionDisc());
+}
+
+bool hasLawOfItsOwn(const btCollisionObject& object) {
+  return (object.getCollisionFlags() & btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) != 0;
+}
+
+btScalar deepest(const std::vector<ContactPatch>& patches) {
+  btScalar depth = -BT_LARGE_FLOAT;
+  for (const ContactPatch& patch : patches) {
+    for (int i = 0; i < patch.count; ++i) depth = btMax(depth, patch.points[i].depth);
+  }
+  return depth;
+}
+
+/// On B.
+btVector3 impulseOf(const btManifoldPoint& point) {
+  return -(point.m_normalWorldOnB * point.m_appliedImpulse +
+           point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
+           point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2);
+}
+
+}  // namespace
+
+PairContact::PairContact(btDispatcher* dispatcher, std::shared_ptr<Registration> registration, bool closest)
+    : dispatcher_(dispatcher),
+      registration_(std::move(registration)),
+      closest_(closest),
+      manifolds_(dispatcher) {
+  if (!closest_) registration_->pairs().add(this);
+}
+
+PairContact::~PairContact() {
+  if (!closest_) registration_->pairs().remove(this);
+  forget();
+}
+
+void PairContact::process(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+                          const btDispatcherInfo& dispatch, btManifoldResult* result) {
+  static const std::vector<ContactPatch> kNone;
+  const std::vector<ContactPatch>* patches = &kNone;
+  time_step_ = closest_ ? btScalar(0) : dispatch.m_timeStep;
+  options_ = registration_->options();
+  if (a.getCollisionShape() != shape_a_ || b.getCollisionShape() != shape_b_) forget();
+  object_a_ = a.getCollisionObject();
+  object_b_ = b.getCollisionObject();
+  shape_a_ = a.getCollisionShape();
+  shape_b_ = b.getCollisionShape();
+  transform_a_ = a.getWorldTransform();
+  transform_b_ = b.getWorldTransform();
+  if (!isFinite(transform_a_) || !isFinite(transform_b_)) {
+    report("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
+  } else {
+    try {
+      patches = &update(a, b, result->m_closestPointDistanceThreshold);
+    } catch (const Error& error) {
+      report(std::string("Contacts of a pair of bodies are skipped: ") + error.what());
+    }
+  }
+  depth_ = deepest(*patches);
+  if (closest_) {
+    ManifoldSet::report(*object_a_, *object_b_, origin(), *patches, result);
+    return;
+  }
+  const ContactLaw law = lawOf(dispatch.m_timeStep);
+  manifolds_.write(*object_a_, *object_b_, origin(), *patches, law,
+                   sweepOf(*object_a_, *object_b_, time_step_), result);
+  penalty_ = PenaltyReport();
+  if (law.penalty() && patches != &kNone) push(law, dispatch);
+}
+
+const std::vector<ContactPatch>& PairContact::update(const btCollisionObjectWrapper& a,
+                                                     const btCollisionObjectWrapper& b, btScalar separation) {
+  const PackingShape& packing = *PackingShape::from(shape_a_);
+  if (const PackingShape* other = PackingShape::from(shape_b_)) {
+    const PackingSide side_a(a, packing), side_b(b, *other);
+    if (!packings_) {
+      packings_.emplace(side_a, side_b);
+      if (!closest_) registration_->batch().add(&*packings_);
+    }
+    packings_->time_step = time_step_;
+    return registration_->batch().update(*packings_, side_a, side_b, separation);
+  }
+  if (!surface_) surface_.emplace(packing, *shape_b_);
+  return surface_->update(options_, transform_a_, transform_b_,
+                          btMax(separation, sweepOf(*object_a_, *object_b_, time_step_)));
+}
+
+ContactLaw PairContact::lawOf(btScalar time_step) const {
+  ContactOptions options = options_;
+  // A law of the user's own on a body takes the place of ours.
+  if (hasLawOfItsOwn(*object_a_) || hasLawOfItsOwn(*object_b_)) options.response = Response::rigid;
+  if (options.response == Response::penalty && !Penalty::applies(*object_a_, *object_b_))
+    options.response = Response::compliant;
+  return ContactLaw(options, reducedMass(*object_a_, *object_b_), time_step, sizeOf(*shape_a_, *shape_b_));
+}
+
+void PairContact::push(const ContactLaw& law, const btDispatcherInfo& dispatch) {
+  static thread_local btManifoldArray manifolds;
+  const std::uint64_t step = registration_->steps().of(dispatch);
+  if (step == pushed_step_ || !(dispatch.m_timeStep > 0)) return;
+  pushed_step_ = step;
+  if (!dispatcher_->needsResponse(object_a_, object_b_)) return;
+  manifolds.resize(0);
+  manifolds_.append(manifolds);
+  penalty_ = Penalty(*object_a_, *object_b_, btScalar(options_.damping), dispatch.m_timeStep)
+                 .push(overlap(), law.penaltyStiffness(), arm(), manifolds);
+}
+
+bool PairContact::read(PairOverlap& pair) {
+  static thread_local btManifoldArray manifolds;
+  manifolds.resize(0);
+  manifolds_.append(manifolds);
+  int count = 0;
+  btVector3 middle(0, 0, 0);
+  pair = PairOverlap();
+  pair.depth = depth_;
+  const auto forEachPoint = [&](const auto& visit) {
+    for (int m = 0; m < manifolds.size(); ++m) {
+      for (int i = 0; i < manifolds[m]->getNumContacts(); ++i) visit(manifolds[m]->getContactPoint(i));
+    }
+  };
+  const btScalar rate = time_step_ > 0 ? 1 / time_step_ : btScalar(0);
+  forEachPoint([&](const btManifoldPoint& point) {
+    ++count;
+    middle += point.getPositionWorldOnB();
+    pair.force += impulseOf(point) * rate;
+  });
+  if (count == 0) return false;
+  pair.a = object_a_;
+  pair.b = object_b_;
+  const Overlap shared = overlap();
+  pair.volume = shared.volume;
+  pair.area = toBullet(shared.area);
+  pair.centroid = shared.volume > 0 ? origin() + toBullet(shared.centroid) : middle / btScalar(count);
+  forEachPoint([&](const btManifoldPoint& point) {
+    pair.torque += (point.getPositionWorldOnB() - pair.centroid).cross(impulseOf(point) * rate);
+  });
+  pair.penalty_force = penalty_.force;
+  pair.penalty_energy = penalty_.energy;
+  pair.largest_step = penalty_.largest_step;
+  return true;
+}
+
+Overlap PairContact::overlap() {
+  return packings_ ? registration_->batch().volumesOf(*packings_)
+                   : surface_->volumesOf(options_, transform_a_, transform_b_);
+}
+
+btVector3 PairContact::origin() const {
+  return PackingShape::from(shape_a_)->impl().toWorld(transform_a_).getOrigin();
+}
+
+btVector3 PairContact::arm() const {
+  return packings_ ? PackingShape::from(shape_b_)->impl().toWorld(transform_b_).getOrigin() : origin();
+}
+
+void PairContact::forget() {
+  if (packings_ && !closest_) registration_->batch().remove(&*packings_);
+  packings_.reset();
+  surface_.reset();
+}
+
+/// Once for each pair: a body that is lost stays lost.
+void PairContact::report(const std::string& message) {
+  if (!reported_) log(message);
+  reported_ = true;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,72 @@
+// What a pair of bodies with a packing in it remembers from step to step.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
+#include "innersphere/pair_overlaps.hpp"
+#include "manifold_set.hpp"
+#include "overlap_batch.hpp"
+#include "penalty.hpp"
+#include "registration.hpp"
+#include "surface_contact.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// A is the body with the packing, or the first of two packings.
+class PairContact {
+ public:
+  /// `closest`: for one closest-point query, without touching the dispatcher's manifolds.
+  PairContact(btDispatcher* dispatcher, std::shared_ptr<Registration> registration, bool closest);
+  ~PairContact();
+  PairContact(const PairContact&) = delete;
+  PairContact& operator=(const PairContact&) = delete;
+
+  void process(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+               const btDispatcherInfo& dispatch, btManifoldResult* result);
+
+  void appendManifolds(btManifoldArray& manifolds) const { manifolds_.append(manifolds); }
+
+  /// As of the last call of process(), with the impulses that the solver found since then. False if nothing
+  /// touches.
+  bool read(PairOverlap& overlap);
+
+ private:
+  const std::vector<ContactPatch>& update(const btCollisionObjectWrapper& a,
+                                          const btCollisionObjectWrapper& b, btScalar separation);
+  ContactLaw lawOf(btScalar time_step) const;
+  void push(const ContactLaw& law, const btDispatcherInfo& dispatch);
+  Overlap overlap();
+  /// Of A's packing in the world, and where the torque of overlap() acts.
+  btVector3 origin() const;
+  btVector3 arm() const;
+  void forget();
+  void report(const std::string& message);
+
+  btDispatcher* const dispatcher_;
+  const std::shared_ptr<Registration> registration_;
+  const bool closest_;
+  bool reported_ = false;
+  ContactOptions options_;  ///< of the last call
+  const btCollisionObject* object_a_ = nullptr;
+  const btCollisionObject* object_b_ = nullptr;
+  const btCollisionShape* shape_a_ = nullptr;
+  const btCollisionShape* shape_b_ = nullptr;
+  btTransform transform_a_;
+  btTransform transform_b_;
+  btScalar time_step_ = 0;         ///< of the last step [s]
+  btScalar depth_ = 0;             ///< of the deepest contact; negative: of the gap [m]
+  std::uint64_t pushed_step_ = 0;  ///< when penalty forces acted last
+  PenaltyReport penalty_;
+  std::optional<PackingContact> packings_;
+  std::optional<SurfaceContact> surface_;
+  ManifoldSet manifolds_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
