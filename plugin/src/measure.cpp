@@ -2,8 +2,6 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
-#include "packing_shape_impl.hpp"
-
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
@@ -15,12 +13,16 @@ Measure::Measure(const ContactOptions& options, const PackingShape& a, const btC
   const PackingShape* packing_b = PackingShape::from(&b);
   on_surfaces = options.stiffness == 0 && options.response != Response::penalty && a.impl().hasSurface() &&
                 (packing_b == nullptr || packing_b->impl().hasSurface());
+  // The gaps of both bodies add up.
+  const btScalar accuracy = btScalar(options.accuracy) / (packing_b == nullptr ? 1 : 2);
+  prefix_a = &a.impl().prefixFor(accuracy);
+  if (packing_b != nullptr) prefix_b = &packing_b->impl().prefixFor(accuracy);
   if (!on_surfaces) {
     estimator = options.estimator;
     return;
   }
-  slack_a = separation + a.impl().recess() * a.getLocalScaling().x();
-  if (packing_b != nullptr) slack_b = packing_b->impl().recess() * b.getLocalScaling().x();
+  slack_a = separation + prefix_a->recess() * a.getLocalScaling().x();
+  if (packing_b != nullptr) slack_b = prefix_b->recess() * b.getLocalScaling().x();
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "innersphere/contact_options.hpp"
-#include "innersphere/packing_shape.hpp"
+#include "packing_shape_impl.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -23,6 +23,8 @@ struct Measure {
   btScalar separation;
   btScalar slack_a = 0;  ///< how far beyond their radii spheres look for contacts [m]
   btScalar slack_b = 0;
+  const Prefix* prefix_a;            ///< spheres to use
+  const Prefix* prefix_b = nullptr;  ///< null if B is no packing
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

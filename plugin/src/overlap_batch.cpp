@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include "innersphere/error.hpp"
 #include "measure.hpp"
@@ -23,9 +24,8 @@ bool same(const btTransform& a, const btTransform& b) {
 }
 
 /// By how much spheres without volume-true radii are enlarged to fill their solid [m].
-btScalar gapsOf(const PackingShape& shape) {
-  return shape.impl().volume_true == nullptr ? shape.impl().recess() * shape.getLocalScaling().x()
-                                             : btScalar(0);
+btScalar gapsOf(const PackingShape& shape, const Prefix& prefix) {
+  return prefix.volume_true == nullptr ? prefix.recess() * shape.getLocalScaling().x() : btScalar(0);
 }
 
 }  // namespace
@@ -36,18 +36,36 @@ PackingSide::PackingSide(const btCollisionObjectWrapper& wrapper, const PackingS
       transform(wrapper.getWorldTransform()),
       scaling(packing_shape.getLocalScaling()),
       margin(packing_shape.getMargin()),
-      child(wrapper.m_parent != nullptr) {}
+      prefix(packing_shape.impl().prefix) {
+  for (const btCollisionObjectWrapper* w = &wrapper; w->m_parent != nullptr; w = w->m_parent) {
+    if (nesting == kMaxNesting) {
+      nesting = -1;
+      return;
+    }
+    child_of[nesting++] = w->m_index;
+  }
+}
 
 bool PackingSide::operator==(const PackingSide& other) const {
-  return object == other.object && shape == other.shape && margin == other.margin &&
+  return object == other.object && shape == other.shape && margin == other.margin && prefix == other.prefix &&
          same(scaling, other.scaling) && same(transform, other.transform);
 }
 
 bool PackingSide::refresh() {
-  if (child || object->getCollisionShape() != shape) return false;
+  if (nesting < 0) return false;
+  const btCollisionShape* at = object->getCollisionShape();
   transform = object->getWorldTransform();
+  for (int level = nesting - 1; level >= 0; --level) {
+    if (!at->isCompound()) return false;
+    const auto& compound = static_cast<const btCompoundShape&>(*at);
+    if (child_of[level] < 0 || child_of[level] >= compound.getNumChildShapes()) return false;
+    transform = transform * compound.getChildTransform(child_of[level]);
+    at = compound.getChildShape(child_of[level]);
+  }
+  if (at != shape) return false;
   scaling = shape->getLocalScaling();
   margin = shape->getMargin();
+  prefix = shape->impl().prefix;
   return isFinite(transform);
 }
 
@@ -71,11 +89,13 @@ void OverlapBatch::remove(PackingContact* contact) {
 const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, const PackingSide& a,
                                                       const PackingSide& b, btScalar separation) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!contact.valid || !(contact.a == a) || !(contact.b == b) || contact.separation != separation) {
+  if (contact.separation != separation) contact.valid = false;
+  contact.separation = separation;
+  if (isStale(contact, a, b)) {
     contact.a = a;
     contact.b = b;
-    contact.separation = separation;
-    gatherStale(contact);
+    stale_.assign(1, &contact);
+    gatherStale(&contact);
     try {
       runStale();
     } catch (const Error&) {
@@ -100,15 +120,37 @@ QueryContext& OverlapBatch::context() {
   return *context_;
 }
 
-void OverlapBatch::gatherStale(PackingContact& asked) {
-  stale_.assign(1, &asked);
+void OverlapBatch::launch(const std::vector<PackingContact*>& fresh) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (PackingContact* contact : fresh) contact->wanted = true;
+  stale_.clear();
+  gatherStale(nullptr);
+  try {
+    runStale();
+  } catch (const Error&) {
+    // runStale() has left all of them invalid, so that each is queried again when it is asked for.
+  }
+}
+
+BatchCount OverlapBatch::count() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return count_;
+}
+
+/// Also if the bodies have become faster: contacts are wanted from further away then.
+bool OverlapBatch::isStale(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const {
+  return !contact.valid || !(contact.a == a) || !(contact.b == b) ||
+         measureOf(contact).separation > contact.measure->separation;
+}
+
+/// Appends all pairs but `asked`.
+void OverlapBatch::gatherStale(const PackingContact* asked) {
   for (PackingContact* other : live_) {
-    if (other == &asked || !other->wanted) continue;
+    if (other == asked || !other->wanted) continue;
     other->wanted = false;
     if (!other->a.object->isActive() && !other->b.object->isActive()) continue;
     PackingSide a = other->a, b = other->b;
-    if (!a.refresh() || !b.refresh()) continue;
-    if (other->valid && other->a == a && other->b == b) continue;
+    if (!a.refresh() || !b.refresh() || !isStale(*other, a, b)) continue;
     other->a = a;
     other->b = b;
     stale_.push_back(other);
@@ -116,6 +158,9 @@ void OverlapBatch::gatherStale(PackingContact& asked) {
 }
 
 void OverlapBatch::runStale() {
+  if (stale_.empty()) return;
+  ++count_.launches;
+  count_.pairs += stale_.size();
   for (PackingContact* contact : stale_) {
     contact->valid = false;
     contact->measure.emplace(measureOf(*contact));
@@ -172,14 +217,19 @@ Measure OverlapBatch::measureOf(const PackingContact& contact) const {
 }
 
 PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) const {
+  const Measure& measure = *contact.measure;
   PairQuery query;
   query.a = &contact.a.shape->model();
   query.b = &contact.b.shape->model();
   query.placement_a = PackingBody(*contact.a.shape, contact.a.transform, Estimator::raw, 0).placement();
   query.placement_b = PackingBody(*contact.b.shape, contact.b.transform, Estimator::raw, 0).placement();
   query.margin = contact.a.margin + contact.b.margin;
-  if (pass == Pass::surfaces) query.margin += contact.measure->slack();
-  if (pass == Pass::deep) query.margin += gapsOf(*contact.a.shape) + gapsOf(*contact.b.shape);
+  query.prefix_a = static_cast<std::uint32_t>(measure.prefix_a->count);
+  query.prefix_b = static_cast<std::uint32_t>(measure.prefix_b->count);
+  if (pass == Pass::surfaces) query.margin += measure.slack();
+  if (pass == Pass::deep) {
+    query.margin += gapsOf(*contact.a.shape, *measure.prefix_a) + gapsOf(*contact.b.shape, *measure.prefix_b);
+  }
   return query;
 }
 
@@ -205,8 +255,10 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
   const Measure& measure = *contact.measure;
   const btMatrix3x3& reference = contact.a.transform.getBasis();
   if (pass == Pass::surfaces) {
-    const PackingBody a(*contact.a.shape, contact.a.transform, Estimator::raw, measure.slack_a);
-    const PackingBody b(*contact.b.shape, contact.b.transform, Estimator::raw, measure.slack_b);
+    const PackingBody a(*contact.a.shape, contact.a.transform, Estimator::raw, measure.slack_a,
+                        measure.prefix_a);
+    const PackingBody b(*contact.b.shape, contact.b.transform, Estimator::raw, measure.slack_b,
+                        measure.prefix_b);
     const PackingGauge gauge(a, b, contacts_, count_a);
     contact.near = !contacts_.empty();
     contact.touching = measurePatches(contacts_, gauge, measure, reference, contact.patches);

@@ -1,6 +1,7 @@
 // All pairs of packings of one dispatcher, queried together.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -22,16 +23,20 @@ struct PackingSide {
   PackingSide(const btCollisionObjectWrapper& wrapper, const PackingShape& packing_shape);
 
   bool operator==(const PackingSide& other) const;
-  /// To where the body is now. False if that cannot be known: a child of a compound, a changed shape, a body
-  /// at NaN.
+  /// To where the body is now. False if that cannot be known: a changed shape, a body at NaN, a compound of
+  /// compounds of compounds ...
   bool refresh();
+
+  static constexpr int kMaxNesting = 4;
 
   const btCollisionObject* object;
   const PackingShape* shape;
   btTransform transform;
   btVector3 scaling;
   btScalar margin;
-  bool child;  ///< of a compound shape
+  const Prefix* prefix;
+  int nesting = 0;                          ///< in how many compounds, -1 if too many
+  std::array<int, kMaxNesting> child_of{};  ///< which child of them, innermost first
 };
 
 /// The contact of two packings, kept until one of them moves.
@@ -52,9 +57,16 @@ struct PackingContact {
   bool wanted = false;    ///< asked for since the last batch
 };
 
+/// What a batch has done since it was made.
+struct BatchCount {
+  std::size_t launches = 0;  ///< of queries for all pairs that were out of date
+  std::size_t pairs = 0;     ///< that were in them
+};
+
 /// Bullet asks for one pair at a time. The first one that is out of date makes one query for all pairs that
-/// were asked for lately and have moved, so that a step costs about one launch. Safe to use from several
-/// threads at once.
+/// were asked for lately and have moved, so that a step costs one launch, and one more for each pair that is
+/// new. A launch is up to three queries, one after the other: see Pass. Safe to use from several threads at
+/// once.
 class OverlapBatch {
  public:
   /// Error no_device if the options ask for CUDA by name and there is none.
@@ -71,9 +83,16 @@ class OverlapBatch {
   /// What two packings share as they were in the last update of `contact`. Throws Error from the query.
   Overlap volumesOf(const PackingContact& contact);
 
+  /// Queries all pairs now that are out of date and will be asked for: those that were in the step before,
+  /// and `fresh` ones. Errors wait until update() asks for the pair.
+  void launch(const std::vector<PackingContact*>& fresh);
+
+  BatchCount count() const;
+
  private:
   QueryContext& context();
-  void gatherStale(PackingContact& asked);
+  bool isStale(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
+  void gatherStale(const PackingContact* asked);
   void runStale();
   enum class Pass {
     surfaces,  ///< spheres enlarged so that they find all contact of the surfaces that they stand for
@@ -88,7 +107,8 @@ class OverlapBatch {
   PairQuery makeQuery(Pass pass, const PackingContact& contact) const;
   void takeResult(Pass pass, std::size_t index, PackingContact& contact);
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
+  BatchCount count_;
   ContactOptions options_;
   std::unique_ptr<QueryContext> context_;  ///< made by the first query
   std::vector<PackingContact*> live_;

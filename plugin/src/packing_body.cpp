@@ -4,13 +4,17 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 PackingBody::PackingBody(const PackingShape& packing_shape, const btTransform& body, Estimator estimator,
-                         btScalar search_slack)
+                         btScalar search_slack, const Prefix* spheres)
     : impl(&packing_shape.impl()),
+      prefix(spheres != nullptr ? spheres : impl->prefix),
       world(impl->toWorld(body)),
-      radii(estimator == Estimator::volume_true ? impl->volume_true : nullptr),
       margin(packing_shape.getMargin()),
-      slack(search_slack),
-      excess(radii != nullptr ? impl->largest_bulge * impl->scaling.x() : btScalar(0)) {}
+      slack(search_slack) {
+  if (estimator != Estimator::volume_true || prefix->volume_true == nullptr) return;
+  prefix = &impl->solid->prefix(prefix->volume_true->count);
+  radii = prefix->volume_true->radii.data();
+  excess = prefix->largest_bulge * scale();
+}
 
 Placement PackingBody::placement() const {
   Placement p;

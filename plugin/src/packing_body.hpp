@@ -10,12 +10,15 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 struct PackingBody {
-  /// `slack` [m]: how far beyond its radius and the shape's margin a sphere looks for contacts.
-  PackingBody(const PackingShape& packing_shape, const btTransform& body, Estimator estimator,
-              btScalar slack);
+  /// `slack` [m]: how far beyond its radius and the shape's margin a sphere looks for contacts. `prefix`: the
+  /// spheres to use, null for those the shape uses; with Estimator::volume_true as many of them as there are
+  /// such radii for.
+  PackingBody(const PackingShape& packing_shape, const btTransform& body, Estimator estimator, btScalar slack,
+              const Prefix* prefix = nullptr);
 
   const PackingShape::Impl& shape() const { return *impl; }
-  std::size_t count() const { return impl->packing().spheres.size(); }
+  std::size_t count() const { return prefix->count; }
+  const SphereTree& sphereTree() const { return prefix->tree(); }
   btScalar scale() const { return impl->scaling.x(); }
   const btVector3& origin() const { return world.getOrigin(); }
 
@@ -37,9 +40,10 @@ struct PackingBody {
   Placement placement() const;
 
   const PackingShape::Impl* impl;
-  btTransform world;   ///< from the packing's frame, scaled, to the world
-  const float* radii;  ///< volume-true radii, or null for the spheres' own
-  btScalar margin;     ///< of the shape: the solid is this much larger on all sides [m]
+  const Prefix* prefix;
+  btTransform world;             ///< from the packing's frame, scaled, to the world
+  const float* radii = nullptr;  ///< volume-true radii, or null for the spheres' own
+  btScalar margin;               ///< of the shape: the solid is this much larger on all sides [m]
   btScalar slack;
   btScalar excess = 0;  ///< largest volume-true radius minus own radius [m]
 };

@@ -8,6 +8,7 @@
 
 #include "innersphere/error.hpp"
 #include "pair_algorithm.hpp"
+#include "unregistered.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -25,6 +26,10 @@ void check(const btCollisionDispatcher* dispatcher, const ContactOptions& option
   if (!(std::isfinite(options.damping) && options.damping >= 0)) {
     throw Error(ErrorCode::bad_argument, "ContactOptions::damping is " + std::to_string(options.damping) +
                                              "; it must be a fraction of critical damping, 0 or more.");
+  }
+  if (!(std::isfinite(options.accuracy) && options.accuracy >= 0)) {
+    throw Error(ErrorCode::bad_argument, "ContactOptions::accuracy is " + std::to_string(options.accuracy) +
+                                             "; it must be 0 (all spheres) or a positive number of metres.");
   }
   if (options.backend == Backend::cuda && !cudaAvailable()) {
     throw Error(ErrorCode::no_device,
@@ -47,6 +52,7 @@ void PackingCollisionAlgorithm::registerAlgorithm(btCollisionDispatcher* dispatc
   }
   const std::shared_ptr<Registration> registration = Registration::of(dispatcher);
   registration->setOptions(options);
+  noticeRegistration();
   registration->fillTables(dispatcher);
 }
 

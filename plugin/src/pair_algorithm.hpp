@@ -25,6 +25,8 @@ class PairAlgorithm : public btCollisionAlgorithm {
                                  const btDispatcherInfo& dispatch, btManifoldResult* result) override;
   void getAllContactManifolds(btManifoldArray& manifolds) override;
 
+  PairContact& contact() { return *contact_; }
+
  private:
   std::unique_ptr<PairContact> contact_;
 };

@@ -53,15 +53,7 @@ void PairContact::process(const btCollisionObjectWrapper& a, const btCollisionOb
                           const btDispatcherInfo& dispatch, btManifoldResult* result) {
   static const std::vector<ContactPatch> kNone;
   const std::vector<ContactPatch>* patches = &kNone;
-  time_step_ = closest_ ? btScalar(0) : dispatch.m_timeStep;
-  options_ = registration_->options();
-  if (a.getCollisionShape() != shape_a_ || b.getCollisionShape() != shape_b_) forget();
-  object_a_ = a.getCollisionObject();
-  object_b_ = b.getCollisionObject();
-  shape_a_ = a.getCollisionShape();
-  shape_b_ = b.getCollisionShape();
-  transform_a_ = a.getWorldTransform();
-  transform_b_ = b.getWorldTransform();
+  look(a, b, closest_ ? btScalar(0) : dispatch.m_timeStep);
   if (!isFinite(transform_a_) || !isFinite(transform_b_)) {
     report("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
   } else {
@@ -83,16 +75,46 @@ void PairContact::process(const btCollisionObjectWrapper& a, const btCollisionOb
   if (law.penalty() && patches != &kNone) push(law, dispatch);
 }
 
+PackingContact* PairContact::announce(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+                                      btScalar time_step) {
+  const PackingShape* packing_a = PackingShape::from(a.getCollisionShape());
+  const PackingShape* packing_b = PackingShape::from(b.getCollisionShape());
+  if (packing_a == nullptr || packing_b == nullptr) return nullptr;
+  look(a, b, time_step);
+  return provide(PackingSide(a, *packing_a), PackingSide(b, *packing_b)) ? &*packings_ : nullptr;
+}
+
+void PairContact::look(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+                       btScalar time_step) {
+  time_step_ = time_step;
+  options_ = registration_->options();
+  // What was known of the pair holds only as long as it has the same shapes.
+  if (a.getCollisionShape() != shape_a_ || b.getCollisionShape() != shape_b_) forget();
+  object_a_ = a.getCollisionObject();
+  object_b_ = b.getCollisionObject();
+  shape_a_ = a.getCollisionShape();
+  shape_b_ = b.getCollisionShape();
+  transform_a_ = a.getWorldTransform();
+  transform_b_ = b.getWorldTransform();
+}
+
+/// True if the pair was not known to the batch.
+bool PairContact::provide(const PackingSide& a, const PackingSide& b) {
+  const bool fresh = !packings_;
+  if (fresh) {
+    packings_.emplace(a, b);
+    if (!closest_) registration_->batch().add(&*packings_);
+  }
+  packings_->time_step = time_step_;
+  return fresh;
+}
+
 const std::vector<ContactPatch>& PairContact::update(const btCollisionObjectWrapper& a,
                                                      const btCollisionObjectWrapper& b, btScalar separation) {
   const PackingShape& packing = *PackingShape::from(shape_a_);
   if (const PackingShape* other = PackingShape::from(shape_b_)) {
     const PackingSide side_a(a, packing), side_b(b, *other);
-    if (!packings_) {
-      packings_.emplace(side_a, side_b);
-      if (!closest_) registration_->batch().add(&*packings_);
-    }
-    packings_->time_step = time_step_;
+    provide(side_a, side_b);
     return registration_->batch().update(*packings_, side_a, side_b, separation);
   }
   if (!surface_) surface_.emplace(packing, *shape_b_);

@@ -30,6 +30,11 @@ class PairContact {
   void process(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
                const btDispatcherInfo& dispatch, btManifoldResult* result);
 
+  /// Tells the batch of a pair before it is processed. Returns it if it is one of packings that the batch did
+  /// not know.
+  PackingContact* announce(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+                           btScalar time_step);
+
   void appendManifolds(btManifoldArray& manifolds) const { manifolds_.append(manifolds); }
 
   /// As of the last call of process(), with the impulses that the solver found since then. False if nothing
@@ -39,6 +44,8 @@ class PairContact {
  private:
   const std::vector<ContactPatch>& update(const btCollisionObjectWrapper& a,
                                           const btCollisionObjectWrapper& b, btScalar separation);
+  void look(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btScalar time_step);
+  bool provide(const PackingSide& a, const PackingSide& b);
   ContactLaw lawOf(btScalar time_step) const;
   void push(const ContactLaw& law, const btDispatcherInfo& dispatch);
   Overlap overlap();

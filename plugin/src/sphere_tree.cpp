@@ -5,8 +5,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-SphereTree::SphereTree(const std::vector<Sphere>& spheres) {
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
+SphereTree::SphereTree(const std::vector<Sphere>& spheres, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
     btDbvtNode* leaf =
         tree_.insert(btDbvtVolume::FromCR(centre(spheres[i]), btScalar(spheres[i].radius)), nullptr);
     leaf->dataAsInt = static_cast<int>(i);

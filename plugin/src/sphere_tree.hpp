@@ -16,7 +16,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// several threads at once.
 class SphereTree {
  public:
-  explicit SphereTree(const std::vector<Sphere>& spheres);
+  /// Of the first `count` spheres.
+  SphereTree(const std::vector<Sphere>& spheres, std::size_t count);
   SphereTree(const SphereTree&) = delete;
   SphereTree& operator=(const SphereTree&) = delete;
 

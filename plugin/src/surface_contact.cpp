@@ -77,7 +77,7 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
   overlap_.reset();
   if (!surface_) return patches_;
   const Measure measure(options, packing_, other_, separation);
-  const PackingBody a(packing_, packing, measure.estimator, measure.slack_a);
+  const PackingBody a(packing_, packing, measure.estimator, measure.slack_a, measure.prefix_a);
   touches.clear();
   surface_->touch(a, other, touches);
   const auto caps = [&](btScalar slack) {
@@ -106,7 +106,8 @@ const Overlap& SurfaceContact::volumesOf(const ContactOptions& options, const bt
                                          const btTransform& other) {
   static thread_local std::vector<Touch> touches;
   if (overlap_) return *overlap_;
-  const PackingBody a(packing_, packing, options.estimator, 0);
+  const PackingBody a(packing_, packing, options.estimator, 0,
+                      Measure(options, packing_, other_, 0).prefix_a);
   touches.clear();
   if (surface_) surface_->touch(a, other, touches);
   return overlap_.emplace(sumOf(a, touches));

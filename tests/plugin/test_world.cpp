@@ -3,10 +3,36 @@
 #include <algorithm>
 #include <cmath>
 
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
+#include <LinearMath/btThreads.h>
+
+#include "innersphere/batched_dispatcher.hpp"
+
 namespace innersphere::test {
 
-TestWorld::TestWorld(const ContactOptions& options)
-    : dispatcher(&configuration), world(&dispatcher, &broadphase, &solver, &configuration) {
+namespace {
+
+std::unique_ptr<btCollisionDispatcher> makeDispatcher(DispatcherKind kind,
+                                                      btCollisionConfiguration* configuration) {
+  switch (kind) {
+    case DispatcherKind::multithreaded:
+      return std::make_unique<btCollisionDispatcherMt>(configuration);
+    case DispatcherKind::batched:
+      return std::make_unique<BatchedDispatcher<>>(configuration);
+    case DispatcherKind::batched_multithreaded:
+      return std::make_unique<BatchedDispatcher<btCollisionDispatcherMt>>(configuration);
+    default:
+      return std::make_unique<btCollisionDispatcher>(configuration);
+  }
+}
+
+}  // namespace
+
+TestWorld::TestWorld(const ContactOptions& options, DispatcherKind kind)
+    : owned_dispatcher(makeDispatcher(kind, &configuration)),
+      dispatcher(*owned_dispatcher),
+      world(&dispatcher, &broadphase, &solver, &configuration) {
+  btSetTaskScheduler(btGetSequentialTaskScheduler());
   PackingCollisionAlgorithm::registerAlgorithm(&dispatcher, options);
   world.setGravity(btVector3(0, 0, btScalar(-9.81)));
 }

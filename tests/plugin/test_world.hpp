@@ -10,9 +10,13 @@
 
 namespace innersphere::test {
 
+/// Debian's Bullet is built without threads: there the multithreaded dispatcher works, in its own order and
+/// with its own release of manifolds, but on one thread.
+enum class DispatcherKind { plain, multithreaded, batched, batched_multithreaded };
+
 class TestWorld {
  public:
-  explicit TestWorld(const ContactOptions& options = {});
+  explicit TestWorld(const ContactOptions& options = {}, DispatcherKind kind = DispatcherKind::plain);
   ~TestWorld();
 
   /// A body of mass 0 is static. The shape is kept alive by the world.
@@ -27,7 +31,8 @@ class TestWorld {
   double deepestContact() const;  ///< [m], positive
 
   btDefaultCollisionConfiguration configuration;
-  btCollisionDispatcher dispatcher;
+  const std::unique_ptr<btCollisionDispatcher> owned_dispatcher;
+  btCollisionDispatcher& dispatcher;
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world;

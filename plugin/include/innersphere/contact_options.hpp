@@ -23,6 +23,12 @@ struct ContactOptions {
   Backend backend = Backend::automatic;
   /// Radii for overlap volumes, where these decide the depth of contact (see stiffness).
   Estimator estimator = Estimator::volume_true;
+  /// [m] Each pair uses the fewest spheres (64, 128, 256, ...) that leave no larger gap to the surfaces: the
+  /// gaps of both bodies together for two packings, that of the packing for another shape. Features that are
+  /// finer are felt later, or not at all; depths are measured on the surfaces all the same. Never more
+  /// spheres than PackingShape::sphereCount(). 0: that many. A packing without a surface uses them in any
+  /// case.
+  double accuracy = 0;
   /// Pressure that a metre of overlap causes [N/m^3]: a contact pushes with stiffness times overlap volume,
   /// which the spheres alone decide. 0: a default, which is for
   ///

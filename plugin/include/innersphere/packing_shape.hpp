@@ -28,14 +28,23 @@ class PackingShape : public btConcaveShape {
   const CollisionModel& model() const;
 
   /// From the packing's frame to the shape's, for scale 1: graphics are drawn at
-  /// bodyTransform * (scale * (principalTransform() * (x - origin))), with the packing's origin, which is zero
-  /// unless the mesh is far from its own.
+  /// bodyTransform * (scale * (principalTransform() * (x - origin))), with the packing's origin, which is
+  /// zero unless the mesh is far from its own.
   const btTransform& principalTransform() const;
 
   /// The shape behind a btCollisionShape, or null if it is none of ours, whatever its type number.
   static const PackingShape* from(const btCollisionShape* shape);
 
-  // btCollisionShape
+  /// Collide with the first, largest spheres only: the knob between speed and accuracy. 0, or more than there
+  /// are: all of them, as at first. Fewer spheres feel fine features later or not at all; depths are measured
+  /// on the solid's surface all the same. Takes effect with the next step; not during one. For one body
+  /// alone, give it a shape of its own from the same model: shapes share all data, so that it costs nothing.
+  /// See also ContactOptions::accuracy.
+  void setSphereCount(std::size_t count);
+  std::size_t sphereCount() const;
+
+  // btCollisionShape: all bounds take constant time. The margin, 0 at first, makes the solid that much larger
+  // on all sides: contacts come that much earlier. Mass properties do not follow it, nor does it scale.
   void getAabb(const btTransform& t, btVector3& min, btVector3& max) const override;
   void getBoundingSphere(btVector3& centre, btScalar& radius) const override;
   btScalar getAngularMotionDisc() const override;
@@ -47,6 +56,10 @@ class PackingShape : public btConcaveShape {
   /// Exact moments of the solid for a homogeneous body of this mass [kg m^2].
   void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
   const char* getName() const override;
+  /// As a btCompoundShape of spheres, sphereCount() of them, which any Bullet can load; their radii include
+  /// the margin.
+  int calculateSerializeBufferSize() const override;
+  const char* serialize(void* buffer, btSerializer* serializer) const override;
   // btConcaveShape
   /// Triangles of the solid's surface near a box, for rays, sweeps, debug drawing and soft bodies. None if
   /// the packing has no surface: such a body collides, but rays pass through it.

@@ -17,7 +17,7 @@ void DistanceSurface::touch(const PackingBody& body, const btTransform& world, s
     touches.push_back(
         {static_cast<std::uint32_t>(i), found.distance, world.getBasis() * found.normal, found.curvature});
   };
-  body.shape().sphereTree().forEach(near, test);
+  body.sphereTree().forEach(near, test);
 }
 
 btScalar DistanceSurface::lowerBound(const btVector3& p) const {

@@ -56,7 +56,7 @@ class Collector : public btTriangleCallback {
     const auto near = [&](const btVector3& low, const btVector3& high) {
       return TestAabbAgainstAabb2(low, high, min, max);
     };
-    body_.shape().sphereTree().forEach(near, [&](std::size_t i) { test(i, v, normal); });
+    body_.sphereTree().forEach(near, [&](std::size_t i) { test(i, v, normal); });
   }
 
  private:
@@ -112,11 +112,12 @@ class TriangleSurface : public OtherSurface {
  private:
   void collect(const PackingBody& body, const btTransform& world, std::vector<Candidate>& candidates) const {
     const btVector3 slack(body.largestExcess(), body.largestExcess(), body.largestExcess());
-    const btTransform shape_to_packing = body.shape().frame.from_packing;
+    const btTransform shape_to_packing = body.shape().solid->frame.from_packing;
     // The shape's box in the mesh's frame, through the packing's placement.
     const btTransform packing_to_mesh = world.inverseTimes(body.world);
     btVector3 min, max;
-    btTransformAabb(body.shape().box_min, body.shape().box_max, 0, shape_to_packing.inverse(), min, max);
+    btTransformAabb(body.shape().solid->box_min, body.shape().solid->box_max, 0, shape_to_packing.inverse(),
+                    min, max);
     btTransformAabb(min * body.scale() - slack, max * body.scale() + slack, 0, packing_to_mesh, min, max);
     const btTransform mesh_to_packing = packing_to_mesh.inverse();
     Collector collector(body, mesh_to_packing, candidates);
@@ -146,7 +147,7 @@ class TriangleSurface : public OtherSurface {
     for (const Candidate* c = first; c != last; ++c) {
       const btVector3 direction = body.world.getBasis() * c->direction;
       if (known(direction)) continue;
-      const Corner corner = cornerAt(c, first, last, btScalar(1e-4) * body.shape().median_radius);
+      const Corner corner = cornerAt(c, first, last, btScalar(1e-4) * body.prefix->median_radius);
       const bool rim = !c->interior && corner.triangles == 1;
       if (rim && c != first) continue;
       // Nothing lies behind the rim of an open mesh.
