@@ -24,6 +24,12 @@ struct Colour {
   float b = 0.7f;
 };
 
+/// A place where two bodies press on each other.
+struct ContactMark {
+  std::array<float, 3> point{};
+  std::array<float, 3> normal{};  ///< unit length
+};
+
 /// What actors look like. A shape without spheres is drawn by its surface, and the other way round.
 struct Shape {
   std::string name;
@@ -58,10 +64,11 @@ struct Film {
   Viewpoint viewpoint;
   std::vector<Shape> shapes;
   std::vector<Actor> actors;
-  std::vector<Pose> poses;        ///< of all actors in the first frame, then in the second, ...
-  double frame_rate = 60;         ///< [1/s]
-  bool has_ground = true;         ///< draw a floor at height `ground`
-  float ground = 0;               ///< [m]
+  std::vector<Pose> poses;  ///< of all actors in the first frame, then in the second, ...
+  std::vector<std::vector<ContactMark>> contacts;  ///< in each frame; empty: not recorded
+  double frame_rate = 60;                          ///< [1/s]
+  bool has_ground = true;                          ///< draw a floor at height `ground`
+  float ground = 0;                                ///< [m]
   bool colour_by_radius = false;  ///< spheres show their radius instead of their actor's colour
 
   std::size_t frames() const { return actors.empty() ? 0 : poses.size() / actors.size(); }

@@ -1,32 +1,98 @@
+// Chains of interlocked rings.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "bullet_math.hpp"
+#include "catalogue.hpp"
 #include "film/palette.hpp"
 #include "innersphere/solids.hpp"
-#include "scene.hpp"
+#include "measures.hpp"
+#include "ring_distance.hpp"
 #include "scene_solids.hpp"
 #include "world.hpp"
 
 namespace innersphere::demo {
+namespace {
 
-void buildChain(SceneWorld& world, const SceneOptions& options) {
-  constexpr int kLinks = 10;
-  constexpr double kRing = 0.2;                     // [m] radius of the ring
-  constexpr double kTube = 0.05;                    // [m] radius of the tube
-  constexpr double kDensity = 1000;                 // [kg/m^3]
-  constexpr double kTilt = 0.9;                     // [rad] of the chain against the vertical at the start
-  constexpr double kSpacing = 2 * (kRing - kTube);  // the tubes of neighbours touch
+constexpr std::size_t kLinks = 10;
+constexpr double kRing = 1, kTube = 0.25;         // [m]
+constexpr double kSpacing = 2 * (kRing - kTube);  // the tubes of neighbours touch
+constexpr double kDensity = 1000;                 // [kg/m^3]
 
+// Hung at an angle against the vertical [rad]. The first link never moves.
+void addLinks(SceneWorld& world, const SceneOptions& options, double angle, double last_density) {
   const std::size_t torus =
       world.addSolid(*makeTorus(kRing, kTube), options.spheres, progressOf(options, 0, 1));
-  const btQuaternion tilt(btVector3(0, 1, 0), btScalar(-kTilt));
-  const btQuaternion upright(btVector3(0, 1, 0), SIMD_HALF_PI);
-  const btQuaternion turned(btVector3(1, 0, 0), SIMD_HALF_PI);
-  for (int i = 0; i < kLinks; ++i) {
-    const btVector3 below(0, 0, btScalar(-kSpacing * i));
-    const btQuaternion rotation = tilt * (i % 2 == 0 ? upright : turned);
-    world.addBody(torus, i == 0 ? 0 : kDensity, btTransform(rotation, quatRotate(tilt, below)),
-                  paletteColour(static_cast<std::size_t>(i)));
+  const btQuaternion tilt = turn(vec(0, 1, 0), -angle);
+  const btQuaternion upright = turn(vec(0, 1, 0), SIMD_HALF_PI), turned = turn(vec(1, 0, 0), SIMD_HALF_PI);
+  for (std::size_t i = 0; i < kLinks; ++i) {
+    const btVector3 below = vec(0, 0, -kSpacing * static_cast<double>(i));
+    const double density = i == 0 ? 0 : i + 1 == kLinks ? last_density : kDensity;
+    world.addBody(torus, density,
+                  btTransform(tilt * (i % 2 == 0 ? upright : turned), quatRotate(tilt, below)),
+                  paletteColour(i));
   }
   world.film.has_ground = false;
   world.film.viewpoint = {0.0, 0.1, 0.5};
+}
+
+// Which of the body's axes is the ring's: the one with a moment of its own.
+int axisOf(const btRigidBody& body) {
+  const btVector3 m = body.getInvInertiaDiagLocal();
+  return m.minAxis();
+}
+
+void expectNoDeeper(SceneWorld& world, double limit, const std::string& source, double known_miss) {
+  const int axis = axisOf(*world.bodies()[1].body);
+  world.expect({"deepest overlap of the tubes", "m", Truth::Kind::at_most, limit, 0, source,
+                [axis](const Recording& r) {
+                  double nearest = 2 * kTube;
+                  for (std::size_t s = 0; s < r.steps.size(); ++s) {
+                    for (std::size_t i = 0; i + 1 < kLinks; ++i) {
+                      nearest =
+                          std::min(nearest, distanceOfRings(r.body(i, s), r.body(i + 1, s), axis, kRing));
+                    }
+                  }
+                  return 2 * kTube - nearest;
+                },
+                0, known_miss});
+}
+
+double fallOfAll(const SceneWorld& world, double height) {
+  double mass = 0;
+  for (const SceneBody& body : world.bodies()) {
+    if (body.moves()) mass += 1 / double(body.body->getInvMass());
+  }
+  return mass * 9.81 * height;
+}
+
+}  // namespace
+
+void buildChainHang(SceneWorld& world, const SceneOptions& options) {
+  addLinks(world, options, 0, kDensity);
+  const double low = kSpacing * (kLinks - 1);
+  world.expect({"height of the last link", "m", Truth::Kind::equal, -low, 0.005 * low,
+                "9 (2 R - 2 r) below the first; 0.5 %", finalCoordinate(kLinks - 1, 2)});
+  expectNoDeeper(world, 0.02, "GImpact with 2,304 triangles a ring", 0);
+  world.expect(energyGainBelow(0.04, fallOfAll(world, kTube), "a fall of all links by the tube's radius"));
+}
+
+void buildChainSwing(SceneWorld& world, const SceneOptions& options) {
+  constexpr double kAngle = 0.9;
+  addLinks(world, options, kAngle, kDensity);
+  expectNoDeeper(world, 0.02, "GImpact with 2,304 triangles a ring", 0);
+  // The links' centres hang 1.5, 3, ... 13.5 m below the first, 7.5 m on average.
+  const double drop = 7.5 * (1 - std::cos(kAngle));
+  world.expect(energyGainBelow(0.002, fallOfAll(world, drop), "the fall from the start to the lowest place"));
+}
+
+void buildChainHeavy(SceneWorld& world, const SceneOptions& options) {
+  addLinks(world, options, 0, 100 * kDensity);
+  expectNoDeeper(world, 0.05, "half of what a ring of 32 spheres needs to hold it", 0);
+  const double low = kSpacing * (kLinks - 1);
+  world.expect({"height of the last link", "m", Truth::Kind::equal, -low, 0.02 * low,
+                "9 (2 R - 2 r) below the first: no link is lost; 2 %", finalCoordinate(kLinks - 1, 2)});
 }
 
 }  // namespace innersphere::demo

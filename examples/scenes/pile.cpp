@@ -1,66 +1,110 @@
+// Piles of mixed solids in a tray.
+#include <algorithm>
 #include <cmath>
 
+#include "bullet_math.hpp"
+#include "catalogue.hpp"
 #include "film/palette.hpp"
 #include "random.hpp"
-#include "scene.hpp"
 #include "scene_solids.hpp"
 #include "world.hpp"
 
 namespace innersphere::demo {
 namespace {
 
-constexpr int kBodies = 24;
-constexpr double kDiagonal = 0.7;    // [m] of each solid's bounding box
-constexpr double kDensity = 1000;    // [kg/m^3]
-constexpr double kHalfWidth = 0.88;  // [m] of the tray, inside
-constexpr double kWallHeight = 0.4;  // [m]
-constexpr double kWall = 0.03;       // [m] half the thickness of floor and walls
+constexpr double kDiagonal = 0.7;  // [m] of each solid's bounding box
+constexpr double kDensity = 1000;  // [kg/m^3]
+constexpr double kWall = 0.03;     // [m] half the thickness of floor and walls
+constexpr double kRest = 0.5;      // [s] in which nothing may be seen to move at the end
 constexpr Colour kTrayColour{0.80f, 0.77f, 0.72f};
 
-void addTray(SceneWorld& world) {
-  const auto at = [](double x, double y, double z) {
-    return btTransform(btQuaternion::getIdentity(), btVector3(btScalar(x), btScalar(y), btScalar(z)));
-  };
-  const auto box = [](double x, double y, double z) {
-    return btVector3(btScalar(x), btScalar(y), btScalar(z));
-  };
-  const double outer = kHalfWidth + 2 * kWall;
-  const double half_height = kWallHeight / 2 + kWall;  // down to the underside of the floor
-  const double middle = kWallHeight / 2 - kWall;
-  world.addFixedBox(box(kHalfWidth, kHalfWidth, kWall), at(0, 0, -kWall), kTrayColour);
+struct Tray {
+  double half_width;  // [m] inside
+  double height;      // [m]
+};
+
+void addTray(SceneWorld& world, const Tray& tray) {
+  const double outer = tray.half_width + 2 * kWall;
+  const double half_height = tray.height / 2 + kWall;  // down to the underside of the floor
+  const double middle = tray.height / 2 - kWall;
+  world.addFixedBox(vec(tray.half_width, tray.half_width, kWall), at(0, 0, -kWall), kTrayColour);
   for (const double side : {-1.0, 1.0}) {
-    const double centre = side * (kHalfWidth + kWall);
-    world.addFixedBox(box(outer, kWall, half_height), at(0, centre, middle), kTrayColour);
-    world.addFixedBox(box(kWall, kHalfWidth, half_height), at(centre, 0, middle), kTrayColour);
+    const double centre = side * (tray.half_width + kWall);
+    world.addFixedBox(vec(outer, kWall, half_height), at(0, centre, middle), kTrayColour);
+    world.addFixedBox(vec(kWall, tray.half_width, half_height), at(centre, 0, middle), kTrayColour);
   }
   world.addGround(-2 * kWall);
+}
+
+// Bodies in layers: one at each of these places of a layer, far enough apart that no two touch at the start
+// however they are turned.
+void addPile(SceneWorld& world, const SceneOptions& options, std::size_t count,
+             const std::vector<std::array<double, 2>>& places) {
+  constexpr double kLayer = 0.72;  // [m]
+  const std::vector<std::size_t> solids =
+      addSolids(world, options, {"torus", "link", "bowl", "lbracket", "gear", "nut"}, kDiagonal);
+  Random random(options.seed);
+  std::vector<std::size_t> kinds;
+  for (std::size_t i = 0; i < count; ++i) kinds.push_back(i % solids.size());
+  random.shuffle(kinds);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [x, y] = places[i % places.size()];
+    const btVector3 place = vec(x, y, 0.5 + kLayer * static_cast<double>(i / places.size()));
+    const std::size_t kind = kinds[i];
+    // With few kinds, colours tell bodies apart; with many, kinds.
+    const Colour colour = paletteColour(solids.size() < 4 ? i : kind);
+    world.addBody(solids[kind], kDensity, btTransform(random.rotation(), place), colour);
+  }
+  world.film.viewpoint = {0.5, 0.68, 0.45};
+}
+
+void expectRest(SceneWorld& world, double seconds) {
+  std::vector<double> sizes;  // of the bodies; the tray's are 0
+  for (const SceneBody& body : world.bodies()) sizes.push_back(body.moves() ? body.size : 0);
+  world.expect({"largest motion in the last half second, over the body's size", "", Truth::Kind::at_most,
+                0.01, 0, "nothing is seen to move; turning by an angle counts as half of it",
+                [sizes](const Recording& r) {
+                  double most = 0;
+                  for (std::size_t i = 0; i < sizes.size(); ++i) {
+                    if (sizes[i] == 0) continue;
+                    const double from = r.seconds() - kRest;
+                    const Vec3d &a = r.body(i, r.stepAt(from)).position, &b = r.last(i).position;
+                    const double way = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+                    most = std::max(most, way / sizes[i] + r.turnBetween(i, from, r.seconds()) / 2);
+                  }
+                  return most;
+                },
+                seconds});
+  world.expect({"bodies that fell through the floor", "", Truth::Kind::equal, 0, 0, "none leaks out",
+                [sizes](const Recording& r) {
+                  double below = 0;
+                  for (std::size_t i = 0; i < sizes.size(); ++i)
+                    below += sizes[i] > 0 && r.last(i).position[2] < 0;
+                  return below;
+                }});
+  world.expect({"deepest overlap at the end, over the body's size", "", Truth::Kind::at_most, 0.005, 0,
+                "bodies rest on each other, not in each other",
+                [](const Recording& r) { return r.steps.back().relative_overlap; }, seconds});
 }
 
 }  // namespace
 
 void buildPile(SceneWorld& world, const SceneOptions& options) {
-  const std::vector<std::size_t> solids =
-      addSolids(world, options, {"torus", "link", "bowl", "lbracket", "gear", "nut"}, kDiagonal);
-  addTray(world);
-
-  // Layers of five, one in each corner and one in the middle, far enough apart that no two bodies touch at
-  // the start however they are turned.
   constexpr double kCorner = 0.51;  // [m] from the middle, along each side
-  constexpr double kLayer = 0.72;   // [m]
-  constexpr double kPlaces[5][2] = {{-1, -1}, {1, 1}, {0, 0}, {1, -1}, {-1, 1}};
-  Random random(options.seed);
-  std::vector<std::size_t> kinds;
-  for (std::size_t i = 0; i < kBodies; ++i) kinds.push_back(i % solids.size());
-  random.shuffle(kinds);
-  for (int i = 0; i < kBodies; ++i) {
-    const auto& [x, y] = kPlaces[i % 5];
-    const btVector3 place(btScalar(kCorner * x), btScalar(kCorner * y), btScalar(0.5 + kLayer * (i / 5)));
-    const std::size_t kind = kinds[static_cast<std::size_t>(i)];
-    // With few kinds, colours tell bodies apart; with many, kinds.
-    const Colour colour = paletteColour(solids.size() < 4 ? static_cast<std::size_t>(i) : kind);
-    world.addBody(solids[kind], kDensity, btTransform(random.rotation(), place), colour);
-  }
-  world.film.viewpoint = {0.5, 0.68, 0.45};
+  constexpr Tray kTray{0.88, 0.4};
+  addTray(world, kTray);
+  addPile(world, options, 24,
+          {{-kCorner, -kCorner}, {kCorner, kCorner}, {0, 0}, {kCorner, -kCorner}, {-kCorner, kCorner}});
+  expectRest(world, 5);
+}
+
+void buildLargePile(SceneWorld& world, const SceneOptions& options) {
+  constexpr Tray kTray{1.6, 0.8};
+  addTray(world, kTray);
+  std::vector<std::array<double, 2>> places;
+  for (int i = 0; i < 16; ++i) places.push_back({0.75 * (i % 4 - 1.5), 0.75 * (i / 4 - 1.5)});
+  addPile(world, options, 100, places);
+  expectRest(world, 8);
 }
 
 }  // namespace innersphere::demo

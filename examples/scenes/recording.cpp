@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "innersphere/error.hpp"
+#include "observation.hpp"
 #include "world.hpp"
 
 namespace innersphere::demo {
@@ -12,58 +13,14 @@ namespace {
 
 constexpr double kFrameRate = 60;  // [1/s] of films
 
-Vec3d plus(const Vec3d& a, const btVector3& b) {
-  return {a[0] + b.x(), a[1] + b.y(), a[2] + b.z()};
-}
-
-void addMotion(const btRigidBody& body, const btVector3& gravity, StepRecord& record) {
-  const btScalar mass = 1 / body.getInvMass();
-  const btVector3 velocity = body.getLinearVelocity();
-  const btVector3 turn = body.getAngularVelocity();
-  const btVector3 place = body.getCenterOfMassPosition();
-  const btMatrix3x3 axes = body.getCenterOfMassTransform().getBasis();
-  const btVector3 local_turn = turn * axes;  // transposed: into the body's frame
-  const btVector3 spin = axes * (local_turn / body.getInvInertiaDiagLocal());
-  record.kinetic += 0.5 * mass * velocity.length2() + 0.5 * turn.dot(spin);
-  record.potential -= mass * gravity.dot(place);
-  record.momentum = plus(record.momentum, mass * velocity);
-  record.angular_momentum = plus(record.angular_momentum, mass * place.cross(velocity) + spin);
-  record.fastest = std::max<double>(record.fastest, velocity.length());
-  record.fastest_turn = std::max<double>(record.fastest_turn, turn.length());
-}
-
-void addContacts(SceneWorld& world, StepRecord& record) {
-  const auto sizeOf = [&world](const btCollisionObject* object) {
-    for (const SceneBody& body : world.bodies()) {
-      if (body.body.get() == object && body.moves()) return body.size;
-    }
-    return std::numeric_limits<double>::infinity();
-  };
-  btDispatcher* dispatcher = world.bullet().getDispatcher();
-  for (int i = 0; i < dispatcher->getNumManifolds(); ++i) {
-    const btPersistentManifold* manifold = dispatcher->getManifoldByIndexInternal(i);
-    double deepest = 0;
-    for (int k = 0; k < manifold->getNumContacts(); ++k) {
-      const double overlap = -manifold->getContactPoint(k).getDistance();
-      if (overlap >= 0) ++record.contacts;
-      deepest = std::max(deepest, overlap);
-    }
-    if (deepest == 0) continue;
-    const double size = std::min(sizeOf(manifold->getBody0()), sizeOf(manifold->getBody1()));
-    record.overlap = std::max(record.overlap, deepest);
-    record.relative_overlap = std::max(record.relative_overlap, deepest / size);
+void appendFrame(SceneWorld& world, const Recording& recording, Film& film) {
+  for (std::size_t i = recording.states.size() - recording.names.size(); i < recording.states.size(); ++i) {
+    const BodyState& state = recording.states[i];
+    Pose& pose = film.poses.emplace_back();
+    for (int k = 0; k < 3; ++k) pose.position[k] = static_cast<float>(state.position[k]);
+    for (int k = 0; k < 4; ++k) pose.rotation[k] = static_cast<float>(state.rotation[k]);
   }
-}
-
-StepRecord observe(SceneWorld& world, double time, double step_time) {
-  StepRecord record;
-  record.time = time;
-  record.step_time = step_time;
-  for (const SceneBody& body : world.bodies()) {
-    if (body.moves()) addMotion(*body.body, world.bullet().getGravity(), record);
-  }
-  addContacts(world, record);
-  return record;
+  film.contacts.push_back(contactMarks(world));
 }
 
 void append(std::string& text, double value) {
@@ -73,6 +30,53 @@ void append(std::string& text, double value) {
 }
 
 }  // namespace
+
+std::size_t Recording::stepAt(double time) const {
+  const auto after = std::lower_bound(steps.begin(), steps.end(), time,
+                                      [](const StepRecord& step, double t) { return step.time < t; });
+  if (after == steps.begin()) return 0;
+  const auto index = static_cast<std::size_t>(after - steps.begin());
+  if (after == steps.end()) return index - 1;
+  return after->time - time < time - steps[index - 1].time ? index : index - 1;
+}
+
+double Recording::deepestOverlap(double from) const {
+  double deepest = 0;
+  for (const StepRecord& step : steps) {
+    if (step.time >= from) deepest = std::max(deepest, step.overlap);
+  }
+  return deepest;
+}
+
+double Recording::energyGained() const {
+  double sum = 0;
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    sum += std::max(0.0, steps[i].energy() - steps[i - 1].energy());
+  }
+  return sum;
+}
+
+double Recording::farthestFrom(std::size_t index, double from) const {
+  const std::size_t start = stepAt(from);
+  const Vec3d& origin = body(index, start).position;
+  double farthest = 0;
+  for (std::size_t i = start; i < steps.size(); ++i) {
+    const Vec3d& p = body(index, i).position;
+    farthest = std::max(farthest, std::hypot(p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]));
+  }
+  return farthest;
+}
+
+double Recording::turnBetween(std::size_t index, double from, double to) const {
+  const auto& a = body(index, stepAt(from)).rotation;
+  const auto& b = body(index, stepAt(to)).rotation;
+  // The vector part of the quotient keeps small angles exact.
+  const double x = a[3] * b[0] - a[0] * b[3] - a[1] * b[2] + a[2] * b[1];
+  const double y = a[3] * b[1] - a[1] * b[3] - a[2] * b[0] + a[0] * b[2];
+  const double z = a[3] * b[2] - a[2] * b[3] - a[0] * b[1] + a[1] * b[0];
+  const double w = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+  return 2 * std::atan2(std::hypot(x, y, z), std::abs(w));
+}
 
 Recording record(SceneWorld& world, double seconds, double dt, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
@@ -84,15 +88,13 @@ Recording record(SceneWorld& world, double seconds, double dt, const Progress& p
 
   const auto keep = [&](int step, double step_time) {
     recording.steps.push_back(observe(world, step * dt, step_time));
-    for (const SceneBody& body : world.bodies()) recording.poses.push_back(SceneWorld::poseOf(*body.body));
-    if (step % frame_steps != 0) return;
-    recording.film.poses.insert(recording.film.poses.end(),
-                                recording.poses.end() - static_cast<std::ptrdiff_t>(world.bodies().size()),
-                                recording.poses.end());
+    appendStates(world, recording.states);
+    if (step % frame_steps == 0) appendFrame(world, recording, recording.film);
   };
   keep(0, 0);
   const int steps = static_cast<int>(std::ceil(seconds / dt - 1e-6));
   for (int step = 1; step <= steps; ++step) {
+    if (world.drive) world.drive((step - 1) * dt, dt);
     const auto start = Clock::now();
     world.bullet().stepSimulation(btScalar(dt), 0);
     keep(step, std::chrono::duration<double>(Clock::now() - start).count());
@@ -105,29 +107,30 @@ Recording record(SceneWorld& world, double seconds, double dt, const Progress& p
 
 std::string toCsv(const Recording& recording) {
   std::string text =
-      "time_s,kinetic_J,potential_J,momentum_x,momentum_y,momentum_z,angular_momentum_x,angular_momentum_y,"
-      "angular_momentum_z,contacts,deepest_overlap_m,step_ms";
+      "time_s,kinetic_J,potential_J,energy_J,momentum_x,momentum_y,momentum_z,angular_momentum_x,"
+      "angular_momentum_y,angular_momentum_z,contacts,deepest_overlap_m,step_ms";
   for (std::size_t i = 0; i < recording.names.size(); ++i) {
     for (const char* part : {"x", "y", "z", "qx", "qy", "qz", "qw"}) {
       text += ",body" + std::to_string(i) + "_" + part;
     }
   }
   text += '\n';
-  const Pose* pose = recording.poses.data();
+  const BodyState* state = recording.states.data();
   for (const StepRecord& step : recording.steps) {
     char time[32];
     std::snprintf(time, sizeof time, "%.9g", step.time);
     text += time;
     append(text, step.kinetic);
     append(text, step.potential);
+    append(text, step.energy());
     for (const double p : step.momentum) append(text, p);
     for (const double l : step.angular_momentum) append(text, l);
     append(text, step.contacts);
     append(text, step.overlap);
     append(text, 1e3 * step.step_time);
-    for (std::size_t i = 0; i < recording.names.size(); ++i, ++pose) {
-      for (const float p : pose->position) append(text, p);
-      for (const float q : pose->rotation) append(text, q);
+    for (std::size_t i = 0; i < recording.names.size(); ++i, ++state) {
+      for (const double p : state->position) append(text, p);
+      for (const double q : state->rotation) append(text, q);
     }
     text += '\n';
   }

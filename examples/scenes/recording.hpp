@@ -1,6 +1,7 @@
 // What happened in a scene.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,13 +25,42 @@ struct StepRecord {
   double relative_overlap = 0;  ///< the deepest relative to the smaller body's bounding-box diagonal
   double fastest = 0;           ///< the highest speed of a centre of mass [m/s]
   double fastest_turn = 0;      ///< the highest angular speed [rad/s]
+
+  double energy() const { return kinetic + potential; }
+};
+
+/// A body after a step.
+struct BodyState {
+  Vec3d position{};                            ///< of its centre of mass [m]
+  std::array<double, 4> rotation{0, 0, 0, 1};  ///< of its principal axes: a quaternion x, y, z, w
+  Vec3d velocity{};                            ///< [m/s]
+  Vec3d spin{};                                ///< angular velocity [rad/s]
 };
 
 struct Recording {
   Film film;                       ///< at most 60 frames a second
   std::vector<StepRecord> steps;   ///< the first one is the start
-  std::vector<Pose> poses;         ///< of all bodies after each step, as Film::poses
+  std::vector<BodyState> states;   ///< of all bodies at the start, then after the first step, ...
   std::vector<std::string> names;  ///< of the bodies
+
+  double seconds() const { return steps.back().time; }
+  /// The step nearest to a time [s].
+  std::size_t stepAt(double time) const;
+  const BodyState& body(std::size_t index, std::size_t step) const {
+    return states[step * names.size() + index];
+  }
+  const BodyState& first(std::size_t index) const { return body(index, 0); }
+  const BodyState& last(std::size_t index) const { return body(index, steps.size() - 1); }
+
+  /// The deepest overlap from a time on [m].
+  double deepestOverlap(double from = 0) const;
+  /// Sum of all increments of the total energy from one step to the next [J]: energy from nowhere, unless
+  /// springs give back what they took.
+  double energyGained() const;
+  /// The farthest that the centre of a body came from where it was at time `from` [m].
+  double farthestFrom(std::size_t index, double from = 0) const;
+  /// The angle between a body's orientations at two times [rad].
+  double turnBetween(std::size_t index, double from, double to) const;
 };
 
 /// Steps a world with a fixed time step [s] and records it. Throws Error cancelled.

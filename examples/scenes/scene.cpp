@@ -1,17 +1,9 @@
 #include "scene.hpp"
 
 #include "innersphere/error.hpp"
+#include "world.hpp"
 
 namespace innersphere::demo {
-
-const std::vector<Scene>& scenes() {
-  static const std::vector<Scene> all = {
-      {"pile", "Two dozen mixed solids fall into a tray and come to rest on each other.", buildPile},
-      {"stack", "Five boxes, each a packing, stand on each other.", buildStack},
-      {"chain", "Ten interlocked rings hang from the first one, which is held, and swing.", buildChain},
-  };
-  return all;
-}
 
 const Scene& sceneNamed(const std::string& name) {
   std::string known;
@@ -20,6 +12,38 @@ const Scene& sceneNamed(const std::string& name) {
     known += (known.empty() ? "" : ", ") + scene.name;
   }
   throw Error(ErrorCode::bad_argument, "there is no scene \"" + name + "\"; the scenes are " + known);
+}
+
+SceneOptions completed(const Scene& scene, SceneOptions options) {
+  if (!options.solids.empty() && !scene.takes_solids) {
+    std::string others;
+    for (const Scene& other : scenes()) {
+      if (other.takes_solids) others += (others.empty() ? "" : ", ") + other.name;
+    }
+    throw Error(ErrorCode::bad_argument,
+                "the scene " + scene.name + " has solids of its own; yours can be used in " + others);
+  }
+  if (options.seconds == 0) options.seconds = scene.seconds;
+  if (options.dt == 0) options.dt = scene.dt;
+  if (options.spheres == 0) options.spheres = scene.spheres;
+  if (options.contact.stiffness == 0) options.contact.stiffness = scene.stiffness;
+  return options;
+}
+
+ScenePlay::ScenePlay() = default;
+ScenePlay::ScenePlay(ScenePlay&&) noexcept = default;
+ScenePlay::~ScenePlay() = default;
+
+ScenePlay play(const Scene& scene, const SceneOptions& options) {
+  ScenePlay result;
+  result.options = completed(scene, options);
+  result.world = std::make_unique<SceneWorld>(result.options.contact);
+  result.world->film.title = scene.name;
+  scene.build(*result.world, result.options);
+  result.recording =
+      record(*result.world, result.options.seconds, result.options.dt, result.options.progress);
+  result.verdicts = judge(result.world->truths, result.recording);
+  return result;
 }
 
 }  // namespace innersphere::demo

@@ -52,6 +52,7 @@ SceneWorld::SceneWorld(const ContactOptions& options) {
 }
 
 SceneWorld::~SceneWorld() {
+  for (const auto& constraint : constraints_) world_.removeConstraint(constraint.get());
   for (const SceneBody& body : bodies_) world_.removeRigidBody(body.body.get());
   if (ground_) world_.removeRigidBody(ground_.get());
 }
@@ -102,23 +103,25 @@ btRigidBody& SceneWorld::addFixedBox(const btVector3& half_size, const btTransfo
   return add("fixed box", *bullet_shapes_.back(), 0, place, 2 * half_size.length());
 }
 
-void SceneWorld::addGround(double height) {
+btRigidBody& SceneWorld::addGround(double height) {
   bullet_shapes_.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(height)));
-  ground_ = std::make_unique<btRigidBody>(0, nullptr, bullet_shapes_.back().get());
+  ground_ = std::make_unique<btRigidBody>(btScalar(0), nullptr, bullet_shapes_.back().get());
   ground_->setFriction(kFriction);
   world_.addRigidBody(ground_.get());
   film.has_ground = true;
   film.ground = static_cast<float>(height);
+  return *ground_;
 }
 
-Pose SceneWorld::poseOf(const btRigidBody& body) {
-  const btVector3& p = body.getWorldTransform().getOrigin();
-  const btQuaternion q = body.getWorldTransform().getRotation();
-  Pose pose;
-  for (int k = 0; k < 3; ++k) pose.position[k] = static_cast<float>(p[k]);
-  pose.rotation = {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
-                   static_cast<float>(q.w())};
-  return pose;
+void SceneWorld::addConstraint(std::unique_ptr<btTypedConstraint> constraint) {
+  world_.addConstraint(constraint.get());
+  constraints_.push_back(std::move(constraint));
+}
+
+std::size_t SceneWorld::indexOf(const btRigidBody& body) const {
+  std::size_t index = 0;
+  while (bodies_[index].body.get() != &body) ++index;
+  return index;
 }
 
 }  // namespace innersphere::demo

@@ -3,6 +3,7 @@
 
 #include <btBulletDynamicsCommon.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "innersphere/packing_shape.hpp"
 #include "innersphere/progress.hpp"
 #include "innersphere/solid.hpp"
+#include "truth.hpp"
 
 namespace innersphere::demo {
 
@@ -57,13 +59,23 @@ class SceneWorld {
   btRigidBody& addFixedBox(const btVector3& half_size, const btTransform& place, const Colour& colour);
 
   /// A fixed horizontal plane, which the film shows as its ground.
-  void addGround(double height);
+  btRigidBody& addGround(double height);
+
+  /// The world keeps the constraint. Bodies it joins still collide.
+  void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
+
+  /// Index of a body in bodies() and in recordings.
+  std::size_t indexOf(const btRigidBody& body) const;
+
+  /// Something that has to come out; see judge().
+  void expect(Truth truth) { truths.push_back(std::move(truth)); }
+  std::vector<Truth> truths;
+
+  /// If set, called before each step with the time and the step [s]: motors, pushes, moved gravity.
+  std::function<void(double time, double dt)> drive;
 
   /// What the film of this world starts with: shapes, actors, viewpoint, no frames yet.
   Film film;
-
-  /// Where the actor of a body is.
-  static Pose poseOf(const btRigidBody& body);
 
  private:
   btRigidBody& add(std::string name, btCollisionShape& shape, double mass, const btTransform& place,
@@ -78,6 +90,7 @@ class SceneWorld {
   std::vector<std::unique_ptr<btCollisionShape>> bullet_shapes_;
   std::unique_ptr<btRigidBody> ground_;
   std::vector<SceneBody> bodies_;
+  std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
 };
 
 }  // namespace innersphere::demo

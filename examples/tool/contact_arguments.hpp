@@ -1,6 +1,10 @@
 // Names of the library's choices on the command line.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "choice.hpp"
 #include "innersphere/contact_options.hpp"
 
@@ -18,9 +22,21 @@ inline void addEstimatorOption(CLI::App& command, Estimator& estimator) {
                        "Radii of the spheres: as packed (raw), or so that they stand for the whole solid");
 }
 
+inline const std::vector<std::pair<std::string, Response>>& responseNames() {
+  static const std::vector<std::pair<std::string, Response>> names = {{"compliant", Response::compliant},
+                                                                      {"rigid", Response::rigid}};
+  return names;
+}
+
+inline std::string nameOf(Response response) {
+  for (const auto& [name, value] : responseNames()) {
+    if (value == response) return name;
+  }
+  return {};
+}
+
 inline void addResponseOption(CLI::App& command, Response& response) {
-  addChoice<Response>(command, "--response", response,
-                      {{"compliant", Response::compliant}, {"rigid", Response::rigid}},
+  addChoice<Response>(command, "--response", response, responseNames(),
                       "How overlap becomes contact: implicit springs, or the solver removes it");
 }
 

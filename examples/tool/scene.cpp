@@ -1,11 +1,12 @@
 #include "scenes/scene.hpp"
 
 #include "commands.hpp"
+#include "scene_check.hpp"
 #include "scene_run.hpp"
 
 namespace innersphere::tool {
 
-void addSceneCommand(CLI::App& app, Session&) {
+void addSceneCommand(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("scene", "List and run scenes of moving bodies");
   command->require_subcommand(1);
   command->fallthrough();
@@ -15,7 +16,8 @@ void addSceneCommand(CLI::App& app, Session&) {
       std::printf("%-12s %s\n", scene.name.c_str(), scene.description.c_str());
     }
   });
-  addSceneRunCommand(*command);
+  addSceneRunCommand(*command, session);
+  addSceneCheckCommand(*command, session);
 }
 
 }  // namespace innersphere::tool

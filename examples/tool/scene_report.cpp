@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact_arguments.hpp"
 #include "scenes/world.hpp"
 
 namespace innersphere::tool {
@@ -73,49 +74,86 @@ void addOverlap(Report& report, const demo::Recording& recording) {
 
 // By how much of its size the most restless body moved over the last kRestTime, turning included.
 double motionAtTheEnd(const demo::SceneWorld& world, const demo::Recording& recording) {
-  const double dt = recording.steps.size() > 1 ? recording.steps[1].time - recording.steps[0].time : 1;
-  const std::size_t last = recording.steps.size() - 1;
-  const std::size_t first = last - std::min(last, static_cast<std::size_t>(std::lround(kRestTime / dt)));
-  const std::size_t count = world.bodies().size();
+  const double from = std::max(0.0, recording.seconds() - kRestTime);
   double most = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const demo::Pose& a = recording.poses[first * count + i];
-    const demo::Pose& b = recording.poses[last * count + i];
-    double squared = 0, cosine = 0;
-    for (int k = 0; k < 3; ++k) squared += std::pow(b.position[k] - a.position[k], 2);
-    for (int k = 0; k < 4; ++k) cosine += a.rotation[k] * b.rotation[k];
-    const double turn = 2 * std::acos(std::min(std::fabs(cosine), 1.0));
+  for (std::size_t i = 0; i < world.bodies().size(); ++i) {
     const double size = world.bodies()[i].size;
-    if (size > 0) most = std::max(most, std::sqrt(squared) / size + turn / 2);
+    if (size == 0) continue;
+    const Vec3d &a = recording.body(i, recording.stepAt(from)).position, &b = recording.last(i).position;
+    const double way = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    most = std::max(most, way / size + recording.turnBetween(i, from, recording.seconds()) / 2);
   }
   return most;
 }
 
 }  // namespace
 
-std::string captionOf(const demo::SceneWorld& world, double dt) {
+std::string captionOf(const demo::ScenePlay& play) {
+  const demo::SceneWorld& world = *play.world;
   std::size_t spheres = 0;
   for (const demo::SceneSolid& solid : world.solids()) {
     for (const demo::Actor& actor : world.film.actors) {
       if (actor.shape == solid.look) spheres += solid.packing->spheres.size();
     }
   }
-  return std::to_string(movingBodies(world)) + " moving bodies, " + std::to_string(spheres) +
-         " spheres, step " + number(1e3 * dt, "ms");
+  const std::size_t bodies = movingBodies(world);
+  return std::to_string(bodies) + (bodies == 1 ? " moving body, " : " moving bodies, ") +
+         std::to_string(spheres) + " spheres, step " + number(1e3 * play.options.dt, "ms");
 }
 
-Report describe(const std::string& name, const demo::SceneWorld& world, const demo::Recording& recording,
-                const ContactOptions& contact) {
+std::string describe(const demo::Verdict& verdict) {
+  const demo::Truth& truth = verdict.truth;
+  const std::string allowed =
+      truth.kind == demo::Truth::Kind::at_most
+          ? "at most " + number(truth.expected, truth.unit)
+          : "expected " + number(truth.expected) + " +- " + number(truth.tolerance, truth.unit);
+  const std::string rest = truth.what + ": " + allowed + " (" + truth.source + ")";
+  if (verdict.outcome == demo::Outcome::not_recorded) {
+    return "not shown  " + rest + ", takes " + number(truth.needs, "s");
+  }
+  return (verdict.outcome == demo::Outcome::holds ? "holds   " : "MISSED  ") + truth.what + ": " +
+         number(verdict.measured, truth.unit) + ", " + allowed + " (" + truth.source + ")";
+}
+
+nlohmann::ordered_json truthsJson(const std::vector<demo::Verdict>& verdicts) {
+  nlohmann::ordered_json results = nlohmann::ordered_json::array();
+  for (const demo::Verdict& verdict : verdicts) {
+    const demo::Truth& truth = verdict.truth;
+    const bool bound = truth.kind == demo::Truth::Kind::at_most;
+    nlohmann::ordered_json result = {{"what", truth.what},
+                                     {"unit", truth.unit},
+                                     {bound ? "at_most" : "expected", truth.expected},
+                                     {"tolerance", truth.tolerance},
+                                     {"source", truth.source}};
+    const bool known = verdict.outcome != demo::Outcome::not_recorded;
+    result["measured"] = known ? nlohmann::ordered_json(verdict.measured) : nlohmann::ordered_json(nullptr);
+    result["holds"] = known ? nlohmann::ordered_json(verdict.outcome == demo::Outcome::holds)
+                            : nlohmann::ordered_json(nullptr);
+    results.push_back(result);
+  }
+  return results;
+}
+
+bool allHold(const std::vector<demo::Verdict>& verdicts) {
+  return std::none_of(verdicts.begin(), verdicts.end(),
+                      [](const demo::Verdict& verdict) { return verdict.outcome == demo::Outcome::missed; });
+}
+
+Report describe(const demo::Scene& scene, const demo::ScenePlay& play) {
+  const demo::Recording& recording = play.recording;
+  const demo::SceneWorld& world = *play.world;
+  const ContactOptions& contact = play.options.contact;
   const demo::StepRecord& first = recording.steps.front();
   const demo::StepRecord& last = recording.steps.back();
   Report report;
-  report.add("scene", "scene", name);
+  report.add("scene", "scene", scene.name);
+  report.add("guards", "guards", scene.guards);
   addSolids(report, world);
   report.add("bodies", "moving bodies", movingBodies(world));
   report.add("seconds", "simulated", last.time,
              number(last.time, "s in ") + std::to_string(recording.steps.size() - 1) + " steps");
   report.add("steps", "", recording.steps.size() - 1, "");
-  report.add("response", "response", contact.response == Response::rigid ? "rigid" : "compliant");
+  report.add("response", "response", nameOf(contact.response));
   report.add("backend", "backend", backendName(contact.backend));
   addStepTimes(report, recording);
   report.add("contacts", "contact points", static_cast<std::size_t>(last.contacts));
@@ -127,11 +165,16 @@ Report describe(const std::string& name, const demo::SceneWorld& world, const de
   report.add("motion_at_the_end", "", motion, "");
   report.add("fastest", "", last.fastest, "");
   report.add("fastest_turn", "", last.fastest_turn, "");
-  const double energy = last.kinetic + last.potential;
   report.add("energy", "energy",
-             {{"start", first.kinetic + first.potential}, {"end", energy}, {"kinetic", last.kinetic}},
-             number(first.kinetic + first.potential, "J at the start, ") + number(energy, "J at the end, ") +
-                 number(last.kinetic, "J of it kinetic"));
+             {{"start", first.energy()},
+              {"end", last.energy()},
+              {"kinetic", last.kinetic},
+              {"gained", recording.energyGained()}},
+             number(first.energy(), "J at the start, ") + number(last.energy(), "J at the end, ") +
+                 number(last.kinetic, "J of it kinetic; all increments sum to ") +
+                 number(recording.energyGained(), "J"));
+  report.add("truths", "", truthsJson(play.verdicts), "");
+  for (const demo::Verdict& verdict : play.verdicts) report.addLine("truth", describe(verdict));
   return report;
 }
 

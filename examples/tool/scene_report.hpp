@@ -2,17 +2,24 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "innersphere/contact_options.hpp"
 #include "report.hpp"
-#include "scenes/recording.hpp"
+#include "scenes/scene.hpp"
 
 namespace innersphere::tool {
 
 /// A line below the title of the film.
-std::string captionOf(const demo::SceneWorld& world, double dt);
+std::string captionOf(const demo::ScenePlay& play);
 
-Report describe(const std::string& name, const demo::SceneWorld& world, const demo::Recording& recording,
-                const ContactOptions& contact);
+Report describe(const demo::Scene& scene, const demo::ScenePlay& play);
+
+/// One line: what was measured, what was expected, and whether that agrees.
+std::string describe(const demo::Verdict& verdict);
+
+nlohmann::ordered_json truthsJson(const std::vector<demo::Verdict>& verdicts);
+
+/// False if one was missed.
+bool allHold(const std::vector<demo::Verdict>& verdicts);
 
 }  // namespace innersphere::tool

@@ -3,15 +3,13 @@
 #include <memory>
 
 #include "contact_arguments.hpp"
-#include "innersphere/error.hpp"
+#include "exit_codes.hpp"
 #include "inputs.hpp"
 #include "numbers.hpp"
 #include "outputs.hpp"
 #include "pictures.hpp"
 #include "scene_report.hpp"
-#include "scenes/recording.hpp"
 #include "scenes/scene.hpp"
-#include "scenes/world.hpp"
 #include "terminal.hpp"
 
 namespace innersphere::tool {
@@ -22,15 +20,14 @@ struct Arguments {
   demo::SceneOptions options;
   std::vector<std::string> meshes;
   MeshOptions mesh;
-  double seconds = 5;
-  double dt = 1.0 / 240;
   std::string csv;
   PictureArguments pictures;
   bool json = false;
+  bool check = false;
   bool force = false;
 };
 
-void run(Arguments& arguments) {
+int run(Arguments& arguments) {
   const demo::Scene& scene = demo::sceneNamed(arguments.scene);
   checkOutput(arguments.csv, arguments.force);
   checkPictures(arguments.pictures, arguments.force);
@@ -39,46 +36,41 @@ void run(Arguments& arguments) {
   for (const std::string& path : arguments.meshes) {
     arguments.options.solids.push_back(loadSolid({path, arguments.mesh}));
   }
-  const Progress progress = progressBar();
-  arguments.options.progress = progress;
-  demo::SceneWorld world(arguments.options.contact);
-  world.film.title = scene.name;
-  scene.build(world, arguments.options);
-  world.film.caption = captionOf(world, arguments.dt);
-  const demo::Recording recording = demo::record(world, arguments.seconds, arguments.dt, progress);
+  arguments.options.progress = progressBar();
+  demo::ScenePlay play = demo::play(scene, arguments.options);
   clearProgressBar();
+  play.recording.film.caption = captionOf(play);
 
-  describe(scene.name, world, recording, arguments.options.contact).print(arguments.json);
+  describe(scene, play).print(arguments.json);
   std::fflush(stdout);
   if (!arguments.csv.empty()) {
-    writeTextOutput(arguments.csv, arguments.force, demo::toCsv(recording));
+    writeTextOutput(arguments.csv, arguments.force, demo::toCsv(play.recording));
     say("wrote " + arguments.csv);
   }
-  writePictures(recording.film, arguments.pictures, arguments.force);
+  writePictures(play.recording.film, arguments.pictures, arguments.force);
+  return arguments.check && !allHold(play.verdicts) ? kCheckFailed : kOk;
 }
 
 }  // namespace
 
-void addSceneRunCommand(CLI::App& scene) {
-  CLI::App* command = scene.add_subcommand("run", "Step a scene without a window and say what happened");
-  auto arguments = std::make_shared<Arguments>();
-  demo::SceneOptions& options = arguments->options;
-  command->add_option("NAME", arguments->scene, "One of `innersphere scene list`")->required();
-  command->add_option("--seconds", arguments->seconds, "Simulated time [s]")
-      ->check(positive())
-      ->capture_default_str();
-  command->add_option("--dt", arguments->dt, "Time step [s]")
-      ->check(CLI::Range(1e-6, 1.0))
-      ->capture_default_str();
-  command->add_option("--spheres", options.spheres, "Of each solid's packing")
-      ->check(positive())
-      ->capture_default_str();
-  addResponseOption(*command, options.contact.response);
-  addBackendOption(*command, options.contact.backend);
-  addEstimatorOption(*command, options.contact.estimator);
-  command->add_option("--seed", options.seed, "Of random places and orientations")
+void addSceneOptions(CLI::App& command, demo::SceneOptions& options) {
+  const auto otherwise = [](CLI::Option* option) { option->default_str("the scene's own"); };
+  otherwise(command.add_option("--seconds", options.seconds, "Simulated time [s]")->check(positive()));
+  otherwise(command.add_option("--dt", options.dt, "Time step [s]")->check(CLI::Range(1e-6, 1.0)));
+  otherwise(command.add_option("--spheres", options.spheres, "Of each solid's packing")->check(positive()));
+  addResponseOption(command, options.contact.response);
+  addBackendOption(command, options.contact.backend);
+  addEstimatorOption(command, options.contact.estimator);
+  command.add_option("--seed", options.seed, "Of random places and orientations")
       ->check(notNegative())
       ->capture_default_str();
+}
+
+void addSceneRunCommand(CLI::App& scene, Session& session) {
+  CLI::App* command = scene.add_subcommand("run", "Step a scene without a window and say what happened");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("NAME", arguments->scene, "One of `innersphere scene list`")->required();
+  addSceneOptions(*command, arguments->options);
   command
       ->add_option("--mesh", arguments->meshes,
                    "Mesh file to use instead of the scene's own solids; may be repeated")
@@ -89,13 +81,14 @@ void addSceneRunCommand(CLI::App& scene) {
                       "Write each step: energies, momenta, contacts, and each body's pose");
   addPictureOptions(*command, arguments->pictures);
   command->add_flag("--json", arguments->json, "Print the summary as JSON");
+  command->add_flag("--check", arguments->check, "Exit status 1 if the scene misses its truth");
   command->add_flag("--force", arguments->force, "Replace existing outputs");
   command->footer(
       "Examples:\n"
       "  innersphere scene run pile --png pile.png --html pile.html\n"
       "  innersphere scene run pile --mesh bunny.obj --mesh cow.obj --spheres 2000\n"
-      "  innersphere scene run chain --dt 0.0166667 --csv chain.csv --json");
-  command->callback([arguments] { run(*arguments); });
+      "  innersphere scene run chain-hang --dt 0.0166667 --csv chain.csv --json");
+  command->callback([arguments, &session] { session.exit_code = run(*arguments); });
 }
 
 }  // namespace innersphere::tool

@@ -24,7 +24,7 @@ class SceneRun : public ToolTest {};
 TEST_F(SceneRun, StackIsRecorded) {
   const auto summary = json("scene run stack --spheres 100 --seconds 0.25 --dt 0.0125 --csv stack.csv");
   EXPECT_EQ(summary["scene"], "stack");
-  EXPECT_EQ(summary["bodies"], 5);
+  EXPECT_EQ(summary["bodies"], 10);
   EXPECT_EQ(summary["steps"], 20);
   EXPECT_NEAR(summary["seconds"].get<double>(), 0.25, 1e-9);
   EXPECT_EQ(summary["solids"][0]["spheres"], 100);
@@ -35,13 +35,13 @@ TEST_F(SceneRun, StackIsRecorded) {
   ASSERT_EQ(recording["time_s"].size(), 21u) << "the start and 20 steps";
   for (std::size_t i = 0; i < 21; ++i)
     EXPECT_NEAR(recording["time_s"][i], 0.0125 * static_cast<double>(i), 1e-9);
-  // Five boxes of 125 kg at heights 0.25, 0.75, ... 2.25 m.
-  EXPECT_NEAR(recording["potential_J"][0], 125 * 9.81 * 6.25, 0.5);
+  // Ten boxes of 125 kg at heights 0.25, 0.75, ... 4.75 m.
+  EXPECT_NEAR(recording["potential_J"][0], 125 * 9.81 * 25, 2);
   EXPECT_EQ(recording["kinetic_J"][0], 0);
-  EXPECT_EQ(recording.count("body4_qw"), 1u);
-  EXPECT_EQ(recording.count("body5_qw"), 0u);
+  EXPECT_EQ(recording.count("body9_qw"), 1u);
+  EXPECT_EQ(recording.count("body10_qw"), 0u);
   for (std::size_t i = 0; i < 21; ++i) {
-    for (int body = 0; body < 5; ++body) {
+    for (int body = 0; body < 10; ++body) {
       double square = 0;
       for (const char* part : {"_qx", "_qy", "_qz", "_qw"}) {
         square += std::pow(recording["body" + std::to_string(body) + part][i], 2);
@@ -51,6 +51,7 @@ TEST_F(SceneRun, StackIsRecorded) {
           << "the stack stands";
     }
     EXPECT_TRUE(std::isfinite(recording["angular_momentum_x"][i]));
+    EXPECT_NEAR(recording["energy_J"][i], recording["kinetic_J"][i] + recording["potential_J"][i], 1e-4);
     EXPECT_GE(recording["deepest_overlap_m"][i], 0);
   }
 }
@@ -58,9 +59,9 @@ TEST_F(SceneRun, StackIsRecorded) {
 TEST_F(SceneRun, ChainFallsAsAPendulumBeforeItsLinksPull) {
   // In the first step every link that is not held falls freely: its speed is g dt, and 9 links of m = 1000 *
   // 2 pi^2 R r^2 have that momentum. The links touch already, so they are allowed to pull a little.
-  json("scene run chain --spheres 100 --seconds 0.01 --dt 0.0025 --csv chain.csv");
+  json("scene run chain-swing --spheres 100 --seconds 0.01 --dt 0.0025 --csv chain.csv");
   auto recording = columns(readFile(path("chain.csv")));
-  const double mass = 1000 * 2 * M_PI * M_PI * 0.2 * 0.05 * 0.05;
+  const double mass = 1000 * 2 * M_PI * M_PI * 1 * 0.25 * 0.25;
   EXPECT_NEAR(recording["momentum_z"][1], -9 * mass * 9.81 * 0.0025, 0.1 * mass * 9.81 * 0.0025 * 9);
   EXPECT_EQ(recording["body0_z"].front(), recording["body0_z"].back()) << "the first link is held";
 }
@@ -99,6 +100,35 @@ TEST_F(SceneRun, SummaryForPeople) {
   for (const char* word : {"density", "median", "worst", "backend", "deepest overlap", "at rest", "energy"}) {
     EXPECT_NE(out.find(word), std::string::npos) << word;
   }
+}
+
+TEST_F(SceneRun, TruthIsComparedWithWhatWasMeasured) {
+  // A ball under its own weight: the truth is shown after a second, not before.
+  const auto shown = json("scene check slide --spheres 100");
+  EXPECT_EQ(shown[0]["scene"], "slide");
+  EXPECT_EQ(shown[0]["truths"].size(), 6u);
+  for (const auto& truth : shown[0]["truths"]) {
+    const double off = truth["measured"].get<double>() - truth["expected"].get<double>();
+    EXPECT_EQ(truth["holds"].get<bool>(), std::fabs(off) <= truth["tolerance"].get<double>());
+    EXPECT_FALSE(truth["source"].get<std::string>().empty());
+  }
+  const auto early = json("scene run slide --spheres 100 --seconds 0.1 --check");
+  EXPECT_TRUE(early["truths"][0]["measured"].is_null());
+}
+
+TEST_F(SceneRun, AMissedTruthIsAnAnswer) {
+  // With one step a second nothing holds.
+  EXPECT_EQ(run("scene check slide --spheres 100 --dt 1 --quiet").exit_code, 1);
+  EXPECT_EQ(run("scene run slide --spheres 100 --dt 1 --quiet").exit_code, 0);
+  EXPECT_EQ(run("scene run slide --spheres 100 --dt 1 --quiet --check").exit_code, 1);
+}
+
+TEST_F(SceneRun, BadInputIsNamed) {
+  refuse("scene run nothing", 2, {"nothing", "pile", "nut"});
+  refuse("scene check pile nothing", 2, {"nothing", "pile"});
+  refuse("scene run nut --mesh box", 2, {"nut", "pile"});
+  refuse("scene run pile --dt 0", 2, {"--dt"});
+  refuse("scene run pile --seconds -1", 2, {"--seconds", "-1"});
 }
 
 }  // namespace

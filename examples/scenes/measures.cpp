@@ -1,0 +1,51 @@
+#include "measures.hpp"
+
+#include <algorithm>
+
+#include "recording.hpp"
+
+namespace innersphere::demo {
+
+Measure finalCoordinate(std::size_t body, int axis) {
+  return [=](const Recording& r) { return r.last(body).position[static_cast<std::size_t>(axis)]; };
+}
+
+Measure farthestOfAll(std::size_t first_body, std::size_t count, double from) {
+  return [=](const Recording& r) {
+    double farthest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      farthest = std::max(farthest, r.farthestFrom(first_body + i, from));
+    }
+    return farthest;
+  };
+}
+
+Measure largestTurn(std::size_t first_body, std::size_t count, double from) {
+  return [=](const Recording& r) {
+    double largest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      largest = std::max(largest, r.turnBetween(first_body + i, from, r.seconds()));
+    }
+    return largest;
+  };
+}
+
+double turnedAboutZ(const Recording& r, std::size_t body, double from, double to) {
+  double angle = 0;
+  for (std::size_t s = r.stepAt(from) + 1; s <= r.stepAt(to); ++s) {
+    angle += r.body(body, s).spin[2] * (r.steps[s].time - r.steps[s - 1].time);
+  }
+  return angle;
+}
+
+Truth energyGainBelow(double limit, double reference, const std::string& what_reference) {
+  return {"energy from nowhere",
+          "",
+          Truth::Kind::at_most,
+          limit,
+          0,
+          "increments of the total energy over " + what_reference + "; the limit is what GImpact gains",
+          [reference](const Recording& r) { return r.energyGained() / reference; }};
+}
+
+}  // namespace innersphere::demo

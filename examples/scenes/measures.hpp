@@ -1,0 +1,31 @@
+// Measures that several scenes compare with their truth.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "truth.hpp"
+
+namespace innersphere::demo {
+
+class SceneWorld;
+
+using Measure = std::function<double(const Recording&)>;
+
+/// Coordinate `axis` of a body's centre of mass at the end [m].
+Measure finalCoordinate(std::size_t body, int axis);
+
+/// The farthest that the centre of any body came from where it was at time `from` [m].
+Measure farthestOfAll(std::size_t first_body, std::size_t count, double from = 0);
+
+/// The largest angle by which any body is turned at the end, against time `from` [rad].
+Measure largestTurn(std::size_t first_body, std::size_t count, double from = 0);
+
+/// The angle that a body turned about the z axis between two times, by its spin [rad].
+double turnedAboutZ(const Recording& r, std::size_t body, double from, double to);
+
+/// Energy that came from nowhere, over a reference [J].
+Truth energyGainBelow(double limit, double reference, const std::string& what_reference);
+
+}  // namespace innersphere::demo

@@ -1,0 +1,66 @@
+#include "scene_check.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "exit_codes.hpp"
+#include "report.hpp"
+#include "scene_report.hpp"
+#include "scene_run.hpp"
+#include "terminal.hpp"
+
+namespace innersphere::tool {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> names;
+  demo::SceneOptions options;
+  bool json = false;
+};
+
+int run(Arguments& arguments) {
+  std::vector<const demo::Scene*> chosen;
+  for (const std::string& name : arguments.names) chosen.push_back(&demo::sceneNamed(name));
+  if (chosen.empty()) {
+    for (const demo::Scene& scene : demo::scenes()) chosen.push_back(&scene);
+  }
+  nlohmann::ordered_json results = nlohmann::ordered_json::array();
+  bool all_hold = true;
+  for (const demo::Scene* scene : chosen) {
+    const Progress bar = progressBar();
+    const std::string& name = scene->name;
+    arguments.options.progress = [&bar, &name](const char* stage, double fraction) {
+      return bar((name + ": " + stage).c_str(), fraction);
+    };
+    const demo::ScenePlay play = demo::play(*scene, arguments.options);
+    clearProgressBar();
+    const nlohmann::ordered_json truths = truthsJson(play.verdicts);
+    results.push_back({{"scene", name},
+                       {"guards", scene->guards},
+                       {"truths", truths},
+                       {"energy_gained", play.recording.energyGained()}});
+    if (!arguments.json) std::printf("%s  (%s)\n", name.c_str(), scene->guards.c_str());
+    for (const demo::Verdict& verdict : play.verdicts) {
+      all_hold = all_hold && verdict.outcome != demo::Outcome::missed;
+      if (!arguments.json) std::printf("  %s\n", describe(verdict).c_str());
+    }
+    std::fflush(stdout);
+  }
+  if (arguments.json) std::printf("%s\n", results.dump(2).c_str());
+  return all_hold ? kOk : kCheckFailed;
+}
+
+}  // namespace
+
+void addSceneCheckCommand(CLI::App& scene, Session& session) {
+  CLI::App* command = scene.add_subcommand("check", "Run scenes and compare them with what physics says");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("NAMES", arguments->names, "Some of `innersphere scene list`; all if none is given");
+  addSceneOptions(*command, arguments->options);
+  command->add_flag("--json", arguments->json, "Print the results as JSON");
+  command->footer("The exit status is 1 if a scene misses its truth.");
+  command->callback([arguments, &session] { session.exit_code = run(*arguments); });
+}
+
+}  // namespace innersphere::tool
