@@ -127,6 +127,18 @@ void SurfaceGauge::corners(std::size_t index, const Gap& gap, const btVector3& n
   appendCorners(a_, gap.triangle_a, normal, gap.on_a, reachOf(touches_[index]), kCornerId, over, corners);
 }
 
+Gauge::Forward SurfaceGauge::forward(std::size_t index, const btVector3&) const {
+  const Touch& touch = touches_[index];
+  return {true, a_.ownRadius(touch.sphere) - touch.distance};
+}
+
+Gauge::Forward PackingGauge::forward(std::size_t index, const btVector3& normal) const {
+  const bool of_a = index < count_a_;
+  const PackingBody& own = of_a ? a_ : b_;
+  const std::size_t sphere = contacts_[index].sphere;
+  return {of_a, (of_a ? 1 : -1) * own.centreOf(sphere).dot(normal) + own.ownRadius(sphere)};
+}
+
 std::uint64_t PackingGauge::id(std::size_t index) const {
   return 2 * std::uint64_t(contacts_[index].sphere) + (index < count_a_ ? 0 : 1);
 }

@@ -52,6 +52,13 @@ class Gauge {
   };
   virtual void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                        std::vector<Corner>& corners) const = 0;
+  /// How far the sphere of a contact stands out of its solid along `normal` (from A to B), or, where that is
+  /// known, towards the other surface. Only differences between spheres of one solid matter [m].
+  struct Forward {
+    bool of_a;
+    btScalar distance;
+  };
+  virtual Forward forward(std::size_t index, const btVector3& normal) const = 0;
   /// Of the sphere behind a contact: the same from step to step.
   virtual std::uint64_t id(std::size_t index) const = 0;
   /// The normals of B do not come from triangles.
@@ -69,6 +76,7 @@ class SurfaceGauge : public Gauge {
   Beyond beyond(std::size_t, const Gap&, const btVector3&) const override { return {false, true}; }
   void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;
+  Forward forward(std::size_t index, const btVector3& normal) const override;
   std::uint64_t id(std::size_t index) const override { return touches_[index].sphere; }
   bool exactB() const override { return true; }
 
@@ -89,6 +97,7 @@ class PackingGauge : public Gauge {
   Beyond beyond(std::size_t index, const Gap& gap, const btVector3& towards) const override;
   void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;
+  Forward forward(std::size_t index, const btVector3& normal) const override;
   std::uint64_t id(std::size_t index) const override;
   bool exactB() const override { return false; }
 

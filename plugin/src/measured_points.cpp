@@ -1,6 +1,7 @@
 #include "measured_points.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "contact_normal.hpp"
 #include "deepest_point.hpp"
@@ -10,9 +11,10 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Directions in which the outermost contacts of a patch are measured, and how many of the most facing and of
-/// the others.
+/// Directions in which the outermost contacts of a patch are measured, sectors in which those that stand out
+/// most of each solid are, and how many of the most facing and of the others.
 constexpr int kDirections = 8;
+constexpr int kSectors = 8;
 constexpr std::size_t kFacing = 6;
 constexpr std::size_t kOthers = 6;
 /// In units of the spacing: how much less deep than the deepest a contact may be.
@@ -47,8 +49,29 @@ void dropFar(const PatchContacts& from, std::vector<std::size_t>& near) {
              near.end());
 }
 
-/// Those of the step before, those that span the patch, those that face the other body most, and some of the
-/// others.
+/// Where solids are bumpy, a corner or a foot stands out, and small spheres in it.
+void pickForward(const PatchContacts& from, const std::vector<std::size_t>& near,
+                 std::vector<std::size_t>& picked) {
+  struct Best {
+    std::size_t index = 0;
+    btScalar distance = -BT_LARGE_FLOAT;
+  };
+  std::array<Best, 2 * kSectors> best;
+  for (std::size_t i : near) {
+    const btVector3 side = toBullet(from.contacts[i].centroid) - from.moments.centre;
+    const btScalar angle = btAtan2(side.dot(from.moments.tangent[1]), side.dot(from.moments.tangent[0]));
+    const int sector = static_cast<int>((angle + SIMD_PI) / SIMD_2_PI * kSectors) % kSectors;
+    const Gauge::Forward forward = from.gauge.forward(i, from.moments.normal);
+    Best& b = best[2 * sector + (forward.of_a ? 0 : 1)];
+    if (forward.distance > b.distance) b = {i, forward.distance};
+  }
+  for (const Best& b : best) {
+    if (b.distance > -BT_LARGE_FLOAT) picked.push_back(b.index);
+  }
+}
+
+/// Those of the step before, those that span the patch, those that stand out or face the other body most, and
+/// some of the others.
 void pick(const PatchContacts& from, std::vector<std::size_t>& picked) {
   static thread_local std::vector<std::size_t> near;
   near = from.indices;
@@ -68,6 +91,7 @@ void pick(const PatchContacts& from, std::vector<std::size_t>& picked) {
                                        [&](std::size_t i, std::size_t j) { return along(i) < along(j); }));
   }
   for (std::size_t k = 0; k < kOthers; ++k) picked.push_back(near[k * near.size() / kOthers]);
+  pickForward(from, near, picked);
   const auto facing = [&](std::size_t i) { return from.moments.normal.dot(toBullet(from.contacts[i].area)); };
   std::partial_sort(near.begin(), near.begin() + kFacing, near.end(),
                     [&](std::size_t i, std::size_t j) { return facing(i) > facing(j); });
@@ -104,7 +128,8 @@ bool measure(const PatchContacts& from, std::size_t i, Measured& m) {
   return true;
 }
 
-bool leans(const btVector3& face, btScalar curvature, const btVector3& normal) {
+/// Whether a corner of a surface is deeper than the place where it was measured.
+bool rises(const btVector3& face, btScalar curvature, const btVector3& normal) {
   return curvature == 0 && face.distance2(normal) > kLeans * kLeans;
 }
 
@@ -132,8 +157,8 @@ void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found)
   for (const Measured& m : measured) {
     const btVector3 normal = normals.at(m);
     add(m.gap.on_b, normal, (m.gap.on_a - m.gap.on_b).dot(normal), m.id);
-    const bool edge_a = leans(m.gap.normal_a, m.gap.curvature_a, normal),
-               edge_b = leans(m.gap.normal_b, m.gap.curvature_b, normal);
+    const bool edge_a = rises(m.gap.normal_a, m.gap.curvature_a, normal),
+               edge_b = rises(m.gap.normal_b, m.gap.curvature_b, normal);
     if (edge_a == edge_b) continue;
     corners.clear();
     from.gauge.corners(m.index, m.gap, normal, edge_a, corners);

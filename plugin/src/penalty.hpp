@@ -15,8 +15,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// What was done to a pair of bodies in a step.
 struct PenaltyReport {
-  btVector3 force{0, 0, 0};   ///< on B, without damping and friction [N]
-  double energy = 0;           ///< potential of that force [J]
+  btVector3 force{0, 0, 0};                ///< on B, without damping and friction [N]
+  double energy = 0;                       ///< potential of that force [J]
   btScalar largest_step = BT_LARGE_FLOAT;  ///< a longer time step may be unstable [s]
 };
 

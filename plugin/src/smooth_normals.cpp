@@ -51,18 +51,28 @@ SmoothNormals::SmoothNormals(const Surface& surface)
   }
 }
 
-btVector3 SmoothNormals::at(std::size_t t, const btVector3& point) const {
+SmoothNormals::Place SmoothNormals::at(std::size_t t, const btVector3& point) const {
   const auto& triangle = surface_.triangles[t];
-  btVector3 v[3];
-  for (int k = 0; k < 3; ++k) v[k] = toBullet(surface_.vertices[triangle[k]]);
+  btVector3 v[3], n[3];
+  for (int k = 0; k < 3; ++k) {
+    v[k] = toBullet(surface_.vertices[triangle[k]]);
+    n[k] = toBullet(corners_[3 * t + k]);
+  }
   const btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
+  btScalar weight[3];
   btVector3 sum(0, 0, 0);
   for (int k = 0; k < 3; ++k) {
-    const btVector3& p = v[(k + 1) % 3];
-    const btVector3& q = v[(k + 2) % 3];
-    sum += toBullet(corners_[3 * t + k]) * (p - point).cross(q - point).dot(normal);
+    weight[k] = (v[(k + 1) % 3] - point).cross(v[(k + 2) % 3] - point).dot(normal) / normal.length2();
+    sum += n[k] * weight[k];
   }
-  return unit(sum);
+  // The parabola with these normals along each edge; on a ball that is its height over the triangle, to
+  // second order.
+  btScalar bulge = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    bulge += weight[k] * weight[next] * (n[next] - n[k]).dot(v[next] - v[k]) / 2;
+  }
+  return {unit(sum), bulge};
 }
 
 btScalar SmoothNormals::curvature(std::size_t t) const {

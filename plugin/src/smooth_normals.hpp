@@ -18,8 +18,12 @@ class SmoothNormals {
  public:
   explicit SmoothNormals(const Surface& surface);
 
-  /// Unit normal at a point of a triangle.
-  btVector3 at(std::size_t triangle, const btVector3& point) const;
+  struct Place {
+    btVector3 normal;  ///< unit
+    btScalar bulge;    ///< how far the curved surface stands out of the triangle there [m]
+  };
+  /// At a point of a triangle.
+  Place at(std::size_t triangle, const btVector3& point) const;
   /// Of the surface across a triangle [1/m]: the curvature along that edge that shows most of it, positive
   /// where the solid is convex, exactly 0 where it is flat.
   btScalar curvature(std::size_t triangle) const;

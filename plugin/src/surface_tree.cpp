@@ -10,6 +10,8 @@ namespace {
 
 /// Quantised nodes keep the triangle's number in 21 bits.
 constexpr std::size_t kMaxQuantizedTriangles = std::size_t(1) << 21;
+/// Rays that are flatter to a triangle meet it itself, not the curved surface that it stands for.
+constexpr btScalar kGrazing = btScalar(0.1);
 
 struct NearestHit : btTriangleRaycastCallback {
   NearestHit(const btVector3& from, const btVector3& to)
@@ -56,7 +58,10 @@ bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScal
   hit.face = nearest.face.normalized();
   const SmoothNormals& normals = normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
   hit.curvature = normals.curvature(hit.triangle);
-  hit.normal = normals.at(hit.triangle, from + direction * hit.distance);
+  const SmoothNormals::Place place = normals.at(hit.triangle, from + direction * hit.distance);
+  hit.normal = place.normal;
+  const btScalar facing = hit.face.dot(direction);
+  if (btFabs(facing) > kGrazing) hit.distance += place.bulge / facing;
   return true;
 }
 

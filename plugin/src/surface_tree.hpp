@@ -26,7 +26,7 @@ class SurfaceTree {
 
   void processTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const;
 
-  /// Where a ray meets the surface first.
+  /// Where a ray meets the surface first: the curved one that the triangles stand for, see SmoothNormals.
   struct Hit {
     std::size_t triangle;
     btScalar distance;   ///< [m] along the ray
