@@ -9,15 +9,15 @@ namespace {
 constexpr double kHalf = 0.5;
 constexpr double kSaddle = 1.2;  // the saddle is z = kSaddle x y
 constexpr double kApart = 0.04;  // from the saddle to the edge of a wedge
-constexpr double kSlope = 0.09;  // half width of a wedge over its height
-constexpr std::array<double, 4> kWedges{-0.3, -0.1, 0.1, 0.3};
+constexpr double kSlope = 0.36;  // half width of a wedge over its height, times the number of wedges
 
 // The border of the notched bottom at y, from low to high x, as (x, z).
-Polygon border(double y) {
+Polygon border(double y, int wedges) {
   Polygon edge{{-kHalf, -kHalf}};
-  for (double x : kWedges) {
+  for (int i = 0; i < wedges; ++i) {
+    const double x = (2 * i + 1 - wedges) / (2.5 * wedges);
     const double top = kSaddle * x * y - kApart;
-    const double width = kSlope * (top + kHalf);
+    const double width = kSlope / wedges * (top + kHalf);
     edge.push_back({x - width, -kHalf});
     edge.push_back({x, top});
     edge.push_back({x + width, -kHalf});
@@ -27,9 +27,9 @@ Polygon border(double y) {
 }
 
 // The bottom with its wedges, and the walls at low and high y.
-Mesh lowerHalf() {
+Mesh lowerHalf(int wedges) {
   Mesh mesh;
-  const Polygon low = border(-kHalf), high = border(kHalf);
+  const Polygon low = border(-kHalf, wedges), high = border(kHalf, wedges);
   const auto n = static_cast<std::uint32_t>(low.size());
   for (const auto& p : low) mesh.vertices.push_back({p[0], -kHalf, p[1]});
   for (const auto& p : high) mesh.vertices.push_back({p[0], kHalf, p[1]});
@@ -53,13 +53,17 @@ Mesh lowerHalf() {
 }  // namespace
 
 // The upper half is the lower one under (x, y, z) -> (y, -x, -z), which maps the saddle to itself.
-Mesh chazelleMesh() {
-  Mesh mesh = lowerHalf();
+Mesh wedgedCube(int wedges) {
+  Mesh mesh = lowerHalf(wedges);
   const Mesh upper = turned(mesh);
   const auto shift = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Vec3d& v : upper.vertices) mesh.vertices.push_back({v[1], -v[0], -v[2]});
   for (const auto& t : upper.triangles) mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
   return mesh;
+}
+
+Mesh chazelleMesh() {
+  return wedgedCube(4);
 }
 
 }  // namespace innersphere

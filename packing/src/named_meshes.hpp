@@ -15,4 +15,7 @@ Mesh nutMesh();
 Mesh boltMesh();
 Mesh chazelleMesh();
 
+/// Chazelle's polyhedron with this many wedges from below and from above.
+Mesh wedgedCube(int wedges);
+
 }  // namespace innersphere
