@@ -149,7 +149,7 @@ CellLists listCells(const core::GridView& grid, const std::function<std::uint32_
     listed += (cells[c].count + core::kListStep - 1) / core::kListStep * core::kListStep;
   }
   CellLists lists;
-  lists.listed.assign(listed, grid.count);
+  lists.listed.assign(listed + CellLists::kPastEnd, grid.count);
   std::vector<std::uint32_t> next(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) next[c] = cells[c].first;
   for (const Entry& entry : entries) lists.listed[next[entry.cell]++] = entry.place;

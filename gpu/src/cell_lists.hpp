@@ -10,6 +10,8 @@
 namespace innersphere {
 
 struct CellLists {
+  static constexpr std::uint32_t kPastEnd = 16;  ///< so many places behind the last list may be read, too
+
   std::vector<core::Cell> table;      ///< at most half full
   std::vector<std::uint32_t> listed;  ///< places, rising in each cell; see GridView::listed
   int hash_shift = 0;

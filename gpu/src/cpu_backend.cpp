@@ -1,6 +1,7 @@
 #include "cpu_backend.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "cpu_kernels.hpp"
 
@@ -142,32 +143,54 @@ class CpuBackend::Toucher : public CandidateSink {
   bool from_a_ = true;
 };
 
-void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin,
-                           std::size_t end, Want want, core::Sums& total, HitWriter& writer) {
+namespace {
+
+constexpr std::size_t kTogether = 64;  ///< clusters, at most
+
+/// Walks those of the clusters begin..end (all of A's, then all of B's) that can meet the other body,
+/// `together` at a time, until the sink wants no more.
+template <typename Sink>
+void walkClusters(const PreparedQuery& query, std::size_t begin, std::size_t end, std::size_t together,
+                  Sink& sink) {
   const core::Setup& setup = query.setup;
   const CpuKernels& kernels = cpuKernels();
-  const std::size_t split = std::clamp<std::size_t>(setup.a.clusters, begin, end);
   Candidates candidates;
+  std::array<std::uint32_t, kTogether> clusters;
+  for (const bool from_a : {true, false}) {
+    sink.setFromA(from_a);
+    const core::Walker walker = core::walkerOf(setup, from_a);
+    std::size_t count = 0;
+    const auto walk = [&] {
+      const std::size_t n = std::exchange(count, 0);
+      return kernels.walk(walker, clusters.data(), n, candidates, sink) && sink.take(candidates);
+    };
+    const auto meeting = [&](const Sphere* balls, std::uint32_t n) {
+      return kernels.ballsMeeting(walker, balls, n);
+    };
+    const std::size_t before = from_a ? 0 : setup.a.clusters;
+    const std::size_t all = from_a ? setup.a.clusters : setup.b.clusters;
+    const std::size_t first = std::clamp(begin, before, before + all) - before;
+    const std::size_t last = std::clamp(end, before, before + all) - before;
+    const ClusterTree& tree = (from_a ? query.grid_a : query.grid_b)->clusterTree();
+    const bool go_on = tree.forMeeting(first, last, meeting, [&](std::size_t cluster) {
+      clusters[count++] = static_cast<std::uint32_t>(cluster);
+      return count < together || walk();
+    });
+    if (!go_on || !walk()) return;
+  }
+}
+
+}  // namespace
+
+void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin,
+                           std::size_t end, Want want, core::Sums& total, HitWriter& writer) {
   if (want == Want::touch) {
-    Toucher toucher(setup, total);
-    for (std::size_t cluster = begin; cluster < end && !toucher.done(); ++cluster) {
-      const bool from_a = cluster < split;
-      toucher.setFromA(from_a);
-      const core::Walker walker = core::walkerOf(setup, from_a);
-      const core::Cluster& own = walker.own.clusters[cluster - (from_a ? 0 : setup.a.clusters)];
-      if (!kernels.walk(walker, own, candidates, toucher) || !toucher.take(candidates)) return;
-    }
+    Toucher toucher(query.setup, total);
+    if (!toucher.done()) walkClusters(query, begin, end, 1, toucher);
     return;
   }
   Summer summer(query, index, want, writer);
-  for (const bool from_a : {true, false}) {
-    summer.setFromA(from_a);
-    const core::Walker walker = core::walkerOf(setup, from_a);
-    const std::size_t before = from_a ? 0 : setup.a.clusters;
-    for (std::size_t c = from_a ? begin : split; c < (from_a ? split : end); ++c)
-      kernels.walk(walker, walker.own.clusters[c - before], candidates, summer);
-    summer.take(candidates);
-  }
+  walkClusters(query, begin, end, kTogether, summer);
   if (summer.sums().pairs == 0) return;
   const tbb::spin_mutex::scoped_lock lock(locks_[index % locks_.size()]);
   total.add(summer.sums());

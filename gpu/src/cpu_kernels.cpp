@@ -1,153 +1,12 @@
 #include "cpu_kernels.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
+
+#include "cpu_walk.hpp"
 
 namespace innersphere {
 
 namespace {
-
-constexpr std::size_t kLanes = 8;
-
-/// Tests a walker against some spheres of the grid: places[0 .. count), or if there are none the first ones.
-/// `counts` has the last word on those that meet it.
-template <typename Counts>
-inline bool testPartners(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t self,
-                         const std::uint32_t* places, std::uint32_t count, const Counts& counts,
-                         Candidates& candidates, CandidateSink& sink) {
-  constexpr std::uint32_t kSize = 32;
-  alignas(64) float x[kSize], y[kSize], z[kSize], radius[kSize];
-  alignas(64) std::uint32_t bits[kSize];
-  for (std::uint32_t begin = 0; begin < count; begin += kSize) {
-    const std::uint32_t n = std::min(kSize, count - begin), whole = (n + kLanes - 1) / kLanes * kLanes;
-    if (candidates.count + kSize > Candidates::kSize && !sink.take(candidates)) return false;
-    const auto placeOf = [&](std::uint32_t k) { return places ? places[begin + k] : begin + k; };
-    for (std::uint32_t k = 0; k < whole; ++k) {
-      const Sphere& s = grid.centred[k < n ? placeOf(k) : grid.count];
-      x[k] = s.x;
-      y[k] = s.y;
-      z[k] = s.z;
-      radius[k] = s.radius;
-    }
-    for (std::uint32_t k = 0; k < whole; ++k) {
-      const float dx = x[k] - lookup.p.x, dy = y[k] - lookup.p.y, dz = z[k] - lookup.p.z;
-      const float sum = lookup.reach + radius[k];
-      const std::uint32_t large = radius[k] < lookup.smallest ? 0 : 1u << k;
-      bits[k] = dx * dx + dy * dy + dz * dz > sum * sum ? 0 : large;
-    }
-    std::uint32_t met = 0;
-    for (std::uint32_t k = 0; k < whole; ++k) met |= bits[k];
-    std::size_t c = candidates.count;
-    for (; met != 0; met &= met - 1) {
-      const std::uint32_t place = placeOf(static_cast<std::uint32_t>(std::countr_zero(met)));
-      candidates.walker[c] = self;
-      candidates.partner[c] = place;
-      c += counts(grid.centred[place]) ? 1 : 0;
-    }
-    candidates.count = c;
-  }
-  return true;
-}
-
-/// Tests a walker against the spheres in all cells where it looks.
-inline bool walkCells(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t self,
-                      Candidates& candidates, CandidateSink& sink) {
-  const core::Cells cells = core::cellsOf(grid, lookup);
-  if (cells.all) {
-    const auto always = [](const Sphere&) { return true; };
-    return testPartners(grid, lookup, self, nullptr, grid.count, always, candidates, sink);
-  }
-  for (std::uint32_t number = 0; number < cells.count; ++number) {
-    std::uint32_t at[3];
-    cells.coordinates(number, at);
-    const core::Cell cell = core::findCell(grid, core::cellKey(cells.tier, at[0], at[1], at[2]));
-    const auto here = [&](const Sphere& s) { return core::countsIn(grid, cells, at, s); };
-    if (!testPartners(grid, lookup, self, grid.listed + cell.first, cell.count, here, candidates, sink))
-      return false;
-  }
-  return true;
-}
-
-/// The walkers of a cluster, all of them side by side: what core::makeLookup and core::cellsOf do for one
-/// that looks into one cell.
-struct Lookups {
-  static constexpr std::size_t kSize = core::kClusterSize;
-  enum State : std::int32_t { none, one_cell, several };
-  alignas(64) float x[kSize], y[kSize], z[kSize], reach[kSize], smallest[kSize];
-  alignas(64) std::int32_t tier[kSize], cell_x[kSize], cell_y[kSize], cell_z[kSize], state[kSize];
-
-  core::Lookup lookup(std::uint32_t k) const { return {{x[k], y[k], z[k]}, reach[k], smallest[k]}; }
-  std::uint64_t key(std::uint32_t k) const {
-    return core::cellKey(tier[k], static_cast<std::uint32_t>(cell_x[k]),
-                         static_cast<std::uint32_t>(cell_y[k]), static_cast<std::uint32_t>(cell_z[k]));
-  }
-};
-
-inline void makeLookups(const core::Walker& walker, const core::Cluster& cluster, Lookups& to) {
-  const core::Search search = walker.search;
-  const Sphere* spheres = walker.own.spheres + cluster.first;
-  const std::uint32_t count = cluster.count;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const core::Probe probe = core::makeProbe(search, spheres[k]);
-    to.x[k] = probe.p.x;
-    to.y[k] = probe.p.y;
-    to.z[k] = probe.p.z;
-    to.reach[k] = probe.radius + search.grid_margin + search.tolerance;
-    to.smallest[k] = core::smallestPartner(search, probe.radius);
-  }
-  const core::GridView grid = walker.grid;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    constexpr float kEnd = 1 << core::kAxisBits;
-    const core::Vec3f p{to.x[k], to.y[k], to.z[k]};
-    const int tier = core::tierOf(grid, core::levelOf(to.smallest[k]));
-    const float inverse = core::powerOfTwo(-(grid.finest + tier));
-    const float x = std::floor((p.x + grid.half.x) * inverse) + 1;
-    const float y = std::floor((p.y + grid.half.y) * inverse) + 1;
-    const float z = std::floor((p.z + grid.half.z) * inverse) + 1;
-    const float lowest = std::min(std::min(x, y), z), highest = std::max(std::max(x, y), z);
-    const float clear = core::reachOf(grid, tier) - to.reach[k];
-    std::int32_t state = clear >= 0 ? Lookups::one_cell : Lookups::several;
-    state = lowest >= 0 ? state : Lookups::several;
-    state = highest < kEnd ? state : Lookups::several;
-    state = core::meetsBounds(grid, p, to.reach[k]) ? state : Lookups::none;
-    to.state[k] = to.smallest[k] > grid.largest ? Lookups::none : state;
-    to.tier[k] = tier;
-    to.cell_x[k] = static_cast<std::int32_t>(std::min(std::max(x, 0.0f), kEnd));
-    to.cell_y[k] = static_cast<std::int32_t>(std::min(std::max(y, 0.0f), kEnd));
-    to.cell_z[k] = static_cast<std::int32_t>(std::min(std::max(z, 0.0f), kEnd));
-  }
-}
-
-inline bool walkImpl(const core::Walker& walker, const core::Cluster& cluster, Candidates& candidates,
-                     CandidateSink& sink) {
-  if (!core::clusterMeets(walker, cluster)) return true;
-  const core::GridView& grid = walker.grid;
-  Lookups lookups;
-  makeLookups(walker, cluster, lookups);
-  core::Cell cells[Lookups::kSize];
-  for (std::uint32_t k = 0; k < cluster.count; ++k) {
-    if (lookups.state[k] == Lookups::one_cell)
-      __builtin_prefetch(grid.cells + core::hashCell(grid, lookups.key(k)));
-  }
-  for (std::uint32_t k = 0; k < cluster.count; ++k) {
-    if (lookups.state[k] != Lookups::one_cell) continue;
-    cells[k] = core::findCell(grid, lookups.key(k));
-    __builtin_prefetch(grid.listed + cells[k].first);
-  }
-  const auto always = [](const Sphere&) { return true; };
-  for (std::uint32_t k = 0; k < cluster.count; ++k) {
-    const std::uint32_t self = cluster.first + k;
-    if (lookups.state[k] == Lookups::one_cell) {
-      if (!testPartners(grid, lookups.lookup(k), self, grid.listed + cells[k].first, cells[k].count, always,
-                        candidates, sink))
-        return false;
-    } else if (lookups.state[k] == Lookups::several) {
-      if (!walkCells(grid, lookups.lookup(k), self, candidates, sink)) return false;
-    }
-  }
-  return true;
-}
 
 /// The spheres of some pairs, an array for each coordinate.
 template <std::size_t kSize>
@@ -155,38 +14,42 @@ struct SpherePairs {
   alignas(64) float columns[8][kSize];
 
   /// Pairs from `count` on repeat the last one, up to whole lanes. Returns how many there are then.
-  template <typename Places>
-  std::size_t load(const core::Setup& setup, const Places& places_a, const Places& places_b,
+  template <typename Lanes>
+  std::size_t load(const core::Setup& setup, const std::uint32_t* places_a, const std::uint32_t* places_b,
                    std::size_t count) {
-    const std::size_t n = (count + kLanes - 1) / kLanes * kLanes;
-    const Sphere* as = setup.a.grid.spheres;
-    const Sphere* bs = setup.b.grid.spheres;
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t c = std::min(k, count - 1);
-      const Sphere a = as[places_a[c]], b = bs[places_b[c]];
-      columns[0][k] = a.x;
-      columns[1][k] = a.y;
-      columns[2][k] = a.z;
-      columns[3][k] = a.radius;
-      columns[4][k] = b.x;
-      columns[5][k] = b.y;
-      columns[6][k] = b.z;
-      columns[7][k] = b.radius;
+    const std::size_t whole = count / kLanes * kLanes;
+    for (std::size_t k = 0; k < whole; k += kLanes) loadLanes<Lanes>(setup, places_a + k, places_b + k, k);
+    if (whole == count) return whole;
+    std::uint32_t a[kLanes], b[kLanes];
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      a[k] = places_a[std::min(whole + k, count - 1)];
+      b[k] = places_b[std::min(whole + k, count - 1)];
     }
-    return n;
+    loadLanes<Lanes>(setup, a, b, whole);
+    return whole + kLanes;
+  }
+
+  template <typename Lanes>
+  void loadLanes(const core::Setup& setup, const std::uint32_t* places_a, const std::uint32_t* places_b,
+                 std::size_t k) {
+    Lanes::load(setup.a.grid.spheres, places_a, kLanes,
+                {columns[0] + k, columns[1] + k, columns[2] + k, columns[3] + k});
+    Lanes::load(setup.b.grid.spheres, places_b, kLanes,
+                {columns[4] + k, columns[5] + k, columns[6] + k, columns[7] + k});
   }
 
   Sphere a(std::size_t k) const { return {columns[0][k], columns[1][k], columns[2][k], columns[3][k]}; }
   Sphere b(std::size_t k) const { return {columns[4][k], columns[5][k], columns[6][k], columns[7][k]}; }
 };
 
-template <bool kWrench>
+template <typename Lanes, bool kWrench>
 inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally) {
   constexpr std::size_t kSize = Candidates::kSize;
   constexpr int kTerms = kWrench ? core::kTerms : core::kVolumeTerms;
   SpherePairs<kSize> spheres;
-  const std::size_t n = spheres.load(setup, from_a ? candidates.walker : candidates.partner,
-                                     from_a ? candidates.partner : candidates.walker, candidates.count);
+  const std::size_t n = spheres.template load<Lanes>(
+      setup, (from_a ? candidates.walker : candidates.partner).data(),
+      (from_a ? candidates.partner : candidates.walker).data(), candidates.count);
   alignas(64) double terms[kTerms][kSize];
   alignas(64) std::int64_t hits[kSize];
   const core::Frame frame = setup.frame;
@@ -210,9 +73,10 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
   }
 }
 
+template <typename Lanes>
 inline void evaluateImpl(const core::Setup& setup, std::size_t count, PairValues& pairs) {
   SpherePairs<PairValues::kSize> spheres;
-  const std::size_t n = spheres.load(setup, pairs.a, pairs.b, count);
+  const std::size_t n = spheres.template load<Lanes>(setup, pairs.a.data(), pairs.b.data(), count);
   const core::Frame frame = setup.frame;
   for (std::size_t k = 0; k < n; ++k) {
     const core::Pair pair = core::makePair(frame, spheres.a(k), spheres.b(k));
@@ -230,30 +94,34 @@ inline void evaluateImpl(const core::Setup& setup, std::size_t count, PairValues
 }
 
 // Each variant is the same code, inlined into a function for its instructions.
-#define INNERSPHERE_KERNELS(name, attributes)                                                              \
+#define INNERSPHERE_KERNELS(name, Lanes, attributes)                                                       \
   struct name {                                                                                            \
-    attributes static bool walk(const core::Walker& walker, const core::Cluster& cluster,                  \
-                                Candidates& candidates, CandidateSink& sink) {                             \
-      return walkImpl(walker, cluster, candidates, sink);                                                  \
+    attributes static std::uint32_t ballsMeeting(const core::Walker& walker, const Sphere* balls,          \
+                                                 std::uint32_t count) {                                    \
+      return innersphere::ballsMeeting(walker, balls, count);                                              \
+    }                                                                                                      \
+    attributes static bool walk(const core::Walker& walker, const std::uint32_t* clusters,                 \
+                                std::size_t count, Candidates& candidates, CandidateSink& sink) {          \
+      return walkClusters<Lanes>(walker, clusters, count, candidates, sink);                               \
     }                                                                                                      \
     attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
                                   Tally& tally) {                                                          \
-      sumImpl<true>(setup, from_a, candidates, tally);                                                     \
+      sumImpl<Lanes, true>(setup, from_a, candidates, tally);                                              \
     }                                                                                                      \
     attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates, \
                                       Tally& tally) {                                                      \
-      sumImpl<false>(setup, from_a, candidates, tally);                                                    \
+      sumImpl<Lanes, false>(setup, from_a, candidates, tally);                                             \
     }                                                                                                      \
     attributes static void evaluate(const core::Setup& setup, std::size_t count, PairValues& pairs) {      \
-      evaluateImpl(setup, count, pairs);                                                                   \
+      evaluateImpl<Lanes>(setup, count, pairs);                                                            \
     }                                                                                                      \
-    static constexpr CpuKernels kKernels{walk, sumAll, sumVolumes, evaluate};                              \
+    static constexpr CpuKernels kKernels{ballsMeeting, walk, sumAll, sumVolumes, evaluate};                \
   }
 
-INNERSPHERE_KERNELS(Baseline, __attribute__((flatten)));
-#if defined(__x86_64__) && defined(__GNUC__)
-INNERSPHERE_KERNELS(Avx2, __attribute__((target("avx2"), flatten)));
-INNERSPHERE_KERNELS(Avx512, __attribute__((target("avx512f,avx512dq,avx512vl"), flatten)));
+INNERSPHERE_KERNELS(Baseline, LanesAny, __attribute__((flatten)));
+#ifdef INNERSPHERE_X86
+INNERSPHERE_KERNELS(Avx2, LanesAvx2, __attribute__((target("avx2"), flatten)));
+INNERSPHERE_KERNELS(Avx512, LanesAvx512, __attribute__((target("avx512f,avx512dq,avx512vl"), flatten)));
 #endif
 #undef INNERSPHERE_KERNELS
 
@@ -262,7 +130,7 @@ INNERSPHERE_KERNELS(Avx512, __attribute__((target("avx512f,avx512dq,avx512vl"), 
 const std::vector<const CpuKernels*>& supportedKernels() {
   static const std::vector<const CpuKernels*> kernels = [] {
     std::vector<const CpuKernels*> all;
-#if defined(__x86_64__) && defined(__GNUC__)
+#ifdef INNERSPHERE_X86
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl"))
       all.push_back(&Avx512::kKernels);

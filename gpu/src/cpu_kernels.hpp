@@ -45,10 +45,12 @@ struct PairValues {
 };
 
 struct CpuKernels {
-  /// Finds the candidates of one cluster, and hands them on where the room ends; the last of them stay in
+  /// A bit for each of up to 32 balls of the walking body that can meet the grid.
+  std::uint32_t (*ballsMeeting)(const core::Walker& walker, const Sphere* balls, std::uint32_t count);
+  /// Finds the candidates of some clusters, and hands them on where the room ends; the last of them stay in
   /// `candidates`. Returns false if it was stopped.
-  bool (*walk)(const core::Walker& walker, const core::Cluster& cluster, Candidates& candidates,
-               CandidateSink& sink);
+  bool (*walk)(const core::Walker& walker, const std::uint32_t* clusters, std::size_t count,
+               Candidates& candidates, CandidateSink& sink);
   /// Decides candidates and sums those that count: all terms, or only volumes.
   void (*sumAll)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
   void (*sumVolumes)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);

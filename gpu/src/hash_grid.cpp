@@ -68,7 +68,7 @@ HashGrid::HashGrid(std::vector<Sphere> spheres) : spheres_(std::move(spheres)) {
   });
   view_.cells = lists_.table.data();
   view_.listed = lists_.listed.data();
-  view_.listed_count = static_cast<std::uint32_t>(lists_.listed.size());
+  view_.listed_count = static_cast<std::uint32_t>(lists_.listed.size()) - CellLists::kPastEnd;
   view_.hash_shift = lists_.hash_shift;
 }
 
@@ -200,6 +200,7 @@ void HashGrid::makeClusters() {
       cluster.ball = {middle.x, middle.y, middle.z, roundUp(radius)};
     }
   });
+  cluster_tree_.build(clusters_);
   view_.clusters = clusters_.data();
   view_.cluster_count = static_cast<std::uint32_t>(clusters_.size());
 }

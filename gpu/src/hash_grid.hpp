@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cell_lists.hpp"
+#include "cluster_tree.hpp"
 #include "core/grid_view.hpp"
 
 namespace innersphere {
@@ -39,6 +40,8 @@ class HashGrid {
   /// Where a sphere of the packing is in the grid's order.
   std::uint32_t placeOf(std::uint32_t id) const { return places_[id]; }
 
+  const ClusterTree& clusterTree() const { return cluster_tree_; }
+
   /// Copies on devices, made on first use there. The lock guards them.
   struct DeviceCopies {
     std::mutex mutex;
@@ -61,6 +64,7 @@ class HashGrid {
   std::vector<std::uint32_t> places_;
   std::vector<std::uint32_t> level_first_;  ///< place of the first sphere of each level, from the lowest on
   std::vector<core::Cluster> clusters_;
+  ClusterTree cluster_tree_;
   CellLists lists_;
   core::GridView view_{};
   mutable DeviceCopies device_copies_;

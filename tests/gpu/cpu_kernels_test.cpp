@@ -30,6 +30,7 @@ class Recorder : public CandidateSink {
     candidates.count = 0;
     return true;
   }
+  std::vector<std::uint32_t> balls;  ///< of the clusters: do they meet?
   Pairs pairs;
   std::vector<Tally> tallies;
 
@@ -43,7 +44,9 @@ Recorder record(const CpuKernels& kernels, const PreparedQuery& query) {
   Candidates candidates;
   const core::Walker walker = core::walkerOf(query.setup, true);
   for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
-    EXPECT_TRUE(kernels.walk(walker, walker.own.clusters[c], candidates, recorder));
+    recorder.balls.push_back(kernels.ballsMeeting(walker, &walker.own.clusters[c].ball, 1));
+  for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
+    EXPECT_TRUE(kernels.walk(walker, &c, 1, candidates, recorder));
   recorder.take(candidates);
   return recorder;
 }
@@ -61,6 +64,7 @@ TEST(CpuKernels, AllGiveTheSameBits) {
   EXPECT_GT(first.pairs.size(), 500u);
   for (const CpuKernels* kernels : supportedKernels()) {
     const Recorder other = record(*kernels, prepared);
+    EXPECT_EQ(first.balls, other.balls);
     EXPECT_EQ(first.pairs, other.pairs);
     ASSERT_EQ(first.tallies.size(), other.tallies.size());
     for (std::size_t i = 0; i < first.tallies.size(); ++i) {

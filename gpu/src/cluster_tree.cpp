@@ -1,0 +1,42 @@
+#include "cluster_tree.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace innersphere {
+
+namespace {
+
+/// A ball around all of some balls.
+Sphere ballAround(const Sphere* begin, const Sphere* end) {
+  constexpr float kMax = std::numeric_limits<float>::max();
+  core::Vec3f lo{kMax, kMax, kMax}, hi{-kMax, -kMax, -kMax};
+  for (const Sphere* s = begin; s < end; ++s) {
+    lo = {std::min(lo.x, s->x), std::min(lo.y, s->y), std::min(lo.z, s->z)};
+    hi = {std::max(hi.x, s->x), std::max(hi.y, s->y), std::max(hi.z, s->z)};
+  }
+  const core::Vec3f middle = 0.5f * (lo + hi);
+  double radius = 0;
+  for (const Sphere* s = begin; s < end; ++s) {
+    const core::Vec3r d = core::Vec3r{s->x, s->y, s->z} - core::Vec3r{middle.x, middle.y, middle.z};
+    radius = std::max(radius, std::sqrt(dot(d, d)) + s->radius);
+  }
+  return {middle.x, middle.y, middle.z,
+          std::nextafter(static_cast<float>(radius), std::numeric_limits<float>::infinity())};
+}
+
+}  // namespace
+
+void ClusterTree::build(const std::vector<core::Cluster>& clusters) {
+  levels_.assign(1, {});
+  for (const core::Cluster& cluster : clusters) levels_[0].push_back(cluster.ball);
+  while (levels_.back().size() > kRun) {
+    const std::vector<Sphere>& below = levels_.back();
+    std::vector<Sphere> balls;
+    for (std::size_t k = 0; k < below.size(); k += kRun)
+      balls.push_back(ballAround(&below[k], &below[k] + std::min<std::size_t>(kRun, below.size() - k)));
+    levels_.push_back(std::move(balls));
+  }
+}
+
+}  // namespace innersphere
