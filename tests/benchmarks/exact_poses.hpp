@@ -16,8 +16,11 @@ struct ExactPose {
 };
 
 /// Reads a table with a header row and the columns m00 to m23 (3 x 4, row by row), V, cx, cy, cz, gx, gy and
-/// gz, in any order and among others; lines that start with # are skipped. Poses without overlap are left
-/// out. Throws Error: file_not_found, bad_format.
+/// gz, in any order and among others; lines that start with # are skipped. Throws Error: file_not_found,
+/// bad_format.
 std::vector<ExactPose> readExactPoses(const std::string& path);
+
+/// The same without the poses that do not overlap.
+std::vector<ExactPose> readOverlappingPoses(const std::string& path);
 
 }  // namespace innersphere::benchmarks

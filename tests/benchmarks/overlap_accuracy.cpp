@@ -118,7 +118,7 @@ void printRows(const std::string& name, std::uint32_t count, const Bins& bins) {
 
 void compare(const std::string& mesh, const std::string& table, const std::vector<std::size_t>& counts,
              FILE* points, std::map<std::uint32_t, Bins>& all) {
-  const std::vector<ExactPose> poses = readExactPoses(table);
+  const std::vector<ExactPose> poses = readOverlappingPoses(table);
   const auto solid = makeSolid(readMesh(mesh), mesh);
   const Bounds box = solid->bounds();
   const double diagonal = norm({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]});

@@ -220,7 +220,7 @@ int main(int argc, char** argv) {
       const std::string source = item.substr(0, equals);
       budget.add(packingFrom(source, spheres), equals == std::string::npos
                                                    ? sampledPoses(source, samples)
-                                                   : readExactPoses(item.substr(equals + 1)));
+                                                   : readOverlappingPoses(item.substr(equals + 1)));
     }
     print(budget, points.get());
   } catch (const Error& error) {

@@ -17,6 +17,8 @@ namespace {
 using namespace innersphere;
 using namespace innersphere::benchmarks;
 
+constexpr double kLeast = 0.01;  // of the solid: errors relative to less say little
+
 struct Arguments {
   std::vector<std::string> sources{"torus", "gear", "bolt"};
   std::vector<double> budgets{50, 100, 200, 500, 1000};
@@ -43,8 +45,9 @@ Column follow(const CollisionModel& model, const std::vector<Placement>& poses, 
     column.times.push_back(timeOf([&] { result = bounded.overlap(query, {1e-6 * budget, 0}); }));
     column.late += budget > 0 && column.times.back() > budget;
     column.prefixes.push_back(result.prefix_a);
-    if (!std::isnan(result.error)) column.stated.push_back(result.error);
-    if (volumes[i] > 0) column.measured.push_back(std::fabs(result.overlap.volume / volumes[i] - 1));
+    if (volumes[i] < kLeast * model.packing().solid.volume || std::isnan(result.error)) continue;
+    column.stated.push_back(result.error);
+    column.measured.push_back(std::fabs(result.overlap.volume / volumes[i] - 1));
   }
   return column;
 }

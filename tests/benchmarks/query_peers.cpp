@@ -58,7 +58,7 @@ class Ours {
 std::vector<Placement> posesOf(const std::string& table, const Bounds& box, std::size_t count) {
   if (table.empty()) return sweepPoses(box, {0, 0, 1}, count);
   std::vector<Placement> poses;
-  for (const ExactPose& pose : readExactPoses(table)) poses.push_back(pose.placement);
+  for (const ExactPose& pose : readOverlappingPoses(table)) poses.push_back(pose.placement);
   return poses;
 }
 
