@@ -1,14 +1,18 @@
 // The cells of a grid and what they list.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <vector>
 
 #include "core/grid_view.hpp"
 
 namespace innersphere {
 
+/// The lists come by rising key. The table has open addressing, and cells with smaller keys were there first:
+/// so both depend on nothing but the cells, in whatever order these are found.
 struct CellLists {
   static constexpr std::uint32_t kPastEnd = 16;  ///< so many places behind the last list may be read, too
 
@@ -17,9 +21,58 @@ struct CellLists {
   int hash_shift = 0;
 };
 
-/// Lists each sphere in all cells where a walker can meet it: those of each tier that are not farther from
-/// its centre than its radius and the reach of the tier's walkers. The spheres of a tier are those from
-/// firstPlace(tier) on. Of `grid`, all but the cells must be there.
-CellLists listCells(const core::GridView& grid, const std::function<std::uint32_t(int)>& firstPlace);
+/// Makes the lists of a grid: counts what each cell will list, sums that up to where its list begins, and
+/// fills. Keeps its memory for the next grid.
+class CellLister {
+ public:
+  /// Lists each sphere in all cells where a walker can meet it: those of each tier that are not farther from
+  /// its centre than its radius and the reach of the tier's walkers. The spheres of tier t are those from
+  /// first_places[t] on. Of `grid`, all but the cells must be there.
+  void list(const core::GridView& grid, const std::vector<std::uint32_t>& first_places, CellLists& lists);
+
+ private:
+  struct Tier;
+  /// A cell of a tier lists a sphere.
+  struct DenseEntry {
+    std::uint32_t cell;
+    std::uint32_t place;
+  };
+  struct SparseEntry {
+    std::uint64_t cell;
+    std::uint32_t place;
+  };
+
+  /// A vector that does not write to memory before its entries are.
+  template <typename Entry>
+  struct Entries {
+    std::unique_ptr<Entry[]> items;
+    std::size_t count = 0, capacity = 0;
+
+    void clear(std::size_t expected) {
+      count = 0;
+      if (capacity < expected) grow(expected);
+    }
+    /// Where the next ones go, up to `more` of them.
+    Entry* room(std::size_t more) {
+      if (count + more > capacity) grow(2 * (count + more));
+      return items.get() + count;
+    }
+    void grow(std::size_t size) {
+      std::unique_ptr<Entry[]> larger(new Entry[size]);
+      std::copy_n(items.get(), count, larger.get());
+      items = std::move(larger);
+      capacity = size;
+    }
+  };
+
+  void listDense(const Tier& tier, std::vector<std::uint32_t>& listed);
+  void listSparse(const Tier& tier, std::vector<std::uint32_t>& listed);
+  void fillTable(const core::GridView& grid, CellLists& lists) const;
+
+  std::vector<core::Cell> cells_;
+  std::vector<std::uint32_t> counts_;       ///< of each chunk, of each cell; later where its next place goes
+  std::vector<Entries<DenseEntry>> dense_;  ///< of each chunk
+  Entries<SparseEntry> sparse_, spare_;
+};
 
 }  // namespace innersphere

@@ -28,14 +28,17 @@ Sphere ballAround(const Sphere* begin, const Sphere* end) {
 }  // namespace
 
 void ClusterTree::build(const std::vector<core::Cluster>& clusters) {
-  levels_.assign(1, {});
+  if (levels_.empty()) levels_.emplace_back();
+  levels_[0].clear();
   for (const core::Cluster& cluster : clusters) levels_[0].push_back(cluster.ball);
-  while (levels_.back().size() > kRun) {
-    const std::vector<Sphere>& below = levels_.back();
-    std::vector<Sphere> balls;
-    for (std::size_t k = 0; k < below.size(); k += kRun)
-      balls.push_back(ballAround(&below[k], &below[k] + std::min<std::size_t>(kRun, below.size() - k)));
-    levels_.push_back(std::move(balls));
+  for (depth_ = 1; levels_[depth_ - 1].size() > kRun; ++depth_) {
+    if (levels_.size() == depth_) levels_.emplace_back();
+    const std::vector<Sphere>& below = levels_[depth_ - 1];
+    levels_[depth_].clear();
+    for (std::size_t k = 0; k < below.size(); k += kRun) {
+      const Sphere* const first = below.data() + k;
+      levels_[depth_].push_back(ballAround(first, first + std::min<std::size_t>(kRun, below.size() - k)));
+    }
   }
 }
 

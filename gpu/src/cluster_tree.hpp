@@ -17,14 +17,14 @@ class ClusterTree {
  public:
   static constexpr std::uint32_t kRun = 32;  ///< balls in one of the next level
 
-  /// Balls are rounded outwards.
+  /// Balls are rounded outwards. There must be a cluster.
   void build(const std::vector<core::Cluster>& clusters);
 
   /// Calls f(cluster) for those of the clusters first..end that meet, by rising number, until it returns
   /// false. `meeting`(balls, count) returns a bit for each of up to kRun balls.
   template <typename Meeting, typename F>
   bool forMeeting(std::size_t first, std::size_t end, const Meeting& meeting, const F& f) const {
-    return visit(levels_.size() - 1, first, end, meeting, f);
+    return visit(depth_ - 1, first, end, meeting, f);
   }
 
  private:
@@ -48,6 +48,7 @@ class ClusterTree {
   }
 
   std::vector<std::vector<Sphere>> levels_;  ///< those of the clusters first
+  std::size_t depth_ = 0;                    ///< levels in use
 };
 
 }  // namespace innersphere

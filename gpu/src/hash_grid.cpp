@@ -52,32 +52,26 @@ double cellsNear(double reach) {
 
 }  // namespace
 
-/// A sphere's key in the order of the grid: its level, then its place on the curve.
-struct HashGrid::Place {
-  std::uint64_t key;
-  std::uint32_t index;
-};
-
-HashGrid::HashGrid(std::vector<Sphere> spheres) : spheres_(std::move(spheres)) {
-  measure();
-  orderSpheres();
+void HashGrid::build(const Sphere* spheres, std::size_t count, GridScratch& scratch) {
+  measure(spheres, count);
+  orderSpheres(spheres, scratch);
   makeClusters();
-  lists_ = listCells(view_, [&](int tier) {  // levels below the tier's look elsewhere
-    const int level = tier == 0 ? 0 : view_.finest + tier - 1 - lowest_level_;
-    return level_first_[static_cast<std::size_t>(std::max(level, 0))];
-  });
+  scratch.lister.list(view_, scratch.first_places, lists_);
   view_.cells = lists_.table.data();
   view_.listed = lists_.listed.data();
   view_.listed_count = static_cast<std::uint32_t>(lists_.listed.size()) - CellLists::kPastEnd;
   view_.hash_shift = lists_.hash_shift;
+  const std::lock_guard lock(device_copies_.mutex);
+  device_copies_.copies.clear();
 }
 
-void HashGrid::measure() {
+void HashGrid::measure(const Sphere* spheres, std::size_t count) {
   constexpr double kMax = std::numeric_limits<double>::infinity();
   double lo[3] = {kMax, kMax, kMax}, hi[3] = {-kMax, -kMax, -kMax};
   float smallest = std::numeric_limits<float>::max(), largest = 0;
   double reach2 = 0;
-  for (const Sphere& s : spheres_) {
+  for (const Sphere* sphere = spheres; sphere < spheres + count; ++sphere) {
+    const Sphere& s = *sphere;
     const double c[3] = {s.x, s.y, s.z}, r = s.radius;
     for (int axis = 0; axis < 3; ++axis) {
       lo[axis] = std::min(lo[axis], c[axis] - r);
@@ -91,7 +85,8 @@ void HashGrid::measure() {
   view_.centre = {middle(0), middle(1), middle(2)};
   // Measured from the rounded centre, so that nothing of a small sphere far from the origin is lost.
   double half[3] = {0, 0, 0}, radius = 0;
-  for (const Sphere& s : spheres_) {
+  for (const Sphere* sphere = spheres; sphere < spheres + count; ++sphere) {
+    const Sphere& s = *sphere;
     const core::Vec3r d = fromCentre(s, view_.centre);
     const double r = s.radius;
     half[0] = std::max(half[0], std::fabs(d.x) + r);
@@ -100,7 +95,7 @@ void HashGrid::measure() {
     radius = std::max(radius, std::sqrt(dot(d, d)) + r);
   }
   view_.half = {roundUp(half[0]), roundUp(half[1]), roundUp(half[2])};
-  view_.count = static_cast<std::uint32_t>(spheres_.size());
+  view_.count = static_cast<std::uint32_t>(count);
   view_.radius = roundUp(radius);
   view_.reach = roundUp(std::sqrt(reach2) + largest);
   view_.largest = largest;
@@ -109,16 +104,20 @@ void HashGrid::measure() {
   lowest_level_ = std::max(core::levelOf(smallest), core::levelOf(widest) - (core::kAxisBits - 2));
 }
 
-void HashGrid::orderSpheres() {
+void HashGrid::orderSpheres(const Sphere* spheres, GridScratch& scratch) {
+  using Place = GridScratch::Place;
   const float inverse_cell = core::powerOfTwo(-lowest_level_);
   const Vec3f half = view_.half;
+  const std::size_t count = view_.count;
   const auto cellsAlong = [&](float x) { return static_cast<std::uint32_t>(x * inverse_cell); };
   curve_bits_ = std::bit_width(cellsAlong(2 * std::max({half.x, half.y, half.z})) | 1u);
-  std::vector<Place> places(spheres_.size()), spare(spheres_.size());
-  forRanges(spheres_.size(), [&](std::size_t begin, std::size_t end) {
+  std::vector<Place>& places = scratch.places;
+  places.resize(count);
+  scratch.spare.resize(count);
+  forRanges(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3f p = relativeCentre(spheres_[i], view_.centre) + half;
-      const int level = std::max(core::levelOf(spheres_[i].radius) - lowest_level_, 0);
+      const Vec3f p = relativeCentre(spheres[i], view_.centre) + half;
+      const int level = std::max(core::levelOf(spheres[i].radius) - lowest_level_, 0);
       places[i] = {static_cast<std::uint64_t>(level) << (3 * curve_bits_) |
                        core::hilbertPlace(cellsAlong(p.x), cellsAlong(p.y), cellsAlong(p.z), curve_bits_),
                    static_cast<std::uint32_t>(i)};
@@ -128,36 +127,37 @@ void HashGrid::orderSpheres() {
   const int levels = std::max(core::levelOf(view_.largest) - lowest_level_, 0) + 1;
   level_first_.assign(static_cast<std::size_t>(levels), 0);
   sortByBits(
-      places, spare, [](const Place& place) { return place.key; }, 0,
+      places, scratch.spare, [](const Place& place) { return place.key; }, 0,
       3 * curve_bits_ + std::bit_width(static_cast<unsigned>(levels - 1)));
-  std::vector<Sphere> sorted(places.size());
-  centred_.resize(places.size() + 1);
+  spheres_.resize(count);
+  centred_.resize(count + 1);
   constexpr float kFar = std::numeric_limits<float>::infinity();
   centred_.back() = {kFar, kFar, kFar, -kFar};
-  ids_.resize(places.size());
-  places_.resize(places.size());
-  forRanges(places.size(), [&](std::size_t begin, std::size_t end) {
+  ids_.resize(count);
+  places_.resize(count);
+  forRanges(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Sphere& s = spheres_[places[k].index];
+      const Sphere& s = spheres[places[k].index];
       const Vec3f p = relativeCentre(s, view_.centre);
-      sorted[k] = s;
+      spheres_[k] = s;
       centred_[k] = {p.x, p.y, p.z, s.radius};
       ids_[k] = places[k].index;
       places_[places[k].index] = static_cast<std::uint32_t>(k);
     }
   });
-  spheres_ = std::move(sorted);
   view_.spheres = spheres_.data();
   view_.centred = centred_.data();
   view_.ids = ids_.data();
-  chooseTiers(places);
+  chooseTiers(scratch);
 }
 
 /// Finds where each level begins, and the finest tier for which cells are not too many.
-void HashGrid::chooseTiers(const std::vector<Place>& places) {
+void HashGrid::chooseTiers(GridScratch& scratch) {
+  const std::vector<GridScratch::Place>& places = scratch.places;
   const auto begins = [&](std::size_t level) {
-    return std::partition_point(places.begin(), places.end(),
-                                [&](const Place& place) { return place.key >> (3 * curve_bits_) < level; });
+    return std::partition_point(places.begin(), places.end(), [&](const GridScratch::Place& place) {
+      return place.key >> (3 * curve_bits_) < level;
+    });
   };
   for (std::size_t l = 0; l < level_first_.size(); ++l)
     level_first_[l] = static_cast<std::uint32_t>(begins(l) - places.begin());
@@ -175,9 +175,13 @@ void HashGrid::chooseTiers(const std::vector<Place>& places) {
   }
   view_.finest = lowest_level_ + tier;
   view_.tiers = levels - tier + 1;
+  scratch.first_places.assign(1, 0);
+  for (int t = 1; t < view_.tiers; ++t)  // levels below the tier's look elsewhere
+    scratch.first_places.push_back(level_first_[static_cast<std::size_t>(tier + t - 1)]);
 }
 
 void HashGrid::makeClusters() {
+  clusters_.clear();
   for (std::size_t l = 0; l < level_first_.size(); ++l) {
     const std::uint32_t end = l + 1 < level_first_.size() ? level_first_[l + 1] : view_.count;
     for (std::uint32_t k = level_first_[l]; k < end; k += core::kClusterSize)

@@ -19,17 +19,37 @@ class DeviceGrid {
   virtual int device() const = 0;
 };
 
-/// Immutable once built. What each cell lists is counted before it is written, so nothing can overflow, and
-/// the grid depends on nothing but the input.
+/// What building a grid needs besides the grid. Whoever builds many keeps it, and saves its allocations.
+struct GridScratch {
+  /// A sphere's key in the order of the grid: its level, then its place on the curve.
+  struct Place {
+    std::uint64_t key;
+    std::uint32_t index;
+  };
+  std::vector<Place> places, spare;
+  std::vector<std::uint32_t> first_places;
+  CellLister lister;
+};
+
+/// What each cell lists is counted before it is written, so nothing can overflow, and the grid depends on
+/// nothing but the spheres: it is the same for any number of threads.
 ///
 /// With volume-true radii the spheres of one packing overlap a little and a cell lists a few more; nothing
 /// relies on how many.
 class HashGrid {
  public:
-  /// The number of spheres is 1 to 2^29, coordinates and radii up to 1e30.
-  explicit HashGrid(std::vector<Sphere> spheres);
+  HashGrid() = default;
+  explicit HashGrid(const std::vector<Sphere>& spheres) {
+    GridScratch scratch;
+    build(spheres.data(), spheres.size(), scratch);
+  }
 
-  /// For the CPU; valid as long as the grid.
+  /// Makes it the grid of these spheres, whatever it was before; allocates only where it needs more memory
+  /// than ever. Copies on devices are dropped. The number of spheres is 1 to 2^29, coordinates and radii up
+  /// to 1e30.
+  void build(const Sphere* spheres, std::size_t count, GridScratch& scratch);
+
+  /// For the CPU; valid until the next build.
   const core::GridView& view() const { return view_; }
 
   /// Spheres of finer levels count as of this one.
@@ -50,10 +70,9 @@ class HashGrid {
   DeviceCopies& deviceCopies() const { return device_copies_; }
 
  private:
-  struct Place;
-  void measure();
-  void orderSpheres();
-  void chooseTiers(const std::vector<Place>& places);
+  void measure(const Sphere* spheres, std::size_t count);
+  void orderSpheres(const Sphere* spheres, GridScratch& scratch);
+  void chooseTiers(GridScratch& scratch);
   void makeClusters();
 
   int lowest_level_ = 0;

@@ -1,6 +1,7 @@
 // A packing made ready for queries.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -17,7 +18,7 @@ enum class Estimator {
 
 /// A packing with its hierarchical hash grids. Bodies of the same shape share one model. Grids are built on
 /// first use, on the device only when a query runs there, and live as long as the model: one for each prefix
-/// and estimator. All members are safe to call from several threads at once.
+/// and estimator. All members but update() are safe to call from several threads at once.
 class CollisionModel {
  public:
   /// Throws Error if the packing is not valid (see validate()) or has lengths beyond 1e15 m.
@@ -26,7 +27,19 @@ class CollisionModel {
   CollisionModel(const CollisionModel&) = delete;
   CollisionModel& operator=(const CollisionModel&) = delete;
 
+  /// As it was made; update() changes nothing here.
   const Packing& packing() const;
+
+  /// For bodies that bend or grow: gives the spheres new places and sizes, in the order and the frame of the
+  /// packing. `count` must be the packing's; radii may come in any order, so a prefix is no longer made of
+  /// the largest spheres. Volume-true radii grow as their spheres do, which is exact where all grow alike.
+  /// Grids are built anew in their old memory by the next query that needs them, so after a first update
+  /// nothing is allocated, unless the spheres fill many more cells than before. No query with this model, in
+  /// any context, and no other call of update() may run at the same time.
+  ///
+  /// Throws Error and changes nothing: bad_argument (a null pointer, another number of spheres, a radius that
+  /// is not positive, lengths beyond 1e15 m), not_finite.
+  void update(const Sphere* spheres, std::size_t count);
 
   struct Impl;  ///< private to the backends
   Impl& impl() const { return *impl_; }
