@@ -23,6 +23,7 @@ struct Item {
   double weight;  ///< length of the area vector
   double volume;
   std::size_t group;
+  std::size_t index;  ///< of its contact: decides between equals
 };
 
 /// Sums over the items of a patch; addition merges two patches.
@@ -61,7 +62,8 @@ struct Group {
 /// come by falling weight, so groups start from the surest directions.
 void groupByDirection(std::vector<Item>& items, double max_angle) {
   const double least = std::cos(max_angle);
-  std::vector<Vec3r> sums;
+  static thread_local std::vector<Vec3r> sums;
+  sums.clear();
   const auto nearest = [&](const Item& item, double& best) {
     std::size_t found = sums.size();
     for (std::size_t g = 0; g < sums.size(); ++g) {
@@ -95,8 +97,9 @@ void splitPlace(Item* begin, Item* end, std::size_t& groups) {
   const Vec3r extent = hi - lo;
   const double longest = std::max({extent.x, extent.y, extent.z});
   double Vec3r::*axis = extent.x == longest ? &Vec3r::x : extent.y == longest ? &Vec3r::y : &Vec3r::z;
-  std::stable_sort(begin, end,
-                   [axis](const Item& a, const Item& b) { return a.place.*axis < b.place.*axis; });
+  std::sort(begin, end, [axis](const Item& a, const Item& b) {
+    return a.place.*axis != b.place.*axis ? a.place.*axis < b.place.*axis : a.index < b.index;
+  });
   const double n = static_cast<double>(end - begin);
   double widest = longest * std::max(kSplitGap, 3 * std::log(n) / n);
   Item* split = nullptr;
@@ -116,11 +119,16 @@ void splitPlace(Item* begin, Item* end, std::size_t& groups) {
 /// Merges the smallest group into the one that is most like it in direction and place, until there are few
 /// enough and none is tiny. Leaves them by falling size.
 void mergeSmall(std::vector<Group>& groups, std::size_t max_groups, double extent2) {
-  const auto larger = [](const Group& a, const Group& b) { return a.size() > b.size(); };
-  for (std::stable_sort(groups.begin(), groups.end(), larger);
-       groups.size() > 1 &&
-       (groups.size() > max_groups || groups.back().size() < kSmallestShare * groups.front().size());
-       std::stable_sort(groups.begin(), groups.end(), larger)) {
+  // By insertion: keeps the order of equals, and allocates nothing.
+  const auto sort = [&] {
+    for (auto g = groups.begin(); g != groups.end(); ++g) {
+      const auto larger = [](const Group& a, const Group& b) { return a.size() > b.size(); };
+      std::rotate(std::upper_bound(groups.begin(), g, *g, larger), g, g + 1);
+    }
+  };
+  for (sort(); groups.size() > 1 &&
+               (groups.size() > max_groups || groups.back().size() < kSmallestShare * groups.front().size());
+       sort()) {
     const Group small = groups.back();
     groups.pop_back();
     Group* best = nullptr;
@@ -159,32 +167,38 @@ void buildPatches(const SphereContact* contacts, std::size_t count, const PatchO
   patches.clear();
 
   // Places relative to the first one: moments lose no digits where the bodies meet far from the origin of A.
-  std::vector<Item> items, undirected;
+  static thread_local std::vector<Item> items, undirected;
+  static thread_local std::vector<Group> groups;
+  items.clear();
+  undirected.clear();
+  groups.clear();
   Vec3r lo{0, 0, 0}, hi{0, 0, 0}, origin{0, 0, 0};
   for (std::size_t i = 0; i < count; ++i) {
     const SphereContact& contact = contacts[i];
     const Vec3r place{contact.centroid[0], contact.centroid[1], contact.centroid[2]};
     if (i == 0) origin = place;
     const Vec3r area{contact.area[0], contact.area[1], contact.area[2]}, local = place - origin;
-    const Item item{area, local, std::sqrt(dot(area, area)), contact.volume, 0};
+    const Item item{area, local, std::sqrt(dot(area, area)), contact.volume, 0, i};
     (item.weight > 0 ? items : undirected).push_back(item);
     lo = {std::min(lo.x, local.x), std::min(lo.y, local.y), std::min(lo.z, local.z)};
     hi = {std::max(hi.x, local.x), std::max(hi.y, local.y), std::max(hi.z, local.z)};
   }
   if (items.empty()) return;
-  std::stable_sort(items.begin(), items.end(),
-                   [](const Item& a, const Item& b) { return a.weight > b.weight; });
+  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+    return a.weight != b.weight ? a.weight > b.weight : a.index < b.index;
+  });
   groupByDirection(items, options.max_angle);
 
-  std::stable_sort(items.begin(), items.end(),
-                   [](const Item& a, const Item& b) { return a.group < b.group; });
+  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+    return a.group != b.group ? a.group < b.group : a.index < b.index;
+  });
   std::size_t parts = 0;
   for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
     const std::size_t group = items[begin].group;
     for (end = begin + 1; end < items.size() && items[end].group == group;) ++end;
     splitPlace(items.data() + begin, items.data() + end, parts);
   }
-  std::vector<Group> groups(parts);
+  groups.resize(parts);
   for (const Item& item : items) groups[item.group].add(item);
   for (Group& group : groups) group.updateNormal();
   mergeSmall(groups, options.max_patches, dot(hi - lo, hi - lo));

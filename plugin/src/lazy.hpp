@@ -1,6 +1,7 @@
 // A value that is made when it is first asked for.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 
@@ -15,13 +16,19 @@ class Lazy {
  public:
   template <typename Make>
   const T& get(const Make& make) const {
-    std::call_once(once_, [&] { value_ = make(); });
+    std::call_once(once_, [&] {
+      value_ = make();
+      made_ = true;
+    });
     return *value_;
   }
+  /// Whether it has been asked for.
+  bool made() const { return made_; }
 
  private:
   mutable std::once_flag once_;
   mutable std::unique_ptr<T> value_;
+  mutable std::atomic<bool> made_{false};
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -147,12 +147,12 @@ bool OverlapBatch::isStale(const PackingContact& contact, const PackingSide& a, 
 void OverlapBatch::gatherStale(const PackingContact* asked) {
   for (PackingContact* other : live_) {
     if (other == asked || !other->wanted) continue;
-    other->wanted = false;
     if (!other->a.object->isActive() && !other->b.object->isActive()) continue;
     PackingSide a = other->a, b = other->b;
     if (!a.refresh() || !b.refresh() || !isStale(*other, a, b)) continue;
     other->a = a;
     other->b = b;
+    other->wanted = false;
     stale_.push_back(other);
   }
 }

@@ -54,7 +54,7 @@ struct PackingContact {
   bool near = false;      ///< enlarged spheres overlap
   bool touching = false;  ///< the surfaces are near each other
   bool deep = false;      ///< they are not, and yet the solids overlap
-  bool wanted = false;    ///< asked for since the last batch
+  bool wanted = false;    ///< asked for since it was in a batch
 };
 
 /// What a batch has done since it was made.

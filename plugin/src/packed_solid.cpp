@@ -1,5 +1,7 @@
 #include "packed_solid.hpp"
 
+#include <algorithm>
+
 #include "vec.hpp"
 
 namespace innersphere {
@@ -121,6 +123,13 @@ const NearestTriangle& PackedSolid::nearestTriangle() const {
 
 const VertexClimb& PackedSolid::vertexClimb() const {
   return vertex_climb_.get([this] { return std::make_unique<VertexClimb>(packing().surface); });
+}
+
+PackedSolid::Built PackedSolid::built() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool spheres = std::any_of(prefixes_.begin(), prefixes_.end(),
+                                   [](const auto& prefix) { return prefix.second.hasTree(); });
+  return {spheres, surface_tree_.made(), nearest_triangle_.made(), vertex_climb_.made()};
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

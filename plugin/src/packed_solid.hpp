@@ -22,6 +22,7 @@ class Prefix {
   Prefix(const Packing& packing, std::size_t count);
 
   const SphereTree& tree() const;
+  bool hasTree() const { return tree_.made(); }
   /// How far the spheres may end inside of the surface; 0 if the packing has none.
   btScalar recess() const;
 
@@ -55,6 +56,11 @@ class PackedSolid {
   const SurfaceTree& surfaceTree() const;
   const NearestTriangle& nearestTriangle() const;
   const VertexClimb& vertexClimb() const;
+  /// What has been built so far.
+  struct Built {
+    bool sphere_tree, surface_tree, nearest_triangle, vertex_climb;
+  };
+  Built built() const;
 
   const std::shared_ptr<const CollisionModel> model;
   PrincipalFrame frame;

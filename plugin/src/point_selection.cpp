@@ -94,8 +94,8 @@ void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uin
   static thread_local std::vector<std::vector<ContactPoint>> groups;
   for (std::vector<ContactPoint>& group : groups) group.clear();
   patches.clear();
-  std::stable_sort(found.begin(), found.end(), [](const MeasuredPoint& a, const MeasuredPoint& b) {
-    return a.point.depth > b.point.depth;
+  std::sort(found.begin(), found.end(), [](const MeasuredPoint& a, const MeasuredPoint& b) {
+    return a.point.depth != b.point.depth ? a.point.depth > b.point.depth : a.point.id < b.point.id;
   });
   for (const MeasuredPoint& m : found) {
     std::size_t best = patches.size();

@@ -6,6 +6,7 @@
 // which side is outside is decided by where the body's spheres are when they first touch, and kept while the
 // pair lives, so that small spheres which have gone through are pushed back the right way.
 #include <algorithm>
+#include <tuple>
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
@@ -24,7 +25,8 @@ constexpr btScalar kSameDirection = btScalar(0.866);  // cos 30 degrees
 /// Nearest point of one triangle to the centre of one sphere, lengths in the packing's frame.
 struct Candidate {
   std::uint32_t sphere;
-  bool interior;  ///< not on an edge or corner
+  std::uint32_t order;  ///< in which it was found
+  bool interior;        ///< not on an edge or corner
   btScalar distance;
   btScalar height;  ///< signed distance from the triangle's plane
   btVector3
@@ -71,8 +73,10 @@ class Collector : public btTriangleCallback {
     if (!(distance < reach)) return;
     const btUsageBitfield& used = result.m_usedVertices;
     const bool interior = used.usedVertexA && used.usedVertexB && used.usedVertexC;
-    Candidate candidate{static_cast<std::uint32_t>(i), interior, distance,
-                        normal.dot(c - v[0]),          normal,   result.m_closestPointOnSimplex};
+    const auto order = static_cast<std::uint32_t>(candidates_.size());
+    Candidate candidate{
+        static_cast<std::uint32_t>(i), order, interior, distance, normal.dot(c - v[0]), normal,
+        result.m_closestPointOnSimplex};
     if (distance > SIMD_EPSILON * reach) {
       candidate.direction = offset / distance;
     } else {
@@ -96,8 +100,8 @@ class TriangleSurface : public OtherSurface {
     candidates.clear();
     collect(body, world, candidates);
     if (candidates.empty()) return;
-    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-      return a.sphere != b.sphere ? a.sphere < b.sphere : a.distance < b.distance;
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+      return std::tie(a.sphere, a.distance, a.order) < std::tie(b.sphere, b.distance, b.order);
     });
     if (side_ == 0) side_ = sideOf(body, candidates);
 

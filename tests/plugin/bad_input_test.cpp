@@ -1,0 +1,103 @@
+// Worlds that are not as they should be.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "innersphere/log.hpp"
+#include "test_packings.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+struct Deepest : btCollisionWorld::ContactResultCallback {
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    depth = std::fmax(depth, -double(point.getDistance()));
+    finite = finite && std::isfinite(point.getPositionWorldOnA().length2());
+    return 0;
+  }
+  double depth = -1e9;
+  bool finite = true;
+};
+
+/// Two cubes far from the origin, 0.1 deep in each other. Where they are is only as exact as Bullet's
+/// scalars, but the contact between them is found from the difference.
+class FarAway : public testing::TestWithParam<double> {};
+
+TEST_P(FarAway, DepthIsExact) {
+  TestWorld world;
+  const btScalar x = btScalar(GetParam());
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 6));
+  btRigidBody& lower = world.add(shape, 0, btVector3(x, 0, 0));
+  btRigidBody& upper = world.add(shape, 1, btVector3(x, 0, btScalar(0.9)));
+  Deepest found;
+  world.world.contactPairTest(&lower, &upper, found);
+  EXPECT_TRUE(found.finite);
+  EXPECT_NEAR(found.depth, 0.1, 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Distances, FarAway, testing::Values(1e3, 1e6, 1e9, 1e12), [](const auto& info) {
+  return "e" + std::to_string(std::lround(std::log10(info.param)));
+});
+
+TEST(FarAwayWorld, BodiesRestAThousandKilometresOut) {
+  const double x = sizeof(btScalar) == 8 ? 1e6 : 1e3;  // in single precision 1e6 m is exact to 6 cm
+  TestWorld world;
+  world.add(makeShape(latticeBox({3, 3, 2}, 12)), 0, btVector3(btScalar(x), 0, -1));
+  btRigidBody& body =
+      world.add(makeShape(latticeBox({1, 1, 1}, 6)), 1, btVector3(btScalar(x), 0, btScalar(0.52)));
+  world.run(2);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.5, 0.005);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().x(), x, 0.005);
+}
+
+/// In single precision steps of a body are rounded there, in Bullet itself: what is left is that nothing
+/// breaks.
+TEST(FarAwayWorld, NothingBreaksWhereScalarsAreCoarse) {
+  for (const double x : {1e6, 1e7, 1e15, 1e18}) {
+    TestWorld world;
+    world.add(makeShape(latticeBox({3, 3, 2}, 6)), 0, btVector3(btScalar(x), 0, -1));
+    world.add(makeShape(latticeBox({1, 1, 1}, 6)), 1, btVector3(btScalar(x), 0, btScalar(0.52)));
+    world.run(0.5);
+    EXPECT_TRUE(std::isfinite(world.bodies.back()->getWorldTransform().getOrigin().length())) << x;
+  }
+}
+
+/// Runs in a process of its own, in which nobody has registered a dispatcher.
+void stepAnUnregisteredWorld() {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 2));
+  btRigidBody lower(0, nullptr, shape.get()), upper(1, nullptr, shape.get());
+  upper.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 1)));
+  world.addRigidBody(&lower);
+  world.addRigidBody(&upper);
+  for (int i = 0; i < 600; ++i) world.stepSimulation(btScalar(1) / 60, 0);
+  std::exit(0);
+}
+
+TEST(UnregisteredWorldDeathTest, SaysSo) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(stepAnUnregisteredWorld(), testing::ExitedWithCode(0),
+              "^InnerSphere: No dispatcher was registered[^\n]*\n$");
+}
+
+/// Shapes of a world that nobody registered are met by their triangles where Bullet can.
+TEST(UnregisteredWorld, DoesNotSpeakOnceADispatcherIsRegistered) {
+  TestWorld registered;
+  int messages = 0;
+  setLogCallback([&](const std::string&) { ++messages; });
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 2));
+  btVector3 min, max;
+  for (int i = 0; i < 5000; ++i) shape->getAabb(btTransform::getIdentity(), min, max);
+  setLogCallback(nullptr);
+  EXPECT_EQ(messages, 0);
+}
+
+}  // namespace
+}  // namespace innersphere::test

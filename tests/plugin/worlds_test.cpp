@@ -1,0 +1,271 @@
+// Packings in every kind of world that Bullet has.
+#include <gtest/gtest.h>
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+#include <BulletDynamics/Character/btKinematicCharacterController.h>
+#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolverMt.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorldMt.h>
+#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
+#include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
+#include <BulletSoftBody/btSoftBodyHelpers.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <LinearMath/btPoolAllocator.h>
+#include <LinearMath/btThreads.h>
+
+#include "bullet_shapes.hpp"
+#include "innersphere/error.hpp"
+#include "test_packings.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+std::shared_ptr<PackingShape> cube() {
+  return makeShape(latticeBox({1, 1, 1}, 6));
+}
+
+/// Bodies in a world that somebody else has made; taken out again at the end.
+class Guests {
+ public:
+  explicit Guests(btDynamicsWorld& world) : world_(world) { world.setGravity(btVector3(0, 0, -10)); }
+  ~Guests() {
+    for (const auto& body : bodies_) world_.removeRigidBody(body.get());
+  }
+  btRigidBody& add(std::shared_ptr<btCollisionShape> shape, double mass, const btVector3& position) {
+    btVector3 inertia(0, 0, 0);
+    if (mass > 0) shape->calculateLocalInertia(btScalar(mass), inertia);
+    bodies_.push_back(std::make_unique<btRigidBody>(btScalar(mass), nullptr, shape.get(), inertia));
+    bodies_.back()->setWorldTransform(btTransform(btQuaternion::getIdentity(), position));
+    world_.addRigidBody(bodies_.back().get());
+    shapes_.push_back(std::move(shape));
+    return *bodies_.back();
+  }
+  void run(double seconds) {
+    for (int i = 0; i < seconds * 60; ++i) world_.stepSimulation(btScalar(1) / 60, 0);
+  }
+  /// Three cubes on top of each other on a packing.
+  void expectStackHolds() {
+    add(makeShape(latticeBox({3, 3, 2}, 12)), 0, btVector3(0, 0, -1));
+    const auto shape = cube();
+    std::vector<btRigidBody*> stack;
+    for (int i = 0; i < 3; ++i) stack.push_back(&add(shape, 1, btVector3(0, 0, btScalar(0.52 + 1.02 * i))));
+    run(2);
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR(stack[i]->getWorldTransform().getOrigin().z(), 0.5 + i, 0.01) << i;
+  }
+
+ private:
+  btDynamicsWorld& world_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;
+  std::vector<std::shared_ptr<btCollisionShape>> shapes_;
+};
+
+TEST(Worlds, Multithreaded) {
+  // Debian's Bullet has no task scheduler but the sequential one: these are its multithreaded classes, on one
+  // thread.
+  btSetTaskScheduler(btGetSequentialTaskScheduler());
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcherMt dispatcher(&configuration);
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+  btDbvtBroadphase broadphase;
+  btConstraintSolverPoolMt solvers(2);
+  btSequentialImpulseConstraintSolverMt large;
+  btDiscreteDynamicsWorldMt world(&dispatcher, &broadphase, &solvers, &large, &configuration);
+  Guests(world).expectStackHolds();
+}
+
+TEST(Worlds, Mlcp) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+  btDbvtBroadphase broadphase;
+  btDantzigSolver dantzig;
+  btMLCPSolver solver(&dantzig);
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  Guests(world).expectStackHolds();
+}
+
+TEST(Worlds, SweepAndPrune) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+  btAxisSweep3 broadphase(btVector3(-10, -10, -10), btVector3(10, 10, 10));
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  Guests(world).expectStackHolds();
+}
+
+/// Soft bodies walk the packing's triangles: their rows of the table are left to Bullet.
+TEST(Worlds, ClothFallsOnAPacking) {
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  {
+    Guests guests(world);
+    world.getWorldInfo().m_gravity.setValue(0, 0, -10);
+    world.getWorldInfo().m_sparsesdf.Initialize();
+    guests.add(cube(), 0, btVector3(0, 0, btScalar(-0.5)));
+    const btScalar s = btScalar(0.4), z = btScalar(0.2);
+    btSoftBody* cloth =
+        btSoftBodyHelpers::CreatePatch(world.getWorldInfo(), btVector3(-s, -s, z), btVector3(s, -s, z),
+                                       btVector3(-s, s, z), btVector3(s, s, z), 9, 9, 0, true);
+    world.addSoftBody(cloth);
+    guests.run(1);
+    btScalar lowest = 1;
+    for (int i = 0; i < cloth->m_nodes.size(); ++i) lowest = btMin(lowest, cloth->m_nodes[i].m_x.z());
+    EXPECT_GT(lowest, -0.1);
+    guests.expectStackHolds();
+    world.removeSoftBody(cloth);
+    delete cloth;
+  }
+}
+
+TEST(Worlds, GImpactRegisteredLaterMeetsTheTriangles) {
+  TestWorld world;
+  btGImpactCollisionAlgorithm::registerAlgorithm(&world.dispatcher);  // takes the pairs with its own shapes
+  const BulletShape ground = makeBulletShape("gimpact");
+  world.add(ground.shape, 0, ground.place.getOrigin());
+  btRigidBody& body = world.add(cube(), 1, btVector3(0, 0, btScalar(0.55)));
+  btRigidBody& other = world.add(cube(), 1, btVector3(0, 0, btScalar(1.6)));
+  world.run(1.5);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.5, 0.05);
+  EXPECT_NEAR(other.getWorldTransform().getOrigin().z() - body.getWorldTransform().getOrigin().z(), 1, 0.01);
+}
+
+/// The character has a pair cache of its own and dispatches it in between.
+TEST(Worlds, ACharacterStandsOnAPackingAndMeetsOthers) {
+  TestWorld world;
+  btGhostPairCallback callback;
+  world.broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&callback);
+  world.add(makeShape(latticeBox({6, 6, 1}, 4)), 0, btVector3(0, 0, btScalar(-0.5)));
+  world.add(cube(), 0, btVector3(2, 0, btScalar(0.5)));
+  btCapsuleShapeZ capsule(btScalar(0.3), btScalar(1));
+  btPairCachingGhostObject ghost;
+  ghost.setCollisionShape(&capsule);
+  ghost.setCollisionFlags(btCollisionObject::CF_CHARACTER_OBJECT);
+  ghost.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(1.2))));
+  btKinematicCharacterController walker(&ghost, &capsule, btScalar(0.2), btVector3(0, 0, 1));
+  world.world.addCollisionObject(&ghost, btBroadphaseProxy::CharacterFilter, btBroadphaseProxy::AllFilter);
+  world.world.addAction(&walker);
+  world.run(1);
+  EXPECT_NEAR(ghost.getWorldTransform().getOrigin().z(), 0.8, 0.1);
+  walker.setWalkDirection(btVector3(btScalar(0.03), 0, 0));
+  world.run(2);
+  EXPECT_GT(ghost.getWorldTransform().getOrigin().x(), 1);
+  EXPECT_LT(ghost.getWorldTransform().getOrigin().x(), 1.3);  // the cube stands in the way
+  world.world.removeAction(&walker);
+  world.world.removeCollisionObject(&ghost);
+}
+
+/// Bullet multiplies the scaling of children by that of the compound.
+TEST(Worlds, ACompoundScalesItsPackings) {
+  TestWorld world;
+  world.addFloor();
+  const auto child = cube();
+  auto compound = std::make_shared<btCompoundShape>();
+  compound->addChildShape(btTransform::getIdentity(), child.get());
+  compound->setLocalScaling(btVector3(2, 2, 2));
+  compound->setLocalScaling(btVector3(1, 1, 1));
+  compound->setLocalScaling(btVector3(2, 2, 2));
+  EXPECT_NEAR(child->getLocalScaling().x(), 2, 1e-6);
+  btRigidBody& body = world.add(compound, 1, btVector3(0, 0, btScalar(1.02)));
+  world.run(1);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 1, 0.01);
+}
+
+/// Continuous collision detection of others goes through the packing's triangles.
+TEST(Worlds, AFastBallDoesNotPassThrough) {
+  TestWorld world;
+  world.world.setGravity(btVector3(0, 0, 0));
+  world.add(makeShape(latticeBox({2, 2, btScalar(0.1)}, 2)), 0, btVector3(0, 0, 0));
+  btRigidBody& ball = world.add(std::make_shared<btSphereShape>(btScalar(0.05)), 1, btVector3(0, 0, 2));
+  ball.setCcdMotionThreshold(btScalar(0.01));
+  ball.setCcdSweptSphereRadius(btScalar(0.04));
+  ball.setLinearVelocity(btVector3(0, 0, -200));
+  world.run(0.1);
+  EXPECT_GT(ball.getWorldTransform().getOrigin().z(), 0);
+}
+
+TEST(Worlds, SlavesToAUsersPoolOfManifolds) {
+  // One manifold and no more: Bullet's own algorithms go without, too.
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = 1;
+  btDefaultCollisionConfiguration configuration(info);
+  btCollisionDispatcher dispatcher(&configuration);
+  dispatcher.setDispatcherFlags(btCollisionDispatcher::CD_DISABLE_CONTACTPOOL_DYNAMIC_ALLOCATION);
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  Guests guests(world);
+  guests.add(makeShape(latticeBox({3, 3, 2}, 6)), 0, btVector3(0, 0, -1));
+  for (int i = 0; i < 2; ++i) guests.add(cube(), 1, btVector3(btScalar(-0.7 + 1.4 * i), 0, btScalar(0.5)));
+  guests.run(0.2);
+  EXPECT_EQ(dispatcher.getNumManifolds(), 1);
+}
+
+TEST(Worlds, APoolWithTooSmallElementsIsAnError) {
+  btPoolAllocator pool(16, 8);
+  btDefaultCollisionConstructionInfo info;
+  info.m_collisionAlgorithmPool = &pool;
+  btDefaultCollisionConfiguration configuration(info);
+  btCollisionDispatcher dispatcher(&configuration);
+  try {
+    PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+    EXPECT_NE(std::string(error.what()).find("m_customCollisionAlgorithmMaxElementSize"), std::string::npos);
+  }
+}
+
+TEST(Worlds, MoreAlgorithmsThanThePoolHolds) {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = 1;
+  btDefaultCollisionConfiguration configuration(info);
+  btCollisionDispatcher dispatcher(&configuration);
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  Guests(world).expectStackHolds();
+}
+
+/// Bullet has one slot for each tick callback, and they share one pointer.
+TEST(Worlds, TickCallbacksAndUserInfoAreTheUsers) {
+  TestWorld world;
+  int ticks = 0;
+  world.world.setInternalTickCallback(
+      [](btDynamicsWorld* w, btScalar) { ++*static_cast<int*>(w->getWorldUserInfo()); }, &ticks);
+  world.addFloor();
+  world.add(cube(), 1, btVector3(0, 0, btScalar(0.5)));
+  world.run(0.5);
+  EXPECT_EQ(ticks, 30);
+  EXPECT_EQ(world.world.getWorldUserInfo(), &ticks);
+}
+
+TEST(Worlds, DeterministicPairsMakeRecreatedWorldsEqual) {
+  const auto places = [] {
+    TestWorld world;
+    world.world.getDispatchInfo().m_deterministicOverlappingPairs = true;
+    world.addFloor();
+    const auto shape = cube();
+    for (int i = 0; i < 6; ++i) {
+      world.add(shape, 1, btVector3(btScalar(0.2 * (i % 2)), btScalar(0.1 * i), btScalar(0.6 + 1.02 * i)));
+    }
+    world.run(1.5);
+    std::vector<btVector3> all;
+    for (const auto& body : world.bodies) all.push_back(body->getWorldTransform().getOrigin());
+    return all;
+  };
+  EXPECT_EQ(places(), places());
+}
+
+}  // namespace
+}  // namespace innersphere::test
