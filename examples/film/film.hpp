@@ -55,12 +55,14 @@ struct Viewpoint {
   double azimuth = 0.6;        ///< [rad] about the z axis, 0: from -y
   double elevation = 0.45;     ///< [rad] above the horizon
   double field_of_view = 0.5;  ///< [rad] vertical
+  bool whole_film = false;     ///< replays show all that moves, not just what is there at the end
 };
 
 /// A recording. The z axis points up.
 struct Film {
   std::string title;
-  std::string caption;  ///< one line below the title
+  std::string caption;             ///< one line below the title
+  std::vector<std::string> notes;  ///< short lines that replays show on request
   Viewpoint viewpoint;
   std::vector<Shape> shapes;
   std::vector<Actor> actors;

@@ -19,8 +19,7 @@ struct Blob {
   float radius;
 };
 
-std::vector<Blob> blobsOf(const Film& film, std::size_t frame) {
-  std::vector<Blob> blobs;
+void addBlobs(const Film& film, std::size_t frame, std::vector<Blob>& blobs) {
   for (std::size_t i = 0; i < film.actors.size(); ++i) {
     const Shape& shape = film.shapes[film.actors[i].shape];
     const Eigen::Isometry3f to_world = transformOf(film.frame(frame)[i]);
@@ -28,8 +27,6 @@ std::vector<Blob> blobsOf(const Film& film, std::size_t frame) {
     if (!shape.surface.vertices.empty()) continue;
     for (const Sphere& s : shape.spheres) blobs.push_back({to_world * Vector3f(s.x, s.y, s.z), s.radius});
   }
-  if (blobs.empty()) blobs.push_back({Vector3f::Zero(), 1});
-  return blobs;
 }
 
 // The shortest distance from `target` at which every blob is between the two planes that bound the picture
@@ -56,6 +53,10 @@ Fit fitAlong(const std::vector<Blob>& blobs, const Vector3f& target, const Vecto
 }  // namespace
 
 Camera frameCamera(const Film& film, std::size_t frame, double aspect) {
+  return frameCamera(film, std::vector<std::size_t>{frame}, aspect);
+}
+
+Camera frameCamera(const Film& film, const std::vector<std::size_t>& frames, double aspect) {
   const Viewpoint& view = film.viewpoint;
   Camera camera;
   const auto a = static_cast<float>(view.azimuth);
@@ -66,7 +67,9 @@ Camera frameCamera(const Film& film, std::size_t frame, double aspect) {
   camera.half_height = static_cast<float>(std::tan(view.field_of_view / 2));
   camera.half_width = camera.half_height * static_cast<float>(aspect);
 
-  const std::vector<Blob> blobs = blobsOf(film, frame);
+  std::vector<Blob> blobs;
+  for (const std::size_t frame : frames) addBlobs(film, frame, blobs);
+  if (blobs.empty()) blobs.push_back({Vector3f::Zero(), 1});
   Vector3f target = blobs.front().centre;
   const Fit horizontal = fitAlong(blobs, target, camera.right, camera.forward, camera.half_width / kMargin);
   const Fit vertical = fitAlong(blobs, target, camera.up, camera.forward, camera.half_height / kMargin);

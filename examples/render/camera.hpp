@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstddef>
+#include <vector>
 
 #include "film/film.hpp"
 
@@ -25,5 +27,8 @@ struct Camera {
 
 /// A camera at the film's viewpoint that shows all actors of a frame, as large as the picture allows.
 Camera frameCamera(const Film& film, std::size_t frame, double aspect);
+
+/// The same for several frames together.
+Camera frameCamera(const Film& film, const std::vector<std::size_t>& frames, double aspect);
 
 }  // namespace innersphere::demo

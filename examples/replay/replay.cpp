@@ -54,7 +54,12 @@ json shapeJson(const Shape& shape, bool colour_by_radius) {
 }
 
 json cameraJson(const Film& film) {
-  const Camera camera = frameCamera(film, film.frames() - 1, kAspect);
+  std::vector<std::size_t> frames{film.frames() - 1};
+  constexpr std::size_t kMoments = 8;  // that stand for the whole film
+  for (std::size_t i = 0; film.viewpoint.whole_film && i < kMoments; ++i) {
+    frames.push_back(i * (film.frames() - 1) / kMoments);
+  }
+  const Camera camera = frameCamera(film, frames, kAspect);
   const Eigen::Vector3f target = camera.eye + camera.distance * camera.forward;
   const Eigen::Vector3f eye = target - 1.2f * camera.distance * camera.forward;
   constexpr double kDegrees = 57.29577951308232;
@@ -64,9 +69,10 @@ json cameraJson(const Film& film) {
           {"aspect", kAspect}};
 }
 
-std::string filmJson(const Film& film) {
+json filmJson(const Film& film) {
   json result = {{"title", film.title},
                  {"caption", film.caption},
+                 {"notes", film.notes},
                  {"frame_rate", film.frame_rate},
                  {"ground", film.has_ground ? json(film.ground) : json(nullptr)},
                  {"camera", cameraJson(film)}};
@@ -79,7 +85,23 @@ std::string filmJson(const Film& film) {
   }
   static_assert(sizeof(Pose) == 7 * sizeof(float), "the page reads poses as seven numbers");
   result["poses"] = base64(film.poses);
+  if (!film.contacts.empty()) {
+    static_assert(sizeof(ContactMark) == 6 * sizeof(float), "the page reads contacts as six numbers");
+    std::vector<ContactMark> marks;
+    std::vector<std::uint32_t> first{0};
+    for (const std::vector<ContactMark>& frame : film.contacts) {
+      marks.insert(marks.end(), frame.begin(), frame.end());
+      first.push_back(static_cast<std::uint32_t>(marks.size()));
+    }
+    result["contacts"] = base64(marks);
+    result["first_contacts"] = base64(first);
+  }
+  return result;
+}
 
+std::string filmsText(const std::vector<Film>& films) {
+  json result = json::array();
+  for (const Film& film : films) result.push_back(filmJson(film));
   // Names come from users' files: no text of theirs may end the script element it stands in.
   std::string text = result.dump(-1, ' ', true, json::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
@@ -88,12 +110,12 @@ std::string filmJson(const Film& film) {
 
 }  // namespace
 
-std::string replayPage(const Film& film) {
-  const std::string data = filmJson(film);
+std::string replayPage(const std::vector<Film>& films) {
+  const std::string data = filmsText(films);
   const std::pair<std::string_view, std::string_view> parts[] = {{"{{css}}", kPageCss},
                                                                  {"{{three}}", kThreeJs},
                                                                  {"{{controls}}", kOrbitControlsJs},
-                                                                 {"{{film}}", data},
+                                                                 {"{{films}}", data},
                                                                  {"{{page}}", kPageJs}};
   std::string page;
   std::string_view rest = kPageHtml;

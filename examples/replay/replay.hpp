@@ -2,14 +2,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "film/film.hpp"
 
 namespace innersphere::demo {
 
-/// The text of one HTML page that carries everything it needs, three.js included: it opens from a file,
-/// without a server and without a network. `#t=2.5&paused&view=spheres` behind its address jumps to a moment
-/// and a view.
-std::string replayPage(const Film& film);
+/// The text of one HTML page that plays films, at least one, and carries everything it needs, three.js
+/// included: it opens from a file, without a server and without a network.
+/// `#film=2&t=2.5&paused&view=spheres` behind its address jumps to a film (counted from 0), a moment and a
+/// view: surface, spheres, both or contacts.
+std::string replayPage(const std::vector<Film>& films);
 
 }  // namespace innersphere::demo

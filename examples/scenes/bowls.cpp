@@ -20,7 +20,7 @@ constexpr double kOuter = 0.5, kInner = 0.42, kRim = (kOuter - kInner) / 2;  // 
 
 // Half a spherical shell with a round rim, open upwards, the centre of the spheres at the origin.
 Mesh bowl() {
-  constexpr int kArc = 40, kRimSteps = 12, kAround = 128;
+  constexpr int kArc = 30, kRimSteps = 10, kAround = 96;
   std::vector<Point2> profile;
   const auto arc = [&](double centre, double radius, double from, double to, int steps) {
     for (int i = 0; i <= steps; ++i) {

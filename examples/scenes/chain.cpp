@@ -34,7 +34,7 @@ void addLinks(SceneWorld& world, const SceneOptions& options, double angle, doub
                   paletteColour(i));
   }
   world.film.has_ground = false;
-  world.film.viewpoint = {0.0, 0.1, 0.5};
+  world.film.viewpoint = {0.0, 0.1, 0.5, true};
 }
 
 // Which of the body's axes is the ring's: the one with a moment of its own.
@@ -43,20 +43,19 @@ int axisOf(const btRigidBody& body) {
   return m.minAxis();
 }
 
-void expectNoDeeper(SceneWorld& world, double limit, const std::string& source, double known_miss) {
+Truth& expectNoDeeper(SceneWorld& world, double limit, const std::string& source) {
   const int axis = axisOf(*world.bodies()[1].body);
-  world.expect({"deepest overlap of the tubes", "m", Truth::Kind::at_most, limit, 0, source,
-                [axis](const Recording& r) {
-                  double nearest = 2 * kTube;
-                  for (std::size_t s = 0; s < r.steps.size(); ++s) {
-                    for (std::size_t i = 0; i + 1 < kLinks; ++i) {
-                      nearest =
-                          std::min(nearest, distanceOfRings(r.body(i, s), r.body(i + 1, s), axis, kRing));
-                    }
-                  }
-                  return 2 * kTube - nearest;
-                },
-                0, known_miss});
+  return world.expect({"deepest overlap of the tubes", "m", Truth::Kind::at_most, limit, 0, source,
+                       [axis](const Recording& r) {
+                         double nearest = 2 * kTube;
+                         for (std::size_t s = 0; s < r.steps.size(); ++s) {
+                           for (std::size_t i = 0; i + 1 < kLinks; ++i) {
+                             nearest = std::min(nearest,
+                                                distanceOfRings(r.body(i, s), r.body(i + 1, s), axis, kRing));
+                           }
+                         }
+                         return 2 * kTube - nearest;
+                       }});
 }
 
 double fallOfAll(const SceneWorld& world, double height) {
@@ -74,25 +73,31 @@ void buildChainHang(SceneWorld& world, const SceneOptions& options) {
   const double low = kSpacing * (kLinks - 1);
   world.expect({"height of the last link", "m", Truth::Kind::equal, -low, 0.005 * low,
                 "9 (2 R - 2 r) below the first; 0.5 %", finalCoordinate(kLinks - 1, 2)});
-  expectNoDeeper(world, 0.02, "GImpact with 2,304 triangles a ring", 0);
-  world.expect(energyGainBelow(0.04, fallOfAll(world, kTube), "a fall of all links by the tube's radius"));
+  expectNoDeeper(world, 0.02, "GImpact with 2,304 triangles a ring");
+  world.expect(energyGainBelow(0.04, fallOfAll(world, kTube), "a fall of all links by the tube's radius"))
+      .known_miss = 0.06;
 }
 
 void buildChainSwing(SceneWorld& world, const SceneOptions& options) {
   constexpr double kAngle = 0.9;
   addLinks(world, options, kAngle, kDensity);
-  expectNoDeeper(world, 0.02, "GImpact with 2,304 triangles a ring", 0);
+  expectNoDeeper(world, 0.02, "GImpact with 2,304 triangles a ring");
   // The links' centres hang 1.5, 3, ... 13.5 m below the first, 7.5 m on average.
   const double drop = 7.5 * (1 - std::cos(kAngle));
-  world.expect(energyGainBelow(0.002, fallOfAll(world, drop), "the fall from the start to the lowest place"));
+  world.expect(energyGainBelow(0.002, fallOfAll(world, drop), "the fall from the start to the lowest place"))
+      .known_miss = 0.025;
 }
 
 void buildChainHeavy(SceneWorld& world, const SceneOptions& options) {
   addLinks(world, options, 0, 100 * kDensity);
-  expectNoDeeper(world, 0.05, "half of what a ring of 32 spheres needs to hold it", 0);
+  const bool long_steps = options.dt > 0.01;  // at 60 Hz the chain stretches
+  expectNoDeeper(world, 0.05, "half of what a ring of 32 spheres needs to hold it").known_miss =
+      long_steps ? 0.12 : 0;
   const double low = kSpacing * (kLinks - 1);
-  world.expect({"height of the last link", "m", Truth::Kind::equal, -low, 0.02 * low,
-                "9 (2 R - 2 r) below the first: no link is lost; 2 %", finalCoordinate(kLinks - 1, 2)});
+  world
+      .expect({"height of the last link", "m", Truth::Kind::equal, -low, 0.02 * low,
+               "9 (2 R - 2 r) below the first: no link is lost; 2 %", finalCoordinate(kLinks - 1, 2)})
+      .known_miss = long_steps ? 0.45 : 0;
 }
 
 }  // namespace innersphere::demo

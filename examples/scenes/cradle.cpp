@@ -40,14 +40,16 @@ void buildCradle(SceneWorld& world, const SceneOptions& options) {
       return highest;
     };
   };
-  world.expect({"rise of the last ball", "m", Truth::Kind::equal, height, 0.05 * height,
-                "as high as the first one was: equal balls swap their speeds", rise(kBalls - 1), 1.5});
+  world
+      .expect({"rise of the last ball", "m", Truth::Kind::equal, height, 0.05 * height,
+               "as high as the first one was: equal balls swap their speeds", rise(kBalls - 1), 1.5})
+      .known_miss = 0.008;
   for (std::size_t i = 1; i < kBalls - 1; ++i) {
     world.expect({"rise of ball " + std::to_string(i + 1), "m", Truth::Kind::equal, 0, 0.05 * height,
                   "it stays", rise(i), 1.5});
   }
   world.film.has_ground = false;
-  world.film.viewpoint = {0.2, 0.15, 0.45};
+  world.film.viewpoint = {0.2, 0.15, 0.45, true};
 }
 
 }  // namespace innersphere::demo

@@ -100,7 +100,7 @@ void buildMaze(SceneWorld& world, const SceneOptions& options) {
                     highest = std::max(highest, r.body(index, s).position[2]);
                   return highest;
                 }});
-  world.film.viewpoint = {0.1, 1.1, 0.5};
+  world.film.viewpoint = {0.1, 1.1, 0.5, true};
 }
 
 }  // namespace innersphere::demo

@@ -61,20 +61,22 @@ void addPile(SceneWorld& world, const SceneOptions& options, std::size_t count,
 void expectRest(SceneWorld& world, double seconds) {
   std::vector<double> sizes;  // of the bodies; the tray's are 0
   for (const SceneBody& body : world.bodies()) sizes.push_back(body.moves() ? body.size : 0);
-  world.expect({"largest motion in the last half second, over the body's size", "", Truth::Kind::at_most,
-                0.01, 0, "nothing is seen to move; turning by an angle counts as half of it",
-                [sizes](const Recording& r) {
-                  double most = 0;
-                  for (std::size_t i = 0; i < sizes.size(); ++i) {
-                    if (sizes[i] == 0) continue;
-                    const double from = r.seconds() - kRest;
-                    const Vec3d &a = r.body(i, r.stepAt(from)).position, &b = r.last(i).position;
-                    const double way = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-                    most = std::max(most, way / sizes[i] + r.turnBetween(i, from, r.seconds()) / 2);
-                  }
-                  return most;
-                },
-                seconds});
+  world
+      .expect({"largest motion in the last half second, over the body's size", "", Truth::Kind::at_most, 0.01,
+               0, "nothing is seen to move; turning by an angle counts as half of it",
+               [sizes](const Recording& r) {
+                 double most = 0;
+                 for (std::size_t i = 0; i < sizes.size(); ++i) {
+                   if (sizes[i] == 0) continue;
+                   const double from = r.seconds() - kRest;
+                   const Vec3d &a = r.body(i, r.stepAt(from)).position, &b = r.last(i).position;
+                   const double way = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+                   most = std::max(most, way / sizes[i] + r.turnBetween(i, from, r.seconds()) / 2);
+                 }
+                 return most;
+               },
+               seconds})
+      .known_miss = 0.04;
   world.expect({"bodies that fell through the floor", "", Truth::Kind::equal, 0, 0, "none leaks out",
                 [sizes](const Recording& r) {
                   double below = 0;

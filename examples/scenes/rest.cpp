@@ -56,10 +56,13 @@ void buildRest(SceneWorld& world, const SceneOptions& options) {
                   "half of the solid's height; 0.5 % of its size", finalCoordinate(world.indexOf(body), 2),
                   1});
   }
-  world.expect(
-      {"creep in the last second", "m", Truth::Kind::at_most, 1e-4, 0, "bodies at rest rest",
-       [count = solids.size()](const Recording& r) { return farthestOfAll(0, count, r.seconds() - 1)(r); },
-       2});
+  world
+      .expect({"creep in the last second", "m", Truth::Kind::at_most, 1e-4, 0, "bodies at rest rest",
+               [count = solids.size()](const Recording& r) {
+                 return farthestOfAll(0, count, r.seconds() - 1)(r);
+               },
+               2})
+      .known_miss = 5e-5;
   world.film.viewpoint = {0.35, 0.35, 0.45};
 }
 
@@ -75,9 +78,11 @@ void buildSoft(SceneWorld& world, const SceneOptions& options) {
   const double box_depth = kDensity * kGravity * kEdge / stiffness;
   const double ball_volume = 4.0 / 3 * std::numbers::pi * std::pow(kRadius, 3);
   const double ball_depth = depthOfCap(kRadius, kDensity * kGravity * ball_volume / stiffness);
-  world.expect({"depth of the box", "m", Truth::Kind::equal, box_depth, 0.05 * box_depth,
-                "weight = stiffness x area x depth",
-                [](const Recording& r) { return kEdge / 2 - r.last(0).position[2]; }, 2});
+  world
+      .expect({"depth of the box", "m", Truth::Kind::equal, box_depth, 0.05 * box_depth,
+               "weight = stiffness x area x depth",
+               [](const Recording& r) { return kEdge / 2 - r.last(0).position[2]; }, 2})
+      .known_miss = 0.0018;
   world.expect({"depth of the ball", "m", Truth::Kind::equal, ball_depth, 0.05 * ball_depth,
                 "weight = stiffness x volume of the cap, pi d^2 (3 r - d) / 3",
                 [](const Recording& r) { return kRadius - r.last(1).position[2]; }, 2});

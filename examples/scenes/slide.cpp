@@ -53,7 +53,7 @@ void buildSlide(SceneWorld& world, const SceneOptions& options) {
     }
   }
   world.film.has_ground = false;
-  world.film.viewpoint = {0.5, 0.5, 0.45};
+  world.film.viewpoint = {0.5, 0.5, 0.45, true};
 }
 
 }  // namespace innersphere::demo

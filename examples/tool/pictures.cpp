@@ -32,7 +32,7 @@ void checkPictures(const PictureArguments& arguments, bool force) {
 
 void writePictures(const demo::Film& film, const PictureArguments& arguments, bool force) {
   if (!arguments.html.empty()) {
-    writeTextOutput(arguments.html, force, demo::replayPage(film));
+    writeTextOutput(arguments.html, force, demo::replayPage({film}));
     say("wrote " + arguments.html);
   }
   if (!arguments.png.empty()) {

@@ -2,6 +2,7 @@
 
 #include "commands.hpp"
 #include "scene_check.hpp"
+#include "scene_gallery.hpp"
 #include "scene_run.hpp"
 
 namespace innersphere::tool {
@@ -18,6 +19,7 @@ void addSceneCommand(CLI::App& app, Session& session) {
   });
   addSceneRunCommand(*command, session);
   addSceneCheckCommand(*command, session);
+  addSceneGalleryCommand(*command);
 }
 
 }  // namespace innersphere::tool

@@ -28,11 +28,8 @@ int run(Arguments& arguments) {
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   bool all_hold = true;
   for (const demo::Scene* scene : chosen) {
-    const Progress bar = progressBar();
     const std::string& name = scene->name;
-    arguments.options.progress = [&bar, &name](const char* stage, double fraction) {
-      return bar((name + ": " + stage).c_str(), fraction);
-    };
+    arguments.options.progress = progressOfScene(name);
     const demo::ScenePlay play = demo::play(*scene, arguments.options);
     clearProgressBar();
     const nlohmann::ordered_json truths = truthsJson(play.verdicts);

@@ -101,18 +101,21 @@ std::string captionOf(const demo::ScenePlay& play) {
          std::to_string(spheres) + " spheres, step " + number(1e3 * play.options.dt, "ms");
 }
 
-std::string describe(const demo::Verdict& verdict) {
+std::string summaryOf(const demo::Verdict& verdict) {
   const demo::Truth& truth = verdict.truth;
   const std::string allowed =
       truth.kind == demo::Truth::Kind::at_most
           ? "at most " + number(truth.expected, truth.unit)
           : "expected " + number(truth.expected) + " +- " + number(truth.tolerance, truth.unit);
-  const std::string rest = truth.what + ": " + allowed + " (" + truth.source + ")";
   if (verdict.outcome == demo::Outcome::not_recorded) {
-    return "not shown  " + rest + ", takes " + number(truth.needs, "s");
+    return "not shown  " + truth.what + ": takes " + number(truth.needs, "s") + ", " + allowed;
   }
   return (verdict.outcome == demo::Outcome::holds ? "holds   " : "MISSED  ") + truth.what + ": " +
-         number(verdict.measured, truth.unit) + ", " + allowed + " (" + truth.source + ")";
+         number(verdict.measured, truth.unit) + ", " + allowed;
+}
+
+std::string describe(const demo::Verdict& verdict) {
+  return summaryOf(verdict) + " (" + verdict.truth.source + ")";
 }
 
 nlohmann::ordered_json truthsJson(const std::vector<demo::Verdict>& verdicts) {

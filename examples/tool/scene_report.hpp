@@ -17,6 +17,9 @@ Report describe(const demo::Scene& scene, const demo::ScenePlay& play);
 /// One line: what was measured, what was expected, and whether that agrees.
 std::string describe(const demo::Verdict& verdict);
 
+/// The same without the source of what was expected.
+std::string summaryOf(const demo::Verdict& verdict);
+
 nlohmann::ordered_json truthsJson(const std::vector<demo::Verdict>& verdicts);
 
 /// False if one was missed.

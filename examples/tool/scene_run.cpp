@@ -66,6 +66,12 @@ void addSceneOptions(CLI::App& command, demo::SceneOptions& options) {
       ->capture_default_str();
 }
 
+Progress progressOfScene(const std::string& name) {
+  return [bar = progressBar(), name](const char* stage, double fraction) {
+    return bar((name + ": " + stage).c_str(), fraction);
+  };
+}
+
 void addSceneRunCommand(CLI::App& scene, Session& session) {
   CLI::App* command = scene.add_subcommand("run", "Step a scene without a window and say what happened");
   auto arguments = std::make_shared<Arguments>();

@@ -1,0 +1,86 @@
+// How a measure is compared with its truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/recording.hpp"
+#include "scenes/ring_distance.hpp"
+#include "scenes/truth.hpp"
+
+namespace innersphere::test {
+namespace {
+
+using demo::Outcome;
+using demo::Truth;
+
+demo::Recording recordingOf(double seconds) {
+  demo::Recording recording;
+  for (int i = 0; i <= 10; ++i) {
+    demo::StepRecord step;
+    step.time = seconds * i / 10;
+    step.kinetic = i % 2;  // up and down by 1 J
+    recording.steps.push_back(step);
+    demo::BodyState state;
+    state.position = {0.1 * i, 0, 0};
+    state.rotation = {0, 0, std::sin(0.05 * i), std::cos(0.05 * i)};  // by 0.1 rad a step about z
+    recording.states.push_back(state);
+  }
+  recording.names = {"body"};
+  return recording;
+}
+
+Truth truthThat(Truth::Kind kind, double measured, double expected, double tolerance) {
+  return {"x", "m", kind, expected, tolerance, "", [measured](const demo::Recording&) { return measured; },
+          0.5};
+}
+
+TEST(Verdict, FollowsFromToleranceOrBound) {
+  const demo::Recording recording = recordingOf(1);
+  const auto outcome = [&](Truth::Kind kind, double measured) {
+    return judge({truthThat(kind, measured, 2, kind == Truth::Kind::equal ? 0.5 : 0)}, recording)[0].outcome;
+  };
+  EXPECT_EQ(outcome(Truth::Kind::equal, 2.5), Outcome::holds);
+  EXPECT_EQ(outcome(Truth::Kind::equal, 1.5), Outcome::holds);
+  EXPECT_EQ(outcome(Truth::Kind::equal, 2.51), Outcome::missed);
+  EXPECT_EQ(outcome(Truth::Kind::equal, 1.49), Outcome::missed);
+  EXPECT_EQ(outcome(Truth::Kind::at_most, 2), Outcome::holds);
+  EXPECT_EQ(outcome(Truth::Kind::at_most, -100), Outcome::holds);
+  EXPECT_EQ(outcome(Truth::Kind::at_most, 2.01), Outcome::missed);
+  for (const auto kind : {Truth::Kind::equal, Truth::Kind::at_most}) {
+    EXPECT_EQ(outcome(kind, std::nan("")), Outcome::missed) << "what is not a number is not shown";
+    EXPECT_EQ(outcome(kind, INFINITY), Outcome::missed);
+  }
+  EXPECT_NEAR(demo::missOf(truthThat(Truth::Kind::equal, 0, 2, 0.5), 3), 0.5, 1e-12);
+}
+
+TEST(Verdict, IsOpenWhereTheRecordingIsTooShort) {
+  const Truth truth = truthThat(Truth::Kind::equal, 2, 2, 0);
+  EXPECT_EQ(judge({truth}, recordingOf(0.4))[0].outcome, Outcome::not_recorded);
+  EXPECT_EQ(judge({truth}, recordingOf(0.5))[0].outcome, Outcome::holds);
+}
+
+TEST(Recording, FindsStepsWaysTurnsAndGains) {
+  const demo::Recording recording = recordingOf(1);
+  EXPECT_EQ(recording.stepAt(0), 0u);
+  EXPECT_EQ(recording.stepAt(0.44), 4u);
+  EXPECT_EQ(recording.stepAt(0.46), 5u);
+  EXPECT_EQ(recording.stepAt(7), 10u);
+  EXPECT_NEAR(recording.farthestFrom(0), 1, 1e-12);
+  EXPECT_NEAR(recording.farthestFrom(0, 0.5), 0.5, 1e-12);
+  EXPECT_NEAR(recording.turnBetween(0, 0.2, 0.9), 0.7, 1e-12);
+  EXPECT_NEAR(recording.energyGained(), 5, 1e-12) << "five rises by 1 J";
+}
+
+TEST(RingDistance, OfRingsInKnownPlaces) {
+  demo::BodyState a, b;
+  b.position = {0, 0, 0.3};
+  EXPECT_NEAR(distanceOfRings(a, b, 2, 1), 0.3, 1e-6) << "one above the other";
+  b.position = {2.5, 0, 0};
+  EXPECT_NEAR(distanceOfRings(a, b, 2, 1), 0.5, 1e-6) << "side by side";
+  b.position = {1.5, 0, 0};
+  b.rotation = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
+  EXPECT_NEAR(distanceOfRings(a, b, 2, 1), 0.5, 1e-6) << "interlocked, at right angles";
+}
+
+}  // namespace
+}  // namespace innersphere::test
