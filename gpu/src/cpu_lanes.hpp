@@ -55,14 +55,15 @@ struct LanesAny {
     return met;
   }
 
-  /// Appends the pairs of a walker with the places of these bits. There must be room for kLanes.
-  static void append(std::uint32_t walker, const std::uint32_t* places, std::uint32_t bits, Candidates& to) {
-    std::size_t c = to.count;
+  /// Writes the pairs of a walker with the places of these bits, from number c on, and returns how many there
+  /// are then. There must be room for kLanes.
+  static std::size_t append(std::uint32_t walker, const std::uint32_t* places, std::uint32_t bits,
+                            Candidates& to, std::size_t c) {
     for (; bits != 0; bits &= bits - 1, ++c) {
       to.walker[c] = walker;
       to.partner[c] = places[std::countr_zero(bits)];
     }
-    to.count = c;
+    return c;
   }
 };
 
@@ -146,11 +147,11 @@ struct LanesAvx512 {
     return _mm512_mask_cmp_ps_mask(near, r, _mm512_set1_ps(lookup.smallest), _CMP_NLT_UQ);
   }
 
-  INNERSPHERE_AVX512 static void append(std::uint32_t walker, const std::uint32_t* places, std::uint32_t bits,
-                                        Candidates& to) {
+  INNERSPHERE_AVX512 static std::size_t append(std::uint32_t walker, const std::uint32_t* places,
+                                               std::uint32_t bits, Candidates& to, std::size_t c) {
     const __m512i met = _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), _mm512_loadu_si512(places));
     const __m512i self = _mm512_set1_epi32(static_cast<int>(walker));
-    std::uint32_t *walkers = to.walker.data() + to.count, *partners = to.partner.data() + to.count;
+    std::uint32_t *walkers = to.walker.data() + c, *partners = to.partner.data() + c;
     const int count = std::popcount(bits);
     // Mostly few: short stores seldom cross a line of the cache.
     std::memcpy(walkers, &self, 16);
@@ -159,7 +160,7 @@ struct LanesAvx512 {
       std::memcpy(walkers, &self, 64);
       std::memcpy(partners, &met, 64);
     }
-    to.count += static_cast<std::size_t>(count);
+    return c + static_cast<std::size_t>(count);
   }
 };
 

@@ -19,8 +19,7 @@ inline std::uint32_t ballsMeeting(const core::Walker& walker, const Sphere* ball
   const core::GridView grid = walker.grid;
   std::uint32_t met = 0;
   for (std::uint32_t k = 0; k < count; ++k) {
-    const core::Probe probe = core::makeProbe(search, balls[k]);
-    const bool meets = core::meetsBounds(grid, probe.p, probe.radius + search.grid_margin + search.tolerance);
+    const bool meets = core::ballMeets(search, grid, balls[k]);
     met |= (meets ? 1u : 0u) << k;
   }
   return met;
@@ -218,12 +217,18 @@ inline bool walkTogether(const core::GridView& grid, Walkers& walkers, LoadedCel
       if (!testList<Lanes>(grid, lookup, self, listed, cell.count, always, candidates, sink)) return false;
     } else if (cell.count > 0) {
       const Columns spheres = loaded.load<Lanes>(grid, cell);
+      std::size_t count = candidates.count;
       for (std::uint32_t k = 0; k < cell.count; k += kLanes) {
-        if (candidates.count + kLanes > Candidates::kSize && !sink.take(candidates)) return false;
+        if (count + kLanes > Candidates::kSize) {
+          candidates.count = count;
+          if (!sink.take(candidates)) return false;
+          count = 0;
+        }
         const std::uint32_t met =
             Lanes::meeting(lookup, {spheres.x + k, spheres.y + k, spheres.z + k, spheres.radius + k});
-        Lanes::append(self, listed + k, met, candidates);
+        count = Lanes::append(self, listed + k, met, candidates, count);
       }
+      candidates.count = count;
     }
   }
   walkers.count = 0;

@@ -142,8 +142,7 @@ bool ballsMeet(const Side& a, const Side& b, const Vec3r& offset) {
 /// Whether the ball around the walker's spheres meets the box around those of the grid.
 bool boxMeets(const Side& walker, const Side& owner, const core::Search& search) {
   const Vec3f& c = walker.grid.centre;
-  const core::Probe ball = core::makeProbe(search, {c.x, c.y, c.z, walker.grid.radius});
-  return core::meetsBounds(owner.grid, ball.p, ball.radius + search.grid_margin + search.tolerance);
+  return core::ballMeets(search, owner.grid, {c.x, c.y, c.z, walker.grid.radius});
 }
 
 /// Units small enough to keep the smallest lens and large enough for all spheres to overlap all others,

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 #include "allocation_counter.hpp"
 #include "conformance.hpp"
@@ -145,6 +146,26 @@ TEST_P(UpdateConformance, BadSpheresChangeNothing) {
     EXPECT_TRUE(sameBits(before, overlapOf(context, *model, *other, Estimator::raw)));
   }
   EXPECT_THROW(model->update(nullptr, spheres.size()), Error);
+}
+
+TEST_P(UpdateConformance, ManyThreadsMayBeTheFirstToAskAgain) {
+  const Spheres spheres = randomSpheres(500, 0.25, 30, 1);
+  const auto model = makeModel(spheres, true), other = makeModel(spheres, true);
+  for (const double by : {0.1, -0.1}) {
+    const Spheres moved = bent(spheres, by);
+    model->update(moved.data(), moved.size());
+    std::vector<Overlap> overlaps(4);
+    std::vector<std::thread> threads;
+    for (Overlap& overlap : overlaps) {
+      threads.emplace_back([&] {
+        QueryContext context = makeContext(1);
+        overlap = overlapOf(context, *model, *other, Estimator::volume_true);
+        overlapOf(context, *model, *other, Estimator::raw, 100);
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (const Overlap& overlap : overlaps) EXPECT_TRUE(sameBits(overlap, overlaps[0]));
+  }
 }
 
 INNERSPHERE_FOR_EACH_BACKEND(UpdateConformance);

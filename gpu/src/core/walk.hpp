@@ -45,11 +45,18 @@ INNERSPHERE_HD inline Walker walkerOf(const Setup& setup, bool from_a) {
   return {setup.b.grid, setup.a.grid, setup.b_in_a};
 }
 
+/// False if nothing in a ball around spheres of the walking body can meet the grid. The ball may be much
+/// larger than the grid, and its place is rounded by a part of the way to it, so it is made a little larger
+/// still.
+INNERSPHERE_HD inline bool ballMeets(const Search& search, const GridView& grid, const Sphere& ball) {
+  constexpr float kRounded = 1 + 1.0f / (1 << 20);
+  const Probe around = makeProbe(search, ball);
+  return meetsBounds(grid, around.p, kRounded * around.radius + search.grid_margin + search.tolerance);
+}
+
 /// False if no sphere of the cluster can meet one of the grid.
 INNERSPHERE_HD inline bool clusterMeets(const Walker& walker, const Cluster& cluster) {
-  const Probe around = makeProbe(walker.search, cluster.ball);
-  return meetsBounds(walker.grid, around.p,
-                     around.radius + walker.search.grid_margin + walker.search.tolerance);
+  return ballMeets(walker.search, walker.grid, cluster.ball);
 }
 
 /// A sphere on its walk.
