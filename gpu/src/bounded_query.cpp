@@ -12,6 +12,9 @@ namespace innersphere {
 namespace {
 
 constexpr std::uint64_t kShortest = 64;  ///< spheres of the first step
+constexpr std::size_t kRecent = 8;       ///< queries whose slowest counts
+constexpr double kGuess = 2;             ///< growth with twice the spheres
+constexpr double kReserve = 1.15;        ///< for what one query differs from the next
 
 std::uint32_t limitOf(const CollisionModel* model, std::uint32_t prefix) {
   if (!model) throw Error(ErrorCode::bad_argument, "a model is a null pointer");
@@ -58,10 +61,9 @@ double errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator
 
 void BoundedQuery::warmUp(const PairQuery& query, const QueryOptions& options) {
   const std::size_t steps = stepsOf(query);
-  for (std::size_t step = 0; step < steps; ++step) {
-    context_.overlap(at(step, query), options);
-    timedRun(query, options, step);
-  }
+  growth_.assign(steps, 0);
+  recent_.clear();
+  for (std::size_t step = 0; step < steps; ++step) timedRun(query, options, step);
 }
 
 BoundedOverlap BoundedQuery::overlap(const PairQuery& query, const QueryBudget& budget,
@@ -83,35 +85,60 @@ BoundedOverlap BoundedQuery::overlap(const PairQuery& query, const QueryBudget& 
 }
 
 std::size_t BoundedQuery::longestStep(const PairQuery& query, const QueryBudget& budget) const {
-  const std::size_t steps = stepsOf(query);
-  double seconds = 0;
+  if (budget.seconds > 0 && recent_.empty()) return 0;  // learn first
   std::size_t step = 0;
-  for (std::size_t next = 0; next < steps; ++next) {
+  for (std::size_t next = 0; next < stepsOf(query); ++next) {
     const PairQuery bounded = at(next, query);
     const std::uint64_t spheres = std::uint64_t{bounded.prefix_a} + bounded.prefix_b;
     if (budget.spheres > 0 && spheres > budget.spheres) break;
-    if (budget.seconds > 0) {
-      const bool known = next < seconds_.size() && seconds_[next] >= 0;
-      if (!known && next == 0) break;                  // learn it first
-      seconds = known ? seconds_[next] : 2 * seconds;  // twice the spheres
-      if (seconds > budget.seconds) break;
-    }
+    if (budget.seconds > 0 && kReserve * foretold(next) > budget.seconds) break;
     step = next;
   }
   return step;
 }
 
-Overlap BoundedQuery::timedRun(const PairQuery& query, const QueryOptions& options, std::size_t step) {
-  constexpr double kForget = 0.02;  // of a step's time, with each query that does not confirm it
-  const auto start = std::chrono::steady_clock::now();
-  const Overlap overlap = context_.overlap(at(step, query), options);
-  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-  if (seconds_.size() <= step) seconds_.resize(step + 1, -1);
-  for (double& seconds : seconds_) {
-    if (seconds > 0) seconds *= 1 - kForget;
+double BoundedQuery::foretold(std::size_t step) const {
+  double slowest = 0;
+  for (const Run& run : recent_) {
+    double seconds = run.seconds;
+    const auto growth = [&](std::size_t k) {
+      return k < growth_.size() && growth_[k] > 0 ? growth_[k] : kGuess;
+    };
+    for (std::size_t k = run.step; k < step; ++k) seconds *= growth(k + 1);
+    for (std::size_t k = run.step; k > step; --k) seconds /= growth(k);
+    slowest = std::max(slowest, seconds);
   }
-  seconds_[step] = std::max(seconds_[step], time.count());
+  return slowest;
+}
+
+Overlap BoundedQuery::timedRun(const PairQuery& query, const QueryOptions& options, std::size_t step) {
+  const PairQuery bounded = at(step, query);
+  if (growth_.size() <= step) growth_.resize(step + 1, 0);
+  const bool is_new = !(growth_[step] > 0);
+  if (is_new) context_.overlap(bounded, options);  // builds grids, which is not for the clock
+  const auto start = std::chrono::steady_clock::now();
+  const Overlap overlap = context_.overlap(bounded, options);
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+  const Run now{step, time.count()};
+  if (!recent_.empty()) learnGrowth(recent_.back(), now);
+  if (!(growth_[step] > 0)) growth_[step] = kGuess;
+  if (recent_.size() == kRecent) recent_.erase(recent_.begin());
+  recent_.push_back(now);
   return overlap;
+}
+
+/// Two queries after each other with different steps tell how the steps compare, give or take what moved.
+void BoundedQuery::learnGrowth(const Run& before, const Run& now) {
+  if (now.step == before.step) return;
+  constexpr double kLearn = 0.3, kMost = 3;
+  const bool up = now.step > before.step;
+  const Run &low = up ? before : now, &high = up ? now : before;
+  const double seen =
+      std::pow(high.seconds / std::max(low.seconds, 1e-9), 1.0 / static_cast<double>(high.step - low.step));
+  for (std::size_t k = low.step + 1; k <= high.step; ++k) {
+    const double times = std::clamp(seen, 1.0, kMost);
+    growth_[k] = growth_[k] > 0 ? growth_[k] + kLearn * (times - growth_[k]) : times;
+  }
 }
 
 }  // namespace innersphere

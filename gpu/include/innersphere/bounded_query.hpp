@@ -24,15 +24,17 @@ struct BoundedOverlap {
 };
 
 /// Runs single queries with the longest prefixes that a budget allows. Both bodies use 64, 128, 256, ...
-/// spheres, up to all they have. How long each step takes is learnt from the queries that used it: a step
-/// that was too slow is tried again only after a while. Use one for each kind of pair.
+/// spheres, up to all they have. What a step will take is foretold from the slowest of the last few queries
+/// and from how the steps were seen to compare, so it is right as long as bodies move little from one query
+/// to the next. Use one for each pair of bodies.
 class BoundedQuery {
  public:
   /// The context must outlive this.
   explicit BoundedQuery(QueryContext& context) : context_(context) {}
 
-  /// Runs the query once with each step, so that all grids are there and their times are known. Without it
-  /// the first query with a step also builds its grids, and counts as slow as that.
+  /// Runs the query with each step, so that all grids are there and the steps are compared: give it a pose
+  /// where the bodies overlap. Without it each step is taken to be twice as slow as the one before until it
+  /// was tried, and the first query with a step also builds its grids.
   void warmUp(const PairQuery& query, const QueryOptions& options = {});
 
   /// At least the shortest step, whatever the budget. Prefixes of the query are upper bounds. Throws as
@@ -40,11 +42,19 @@ class BoundedQuery {
   BoundedOverlap overlap(const PairQuery& query, const QueryBudget& budget, const QueryOptions& options = {});
 
  private:
+  struct Run {
+    std::size_t step = 0;
+    double seconds = 0;
+  };
+
   std::size_t longestStep(const PairQuery& query, const QueryBudget& budget) const;
+  double foretold(std::size_t step) const;
   Overlap timedRun(const PairQuery& query, const QueryOptions& options, std::size_t step);
+  void learnGrowth(const Run& before, const Run& now);
 
   QueryContext& context_;
-  std::vector<double> seconds_;  ///< of each step, the worst of late; negative: not known
+  std::vector<double> growth_;  ///< how many times slower each step is than the one before; 0: never used
+  std::vector<Run> recent_;     ///< the last few queries, the newest last
 };
 
 }  // namespace innersphere
