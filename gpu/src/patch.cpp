@@ -62,12 +62,16 @@ struct Group {
 /// come by falling weight, so groups start from the surest directions.
 void groupByDirection(std::vector<Item>& items, double max_angle) {
   const double least = std::cos(max_angle);
-  static thread_local std::vector<Vec3r> sums;
+  struct Direction {
+    Vec3r sum;
+    double length;
+  };
+  static thread_local std::vector<Direction> sums;
   sums.clear();
   const auto nearest = [&](const Item& item, double& best) {
     std::size_t found = sums.size();
     for (std::size_t g = 0; g < sums.size(); ++g) {
-      const double cosine = dot(item.area, sums[g]) / (item.weight * std::sqrt(dot(sums[g], sums[g])));
+      const double cosine = dot(item.area, sums[g].sum) / (item.weight * sums[g].length);
       if (cosine > best) best = cosine, found = g;
     }
     return found;
@@ -75,8 +79,10 @@ void groupByDirection(std::vector<Item>& items, double max_angle) {
   for (Item& item : items) {
     double best = least;
     item.group = nearest(item, best);
-    if (item.group == sums.size()) sums.push_back({0, 0, 0});
-    sums[item.group] = sums[item.group] + item.area;
+    if (item.group == sums.size()) sums.push_back({{0, 0, 0}, 0});
+    Direction& direction = sums[item.group];
+    direction.sum = direction.sum + item.area;
+    direction.length = std::sqrt(dot(direction.sum, direction.sum));
   }
   // Once more with the final directions, so that early items are not held by where a group began.
   for (Item& item : items) {
