@@ -1,4 +1,4 @@
-// The seam between the query and the hardware that walks the grids.
+// The seam between the query and the hardware that it runs on.
 #pragma once
 
 #include <cstddef>
@@ -11,30 +11,21 @@
 
 namespace innersphere {
 
-/// An overlapping pair of spheres of one query of a batch.
-struct Hit {
-  std::uint32_t query;
-  std::uint32_t a;
-  std::uint32_t b;
-};
-
-/// Hits in no particular order; `count` of `items` are valid, the rest is room for the next run.
-struct Hits {
-  std::vector<Hit> items;
-  std::size_t count = 0;
-};
-
-class WalkBackend {
+/// Runs one batch after the other.
+class QueryBackend {
  public:
-  virtual ~WalkBackend() = default;
+  virtual ~QueryBackend() = default;
 
-  /// Sums over all overlapping pairs of each query, into sums[0 .. queries.size()). Want::touch gives only a
-  /// pair count of 0 or 1. With Want::contacts and Want::pairs all pairs also go into `hits`, which grows
-  /// where needed.
-  virtual void run(const std::vector<PreparedQuery>& queries, Want want, std::vector<core::Sums>& sums,
-                   Hits& hits) = 0;
+  /// Begins a batch. `queries` must live until finish().
+  virtual void start(const std::vector<PreparedQuery>& queries, Want want) = 0;
 
-  /// Of the last run, on a device that was asked to take its time [s].
+  /// True if finish() need not wait. Throws what finish() would.
+  virtual bool ready() = 0;
+
+  /// Waits for the batch. Leaves `result` as it was where it throws; the next batch may begin in either case.
+  virtual void finish(QueryResult& result) = 0;
+
+  /// Of the last batch, on a device that was asked to take its time [s].
   virtual double kernelTime() const { return 0; }
 };
 

@@ -7,15 +7,20 @@
 #include <atomic>
 
 #include "backend.hpp"
+#include "hits.hpp"
 #include "workers.hpp"
 
 namespace innersphere {
 
-class CpuBackend : public WalkBackend {
+class CpuBackend {
  public:
   explicit CpuBackend(Workers& workers) : workers_(workers) {}
+
+  /// Sums over all overlapping pairs of each query, into sums[0 .. queries.size()). Want::touch gives only a
+  /// pair count of 0 or 1. With Want::contacts and Want::pairs all pairs also go into `hits`, which grows
+  /// where needed.
   void run(const std::vector<PreparedQuery>& queries, Want want, std::vector<core::Sums>& sums,
-           Hits& hits) override;
+           Hits& hits);
 
  private:
   class HitWriter;

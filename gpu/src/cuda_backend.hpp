@@ -1,9 +1,10 @@
-// The walk on an NVIDIA GPU. Without the CUDA toolkit the same functions say that there is no device.
+// The query on an NVIDIA GPU. Without the CUDA toolkit the same functions say that there is no device.
 #pragma once
 
 #include <memory>
 
 #include "backend.hpp"
+#include "workers.hpp"
 
 namespace innersphere {
 
@@ -12,6 +13,6 @@ bool cudaDeviceAnswers();
 
 /// Uses the device that is current in the calling thread when it first runs. Throws Error no_device if there
 /// is none.
-std::unique_ptr<WalkBackend> makeCudaBackend(bool time_kernels);
+std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, bool time_kernels);
 
 }  // namespace innersphere

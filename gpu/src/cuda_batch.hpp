@@ -1,20 +1,45 @@
-// What the kernels of a batch share: its arguments, the candidates between them, and its sums.
+// What the kernels of a query read and write, in the memory of a device.
 #pragma once
 
 #include <cuda_runtime.h>
 
 #include <cstdint>
 
-#include "backend.hpp"
 #include "core/sums.hpp"
+#include "core/walk.hpp"
 
 namespace innersphere::device {
 
 constexpr unsigned kWarp = 32;
 constexpr unsigned kAll = 0xffffffffu;
 static_assert(core::kClusterSize == kWarp, "a warp walks one cluster");
-constexpr unsigned kLargestJob = 8;         ///< clusters
-constexpr std::uint32_t kFromA = 1u << 31;  ///< of a candidate's walker
+constexpr unsigned kGroup = 32;  ///< clusters under one ball
+constexpr unsigned kItem = 8;    ///< neighbouring clusters that a warp of a batch takes at once
+
+/// A grid, with what only kernels read.
+struct alignas(16) Grid {
+  core::GridView view;
+  /// The spheres of view.listed, relative to the centre. After them come, as in view.listed, all spheres in
+  /// their order, for walkers that look at all, up to a multiple of kListStep.
+  const Sphere* entries;
+  const Sphere* groups;         ///< balls around kGroup clusters each
+  const std::uint32_t* places;  ///< of the packing's spheres in the grid
+};
+
+/// One pair of bodies: core::Setup without the grids. Of arrays, the first is A's.
+struct alignas(16) Query {
+  core::Frame frame;
+  core::Search searches[2];  ///< of that body's spheres in the grid of the other
+  core::Units units;
+  std::uint32_t clusters[2];
+  const Grid* grids[2];
+};
+
+/// A query with its grids, where a warp reads it fast.
+struct Scene {
+  Query query;
+  Grid grids[2];
+};
 
 /// The sum of one term as three numbers that any number of warps can add to without a carry between them.
 struct Limbs {
@@ -27,77 +52,48 @@ struct DeviceSums {
   unsigned long long pairs;
   Limbs terms[core::kTerms];
 };
+constexpr unsigned kSumWords = sizeof(DeviceSums) / sizeof(unsigned long long);
 
-inline void toSums(const DeviceSums& from, const core::Units& units, core::Sums& to) {
-  to.pairs = from.pairs;
-  for (int i = 0; i < core::kTerms; ++i) {
-    const Limbs& limbs = from.terms[i];
-    const int bits = unitOf(units, i).fine_bits;
-    const auto part = [](unsigned long long x, int shift) {
-      const core::FixedSum low = core::shifted(static_cast<std::int64_t>(x), shift % 64);
-      return shift < 64 ? low : core::FixedSum{0, low.lo};
-    };
-    to.terms[i] = part(limbs.fine, 0) + part(limbs.coarse_low, bits) + part(limbs.coarse_high, bits + 32);
-  }
-}
+/// What the kernels of one batch count; zero before each.
+struct Counters {
+  unsigned items;            ///< of Batch::items
+  unsigned taken;            ///< of these
+  unsigned blocks;           ///< that are done
+  unsigned long long found;  ///< hits, also those beyond the capacity
+};
 
-/// Candidates of one warp and query: chunk k has the items from k chunk_size on.
-struct Chunk {
-  unsigned query;
-  unsigned count;
+constexpr unsigned kResultWords = sizeof(core::Totals) / sizeof(unsigned long long);
+
+/// What the host watches, in its own memory.
+struct HostSignal {
+  /// The result of a single query and the number of its hits, as 32-bit pieces, each below the number of its
+  /// run. So every piece says by itself that it has come, and none has to wait for another.
+  unsigned long long pieces[2 * (kResultWords + 1)];
+  /// The number of the last batch that is done, and its hits.
+  unsigned done;
+  unsigned long long found;
 };
 
 /// Arguments of the launches; pointers to the device.
 struct Batch {
-  const core::Setup* setups;        ///< null: there is one query, `single`
-  const unsigned long long* first;  ///< jobs of all queries before each, from first_job on
-  unsigned long long first_job;
-  unsigned jobs;
+  const Query* queries;
   unsigned count;
-  unsigned first_query;  ///< number of the first of these in the whole batch
-  unsigned job_size;     ///< clusters
-  DeviceSums* sums;
-  Hit* hits;
-  unsigned long long capacity;  ///< of hits
-  unsigned long long* found;    ///< hits, also those beyond the capacity; null if none are wanted
-  Chunk* chunks;
-  uint2* candidates;  ///< places of walker and partner
-  unsigned chunk_size;
-  unsigned chunk_capacity;
-  unsigned long long* taken;  ///< chunks, also those beyond the capacity
-  core::Setup single;
-  /// Only with a single query: what the last block copies to the host, and clears for the next run.
-  unsigned long long* words;
-  unsigned long long* host_words;
-  unsigned word_count;
-  unsigned* ticket;  ///< blocks that are done; one of the words
-
-  __device__ const core::Setup& setup(unsigned query) const { return setups ? setups[query] : single; }
+  DeviceSums* sums;  ///< zero before, and again after a single query
+  Counters* counters;
+  unsigned long long* items;  ///< active clusters of all queries, kItem neighbours in each: see makeItem()
+  /// Pairs of overlapping spheres: number of the query, sphere of A, sphere of B, so many bits each. Null if
+  /// they are not wanted.
+  unsigned long long* hits;
+  unsigned long long capacity;
+  unsigned bits_a, bits_b;
+  HostSignal* signal;
+  core::Totals* results;  ///< in the memory of the host; unused by a single query
+  unsigned run;
 };
 
-/// What a launch computes.
-enum class Goal { volume, wrench };
+constexpr unsigned kMostQueries = 1u << 14;  ///< in one batch
 
-/// A pair to decide.
-struct DevicePair {
-  std::uint32_t a, b;  ///< places
-  bool from_a;
-};
-
-inline __device__ DevicePair pairOf(std::uint32_t walker, std::uint32_t partner) {
-  const bool from_a = walker & kFromA;
-  const std::uint32_t own = walker & ~kFromA;
-  return {from_a ? own : partner, from_a ? partner : own, from_a};
-}
-
-inline __device__ Sphere load(const Sphere* sphere) {
-  const float4 s = __ldg(reinterpret_cast<const float4*>(sphere));
-  return {s.x, s.y, s.z, s.w};
-}
-
-inline __device__ core::Pair makePair(const core::Setup& setup, const DevicePair& pair) {
-  return core::makePair(setup.frame, load(setup.a.grid.spheres + pair.a),
-                        load(setup.b.grid.spheres + pair.b));
-}
+/// What is computed.
+enum class Goal { touch, volume, wrench };
 
 }  // namespace innersphere::device

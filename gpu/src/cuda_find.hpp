@@ -1,248 +1,175 @@
-// Finds candidates: a warp takes some clusters of one query, one after the other, a lane for each sphere.
+// Finds candidates: a warp takes a cluster, a lane for each of its spheres, and deals out what these can meet
+// to all lanes, so that all have work however long the lists of some cells are.
 #pragma once
 
-#include "core/walk.hpp"
-#include "cuda_batch.hpp"
+#include "cuda_device.hpp"
 
 namespace innersphere::device {
 
-constexpr unsigned kFindWarps = 1;  ///< in a block; more would have nothing to do with each other
-
-/// What a warp works on.
-struct Job {
-  unsigned query;
-  std::uint32_t first;  ///< cluster, of all of A's and then all of B's
+/// A sphere of the cluster that has a list to go through, as all lanes read it.
+struct alignas(16) Walking {
+  float4 ball;         ///< centre and reach
+  float smallest;      ///< see core::Lookup
+  unsigned self;       ///< place, with flags
+  unsigned shift;      ///< from kListStep times the step of the warp to the place in the list, modulo 2^32
+  std::uint32_t cell;  ///< the number of the cell, if kSeveral
 };
 
-/// Of the job number `number` of a launch; its warps may be more than the jobs.
-inline __device__ Job findJob(const Batch& batch, unsigned number) {
-  if (!batch.setups) return {0, number * batch.job_size};
-  // Often all queries have as many jobs, and this is the one.
-  const unsigned long long job = batch.first_job + number;
-  unsigned lo = static_cast<unsigned>(static_cast<unsigned long long>(number) * batch.count / batch.jobs);
-  if (job < batch.first[lo] || job >= batch.first[lo + 1]) {
-    lo = 0;
-    for (unsigned hi = batch.count; hi - lo > 1;) {
-      const unsigned middle = lo + (hi - lo) / 2;
-      (batch.first[middle] <= job ? lo : hi) = middle;
-    }
-  }
-  return {lo, static_cast<std::uint32_t>(job - batch.first[lo]) * batch.job_size};
+/// Flags of a walker's place.
+constexpr unsigned kFromA = 1u << 31;
+constexpr unsigned kSeveral = 1u << 30;  ///< it looks into several cells
+constexpr unsigned kPlace = kSeveral - 1;
+
+/// A pair to decide: walker, and where its partner is listed.
+using Candidate = uint2;
+
+/// The bits of all lanes.
+inline __device__ unsigned anyLane(unsigned bits) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_or_sync(kAll, bits);
+#else
+  for (unsigned step = 1; step < kWarp; step *= 2) bits |= __shfl_xor_sync(kAll, bits, step);
+  return bits;
+#endif
 }
 
-/// The sum over this lane and all before it.
-inline __device__ unsigned scan(unsigned x, unsigned lane) {
-  for (unsigned step = 1; step < kWarp; step *= 2) {
-    const unsigned before = __shfl_up_sync(kAll, x, step);
-    if (lane >= step) x += before;
-  }
-  return x;
-}
-
-/// The first lane whose scanned number is above x, or the last one.
-inline __device__ unsigned laneOf(unsigned scanned, unsigned x) {
-  unsigned lane = 0;
-#pragma unroll
-  for (unsigned step = kWarp / 2; step > 0; step /= 2) {
-    if (__shfl_sync(kAll, scanned, lane + step - 1) <= x) lane += step;
-  }
-  return lane;
-}
-
-/// A sphere of the cluster, as all lanes read it.
-struct SharedWalk {
-  float4 ball;            ///< centre and reach
-  float smallest;         ///< see core::Lookup
-  std::uint32_t first;    ///< of its spheres: less kListStep times the steps of the lanes before
-  std::uint32_t cell;     ///< the number of the cell, where it looks into several
-  std::uint32_t several;  ///< 0: no; 1: yes; 2: the spheres are those of the whole grid
+/// A run of spheres to test, in steps of kListStep.
+struct List {
+  std::uint32_t first, steps;
+  unsigned flags;
 };
 
-/// The spheres that a cluster's spheres are tested against: a run for each, cut into steps of kListStep, that
-/// are dealt out to the lanes, so that all of them have work however long the runs are.
-struct Steps {
-  unsigned scanned;  ///< steps of this lane's run and of all before
-  unsigned total;
-};
+inline __device__ unsigned stepsOf(unsigned count) {
+  return (count + core::kListStep - 1) / core::kListStep;
+}
 
-/// Looks up the cell number `number` of each lane that has so many.
-inline __device__ Steps lookUp(const core::GridView& grid, const core::Lookup& lookup,
-                               const core::Cells& cells, std::uint32_t number, unsigned lane,
-                               SharedWalk& shared) {
-  std::uint32_t first = 0, count = 0;
-  shared.several = 0;
-  if (number < cells.count) {
-    if (cells.all) {
-      count = grid.count;
-      shared.several = 2;
-    } else {
-      std::uint32_t at[3] = {cells.box.lo[0], cells.box.lo[1], cells.box.lo[2]};
-      if (cells.count > 1) {
-        cells.coordinates(number, at);
-        shared.several = 1;
-      }
-      const core::Cell cell = core::findCell(grid, core::cellKey(cells.tier, at[0], at[1], at[2]));
-      first = cell.first;
-      count = cell.count;
-    }
+inline __device__ core::Cell cellAt(const core::GridView& grid, std::uint64_t key) {
+  const auto mask = static_cast<std::uint32_t>((std::uint64_t{1} << (64 - grid.hash_shift)) - 1);
+  for (std::uint32_t at = core::hashCell(grid, key);; at = (at + 1) & mask) {
+    const uint4 bits = __ldg(reinterpret_cast<const uint4*>(grid.cells + at));
+    const std::uint64_t found = static_cast<std::uint64_t>(bits.y) << 32 | bits.x;
+    if (bits.w == 0 || found == key) return {found, bits.z, bits.w};
   }
-  const unsigned steps = (count + core::kListStep - 1) / core::kListStep;
-  const unsigned scanned = scan(steps, lane);
-  shared.ball = {lookup.p.x, lookup.p.y, lookup.p.z, lookup.reach};
-  shared.smallest = lookup.smallest;
-  shared.first = first - (scanned - steps) * core::kListStep;
-  shared.cell = number;
-  return {scanned, __shfl_sync(kAll, scanned, kWarp - 1)};
+}
+
+/// The cell of a walker that looks into one; false if it may look into several. Beyond the grid there is
+/// none.
+inline __device__ bool singleCell(const core::GridView& grid, const core::Lookup& lookup,
+                                  std::uint64_t& key) {
+  constexpr float kEnd = 1 << core::kAxisBits;
+  const int tier = core::tierOf(grid, core::levelOf(lookup.smallest));
+  const float scale = core::powerOfTwo(-(grid.finest + tier));
+  const float x = floorf((lookup.p.x + grid.half.x) * scale) + 1;
+  const float y = floorf((lookup.p.y + grid.half.y) * scale) + 1;
+  const float z = floorf((lookup.p.z + grid.half.z) * scale) + 1;
+  key = core::cellKey(tier, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                      static_cast<std::uint32_t>(z));
+  return lookup.reach <= core::reachOf(grid, tier) && fminf(fminf(x, y), z) >= 0 &&
+         fmaxf(fmaxf(x, y), z) < kEnd;
+}
+
+/// What a walker meets in the cell number `number` of those where it looks, `count` in all.
+inline __device__ List listOf(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t number,
+                              std::uint32_t& count) {
+  std::uint64_t key;
+  unsigned flags = 0;
+  if (singleCell(grid, lookup, key)) {
+    count = 1;
+    if (number > 0) return {0, 0, 0};
+  } else {
+    const core::Cells cells = core::cellsOf(grid, lookup);
+    count = cells.count;
+    if (number >= count) return {0, 0, 0};
+    if (cells.all) return {grid.listed_count, stepsOf(grid.count), 0};  // see Grid::entries
+    std::uint32_t at[3];
+    cells.coordinates(number, at);
+    key = core::cellKey(cells.tier, at[0], at[1], at[2]);
+    flags = count > 1 ? kSeveral : 0;
+  }
+  const core::Cell cell = cellAt(grid, key);
+  return {cell.first, stepsOf(cell.count), flags};
 }
 
 /// Of a walker that looks into several cells: whether a partner counts in this one.
-inline __device__ bool countsHere(const core::GridView& grid, const SharedWalk& walk, std::uint32_t place) {
-  const core::Lookup lookup{{walk.ball.x, walk.ball.y, walk.ball.z}, walk.ball.w, walk.smallest};
+inline __device__ bool countsHere(const core::GridView& grid, const Walking& walking, const Sphere& partner) {
+  const core::Lookup lookup{
+      {walking.ball.x, walking.ball.y, walking.ball.z}, walking.ball.w, walking.smallest};
   const core::Cells cells = core::cellsOf(grid, lookup);
   std::uint32_t at[3];
-  cells.coordinates(walk.cell, at);
-  return core::countsIn(grid, cells, at, grid.centred[place]);
+  cells.coordinates(walking.cell, at);
+  return core::countsIn(grid, cells, at, partner);
 }
 
-/// The places of the spheres of one step.
-inline __device__ uint4 placesOf(const core::GridView& grid, const SharedWalk& walk, unsigned step) {
-  const std::uint32_t at = walk.first + step * core::kListStep;
-  if (walk.several != 2) return __ldg(reinterpret_cast<const uint4*>(grid.listed + at));
-  // Past the end there is the sphere that meets nothing.
-  return {min(at, grid.count), min(at + 1, grid.count), min(at + 2, grid.count), min(at + 3, grid.count)};
-}
+/// The lists of a warp, one after the other: a step is in the list that begins last before it.
+struct Lists {
+  unsigned begin;  ///< of this lane's list
+  bool any;        ///< it has one
+  unsigned total;  ///< steps
 
-inline __device__ std::uint32_t placeOf(const uint4& places, unsigned k) {
-  return k == 0 ? places.x : k == 1 ? places.y : k == 2 ? places.z : places.w;
-}
-
-/// A bit for each of them that the walker meets.
-inline __device__ unsigned testStep(const core::GridView& grid, const SharedWalk& walk, const uint4& places) {
-  const core::Lookup lookup{{walk.ball.x, walk.ball.y, walk.ball.z}, walk.ball.w, walk.smallest};
-  const Sphere spheres[core::kListStep] = {load(grid.centred + places.x), load(grid.centred + places.y),
-                                           load(grid.centred + places.z), load(grid.centred + places.w)};
-  unsigned met = 0;
-#pragma unroll
-  for (unsigned k = 0; k < core::kListStep; ++k) {
-    if (core::meets(lookup, spheres[k])) met |= 1u << k;
+  /// The number, of those that have a list, of the lane whose step is this lane's. All lanes call it; `first`
+  /// is the step of lane 0.
+  __device__ unsigned ownerOf(unsigned first, unsigned lane) const {
+    const unsigned before = __popc(__ballot_sync(kAll, any && begin < first));
+    const unsigned ahead = begin - first;
+    const unsigned starts = anyLane(any && ahead < kWarp ? 1u << ahead : 0);
+    return before + __popc(starts & ((2u << lane) - 1)) - 1;
   }
-  if (walk.several == 1) {
-    for (unsigned left = met; left != 0; left &= left - 1) {
-      const auto k = static_cast<unsigned>(__ffs(static_cast<int>(left)) - 1);
-      if (!countsHere(grid, walk, placeOf(places, k))) met &= ~(1u << k);
-    }
-  }
-  return met;
-}
-
-/// Where a warp puts its candidates. They are written for a kernel that decides them side by side, with no
-/// walk in its registers.
-class ChunkWriter {
- public:
-  __device__ ChunkWriter(const Batch& batch, unsigned query, unsigned lane)
-      : batch_(batch), query_(query), lane_(lane) {}
-
-  /// All lanes call it together; those of `finders` have one.
-  __device__ void add(unsigned finders, std::uint32_t walker, std::uint32_t partner) {
-    const unsigned count = __popc(finders);
-    if (filled_ + count > batch_.chunk_size || chunk_ == kNone) {
-      close();
-      unsigned long long taken = 0;
-      if (lane_ == 0) taken = atomicAdd(batch_.taken, 1ull);
-      chunk_ = __shfl_sync(kAll, taken, 0);
-      filled_ = 0;
-    }
-    if ((finders >> lane_ & 1) != 0 && chunk_ < batch_.chunk_capacity) {
-      const unsigned at = filled_ + __popc(finders & ((1u << lane_) - 1));
-      batch_.candidates[chunk_ * batch_.chunk_size + at] = {walker, partner};
-    }
-    filled_ += count;
-  }
-
-  __device__ void close() {
-    if (lane_ == 0 && chunk_ < batch_.chunk_capacity) batch_.chunks[chunk_] = {query_, filled_};
-  }
-
- private:
-  static constexpr unsigned long long kNone = ~0ull;
-  const Batch& batch_;
-  unsigned query_, lane_;
-  unsigned long long chunk_ = kNone;
-  unsigned filled_ = 0;
 };
 
-/// Walks a job. With kTouch it stops at the first pair of its query, and writes nothing but that.
-template <bool kTouch>
-__global__ void __launch_bounds__(kFindWarps* kWarp, 32 / kFindWarps)
-    findCandidates(const __grid_constant__ Batch batch) {
-  __shared__ SharedWalk all_shared[kFindWarps][kWarp];
-  const unsigned lane = threadIdx.x % kWarp, warp = threadIdx.x / kWarp;
-  SharedWalk(&shared)[kWarp] = all_shared[warp];
-  const unsigned job_number = blockIdx.x * kFindWarps + warp;
-  if (job_number >= batch.jobs) return;
-  const Job job = findJob(batch, job_number);
-  const core::Setup& setup = batch.setup(job.query);
-  unsigned long long& pairs = batch.sums[job.query].pairs;
-  if (kTouch && *static_cast<volatile unsigned long long*>(&pairs) != 0) return;
-
-  const std::uint32_t clusters = setup.a.clusters + setup.b.clusters;
-  bool active = false;
-  if (lane < batch.job_size && job.first + lane < clusters) {
-    const std::uint32_t number = job.first + lane;
-    const bool from_a = core::isFromA(setup, number);
-    const core::Walker walker = core::walkerOf(setup, from_a);
-    active = core::clusterMeets(walker, walker.own.clusters[from_a ? number : number - setup.a.clusters]);
+/// Puts the lists of all lanes into a row, with their walkers, those that have one, in `walking`.
+inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, unsigned self,
+                               std::uint32_t number, unsigned lane, Walking (&walking)[kWarp]) {
+  const unsigned scanned = scan(list.steps, lane);
+  const unsigned owners = __ballot_sync(kAll, list.steps != 0);
+  const Lists lists{scanned - list.steps, list.steps != 0, __shfl_sync(kAll, scanned, kWarp - 1)};
+  __syncwarp();
+  if (lists.any) {
+    Walking& to = walking[__popc(owners & ((1u << lane) - 1))];
+    to.ball = {lookup.p.x, lookup.p.y, lookup.p.z, lookup.reach};
+    to.smallest = lookup.smallest;
+    to.self = self | list.flags;
+    to.shift = list.first - lists.begin * core::kListStep;
+    to.cell = number;
   }
-  ChunkWriter writer(batch, job.query, lane);
-  for (unsigned left = __ballot_sync(kAll, active); left != 0; left &= left - 1) {
-    const std::uint32_t number = job.first + static_cast<std::uint32_t>(__ffs(static_cast<int>(left)) - 1);
-    const bool from_a = core::isFromA(setup, number);
-    const core::Walker walker = core::walkerOf(setup, from_a);
-    const core::Cluster cluster = walker.own.clusters[from_a ? number : number - setup.a.clusters];
-    const core::GridView& grid = walker.grid;
-    core::Lookup lookup{};
-    core::Cells cells{};
-    if (lane < cluster.count &&
-        core::makeLookup(walker, load(walker.own.spheres + cluster.first + lane), lookup))
-      cells = core::cellsOf(grid, lookup);
-    for (std::uint32_t cell = 0; __any_sync(kAll, cell < cells.count); ++cell) {
-      if (cell > 0) cells = core::cellsOf(grid, lookup);  // rare: found anew, not kept in registers
-      __syncwarp();
-      const Steps steps = lookUp(grid, lookup, cells, cell, lane, shared[lane]);
-      __syncwarp();
-      const std::uint32_t none = grid.count;
-      unsigned owner = 0;
-      uint4 places{};
-      const auto fetch = [&](unsigned step) {  // one round ahead of the test, to hide how long it takes
-        owner = laneOf(steps.scanned, step);
-        places = step < steps.total ? placesOf(grid, shared[owner], step) : uint4{none, none, none, none};
-      };
-      fetch(lane);
-      for (unsigned begin = 0; begin < steps.total; begin += kWarp) {
-        const std::uint32_t self = (cluster.first + owner) | (from_a ? kFromA : 0);
-        const uint4 tested = places;
-        unsigned met = testStep(grid, shared[owner], tested);
-        fetch(begin + kWarp + lane);
-        while (true) {
-          const unsigned finders = __ballot_sync(kAll, met != 0);
-          if (finders == 0) break;
-          const std::uint32_t partner =
-              met != 0 ? placeOf(tested, static_cast<unsigned>(__ffs(static_cast<int>(met)) - 1)) : 0;
-          if constexpr (kTouch) {
-            const DevicePair pair = pairOf(self, partner);
-            if (__any_sync(kAll, met != 0 && core::isHit(makePair(setup, pair), pair.from_a))) {
-              if (lane == 0) atomicExch(&pairs, 1ull);
-              return;
-            }
-          } else {
-            writer.add(finders, self, partner);
-          }
-          met &= met - 1;
-        }
+  __syncwarp();
+  return lists;
+}
+
+/// The candidates of a warp that wait until there is one for each lane, and what one round may add.
+using Queue = Candidate[kWarp + kWarp * core::kListStep];
+
+/// One round: each lane tests a step. All lanes call it.
+inline __device__ void testStep(const Grid& grid, const Lists& lists, unsigned first, unsigned lane,
+                                const Walking (&walking)[kWarp], Queue& queue, unsigned& queued) {
+  const unsigned owner = lists.ownerOf(first, lane);
+  unsigned met = 0, at = 0, self = 0;
+  if (first + lane < lists.total) {
+    const Walking& walker = walking[owner];
+    self = walker.self;
+    at = walker.shift + (first + lane) * core::kListStep;
+    const core::Lookup lookup{{walker.ball.x, walker.ball.y, walker.ball.z}, walker.ball.w, walker.smallest};
+#pragma unroll
+    for (unsigned k = 0; k < core::kListStep; ++k) {
+      if (core::meets(lookup, load(grid.entries + at + k))) met |= 1u << k;
+    }
+    if (met != 0 && self & kSeveral) {
+      for (unsigned k = 0; k < core::kListStep; ++k) {
+        if ((met >> k & 1) != 0 && !countsHere(grid.view, walker, load(grid.entries + at + k)))
+          met ^= 1u << k;
       }
     }
   }
-  if constexpr (!kTouch) writer.close();
+  while (true) {
+    const unsigned finders = __ballot_sync(kAll, met != 0);
+    if (finders == 0) break;
+    if (met != 0) {
+      const unsigned k = static_cast<unsigned>(__ffs(static_cast<int>(met)) - 1);
+      queue[queued + __popc(finders & ((1u << lane) - 1))] = {self, at + k};
+      met &= met - 1;
+    }
+    queued += __popc(finders);
+  }
+  __syncwarp();
 }
 
 }  // namespace innersphere::device

@@ -8,7 +8,7 @@ bool cudaDeviceAnswers() {
   return false;
 }
 
-std::unique_ptr<WalkBackend> makeCudaBackend(bool) {
+std::unique_ptr<QueryBackend> makeCudaBackend(Workers&, bool) {
   throw Error(
       ErrorCode::no_device,
       "InnerSphere was built without CUDA; install the toolkit and configure with INNERSPHERE_CUDA=ON");

@@ -1,134 +1,197 @@
 // Decides candidates, a lane for each, and sums the terms of those that overlap.
 #pragma once
 
-#include "cuda_batch.hpp"
+#include "cuda_find.hpp"
 
 namespace innersphere::device {
-
-constexpr unsigned kSumWarps = 4;  ///< in a block
-constexpr unsigned kLargestChunk = 128;
-static_assert(kLargestChunk <= 1u << core::kShortSumBits, "a chunk is summed in 64 bits");
-
-template <Goal goal>
-constexpr int kTermCount = goal == Goal::wrench ? core::kTerms : core::kVolumeTerms;
 
 constexpr int kPass = 4;                          ///< terms that the lanes exchange at once
 constexpr unsigned kShare = kWarp / (2 * kPass);  ///< lanes that sum one column
 
-/// Coarse and fine parts of some terms, a row for each lane; kShare more, so that lanes read different banks.
-using Columns = unsigned long long[2 * kPass][kWarp + kShare];
+/// Coarse and fine parts of some terms, a row for each lane, with gaps so that lanes use different banks.
+struct Columns {
+  static constexpr unsigned kRows = kWarp / kShare;  ///< that a lane sums
+  static constexpr unsigned kGap = 2;
+  static constexpr int kPasses = (core::kTerms + kPass - 1) / kPass;
+  alignas(16) double of[2 * kPass][kWarp + kShare * kGap];
+  unsigned long long sums[kPasses][kWarp];  ///< of every pass, each lane's
+  unsigned pairs;
 
-/// Adds the sums of all lanes to those of the query.
-template <int kTerms>
-inline __device__ void addWarp(DeviceSums& total, const core::Units& units,
-                               const core::ShortSum (&sums)[kTerms], unsigned pairs, unsigned lane,
-                               Columns& columns) {
-  for (unsigned step = kWarp / 2; step > 0; step /= 2) pairs += __shfl_xor_sync(kAll, pairs, step);
-  if (pairs == 0) return;
-  if (lane == 0) atomicAdd(&total.pairs, static_cast<unsigned long long>(pairs));
+  __device__ double& at(unsigned column, unsigned lane) { return of[column][lane + lane / kRows * kGap]; }
+
+  /// Of a share of the rows, as integers; see core::Parts.
+  __device__ unsigned long long sum(unsigned column, unsigned share) const {
+    const auto* rows = reinterpret_cast<const ulonglong2*>(&of[column][share * (kRows + kGap)]);
+    unsigned long long sum = -kRows * static_cast<unsigned long long>(core::kMagicBits);
 #pragma unroll
-  for (int pass = 0; pass < (kTerms + kPass - 1) / kPass; ++pass) {
-#pragma unroll
-    for (int i = 0; i < kPass && pass * kPass + i < kTerms; ++i) {
-      columns[2 * i][lane] = sums[pass * kPass + i].coarse;
-      columns[2 * i + 1][lane] = sums[pass * kPass + i].fine;
+    for (unsigned k = 0; k < kRows / 2; ++k) sum += rows[k].x + rows[k].y;
+    return sum;
+  }
+};
+
+constexpr unsigned kMostWarps = 8;  ///< in a block
+
+template <Goal goal>
+constexpr int kTermCount = goal == Goal::wrench   ? core::kTerms
+                           : goal == Goal::volume ? core::kVolumeTerms
+                                                  : 0;
+
+/// Adds what a warp summed of one column, in quanta or, coarse, in units of 2^bits quanta. Both parts come
+/// together, so that the fine one's carry is known.
+inline __device__ void addTerm(Limbs& limbs, int bits, bool coarse, unsigned long long sum,
+                               unsigned long long other) {
+  if (!coarse) {
+    atomicAdd(&limbs.fine, sum & ((1ull << bits) - 1));
+    return;
+  }
+  const long long whole = static_cast<long long>(sum) + (static_cast<long long>(other) >> bits);
+  atomicAdd(&limbs.coarse_low, static_cast<unsigned long long>(whole) & 0xffffffffu);
+  atomicAdd(&limbs.coarse_high, static_cast<unsigned long long>(whole >> 32));
+}
+
+/// The sums of a warp over one query. The lanes exchange the terms of their pairs, and each keeps its share
+/// of one column of every pass: that takes far fewer registers than sums of all terms in every lane.
+template <Goal goal>
+class Summer {
+ public:
+  __device__ Summer(unsigned lane, Columns& columns) { clear(lane, columns); }
+
+  /// All lanes call it. True if anything overlaps.
+  __device__ bool add(const Batch& batch, const Scene& scene, unsigned query, const Candidate& candidate,
+                      bool valid, unsigned lane, Columns& columns) {
+    const bool from_a = candidate.x & kFromA;
+    const std::uint32_t own = candidate.x & kPlace;
+    const std::uint32_t* listed = scene.grids[from_a ? 1 : 0].view.listed;
+    const std::uint32_t partner = __ldg(listed + candidate.y);
+    const std::uint32_t place_a = from_a ? own : partner, place_b = from_a ? partner : own;
+    core::Pair pair = core::makePair(scene.query.frame, load(scene.grids[0].view.spheres + place_a),
+                                     load(scene.grids[1].view.spheres + place_b));
+    const bool hit = valid && core::isHit(pair, from_a);
+    const unsigned hits = __ballot_sync(kAll, hit);
+    pairs_ += __popc(hits);
+    if constexpr (goal != Goal::touch) {
+      if (hits == 0) return false;
+      if (batch.hits) write(batch, scene, query, place_a, place_b, hits, lane);
+      const double sum = pair.ra + pair.rb;
+      if (!hit) pair.distance2 = sum * sum;  // two balls that touch from outside add nothing
+      exchange(pair, scene.query.units, lane, columns);
+      ++rounds_;
     }
-    __syncwarp();
+    return hits != 0;
+  }
+
+  /// True if the next pairs could overflow the sums, also those of some such warps.
+  __device__ bool full() const { return rounds_ + 1 > (1u << core::kShortSumBits) / (kWarp * kMostWarps); }
+
+  /// Moves the sums to those of the query.
+  __device__ void flush(DeviceSums& total, const core::Units& units, unsigned lane, Columns& columns) {
+    if (pairs_ == 0) return;
+    if (lane == 0) atomicAdd(&total.pairs, static_cast<unsigned long long>(pairs_));
+#pragma unroll
+    for (int pass = 0; pass < kPasses; ++pass) addPass(total, units, pass, columns.sums[pass][lane], lane);
+    clear(lane, columns);
+  }
+
+  /// The same for all warps of a block together: its first warps take a pass each. All threads call it.
+  template <typename MemoryOf>
+  __device__ void flushBlock(DeviceSums& total, const core::Units& units, unsigned warps, unsigned lane,
+                             const MemoryOf& columnsOf) {
+    const unsigned warp = threadIdx.x / kWarp;
+    if (lane == 0) columnsOf(warp).pairs = pairs_;
+    __syncthreads();
+    unsigned pairs = 0;
+    for (unsigned w = 0; w < warps; ++w) pairs += columnsOf(w).pairs;
+    if (pairs == 0) return;
+    if (threadIdx.x == 0) atomicAdd(&total.pairs, static_cast<unsigned long long>(pairs));
+    for (int pass = static_cast<int>(warp); pass < kPasses; pass += static_cast<int>(warps)) {
+      unsigned long long sum = 0;
+      for (unsigned w = 0; w < warps; ++w) sum += columnsOf(w).sums[pass][lane];
+      addPass(total, units, pass, sum, lane);
+    }
+  }
+
+ private:
+  static constexpr int kTerms = kTermCount<goal>;
+  static constexpr int kPasses = (kTerms + kPass - 1) / kPass;
+
+  __device__ void clear(unsigned lane, Columns& columns) {
+    for (int pass = 0; pass < kPasses; ++pass) columns.sums[pass][lane] = 0;
+    pairs_ = rounds_ = 0;
+  }
+
+  /// Adds all lanes' sums of one pass.
+  static __device__ void addPass(DeviceSums& total, const core::Units& units, int pass,
+                                 unsigned long long sum, unsigned lane) {
+    for (unsigned step = 1; step < kShare; step *= 2) sum += __shfl_xor_sync(kAll, sum, step);
+    const unsigned long long other = __shfl_xor_sync(kAll, sum, kShare);
     const unsigned column = lane / kShare;
     const int term = pass * kPass + static_cast<int>(column / 2);
-    unsigned long long sum = 0;
-    if (term < kTerms) {
-#pragma unroll
-      for (unsigned row = 0; row < kWarp; row += kShare) sum += columns[column][row + lane % kShare];
-    }
-    __syncwarp();
-    for (unsigned step = 1; step < kShare; step *= 2) sum += __shfl_xor_sync(kAll, sum, step);
-    const unsigned long long partner = __shfl_xor_sync(kAll, sum, kShare);
-    if (lane % kShare != 0 || term >= kTerms) continue;
-    Limbs& limbs = total.terms[term];
-    const int bits = unitOf(units, term).fine_bits;
-    if (column % 2 == 1) {
-      atomicAdd(&limbs.fine, sum & ((1ull << bits) - 1));
-      continue;
-    }
-    const long long coarse = static_cast<long long>(sum) + (static_cast<long long>(partner) >> bits);
-    atomicAdd(&limbs.coarse_low, static_cast<unsigned long long>(coarse) & 0xffffffffu);
-    atomicAdd(&limbs.coarse_high, static_cast<unsigned long long>(coarse >> 32));
+    if (lane % kShare == 0 && term < kTerms)
+      addTerm(total.terms[term], unitOf(units, term).fine_bits, column % 2 == 0, sum, other);
   }
-}
 
-/// Of a single query: adds the sums of the block, and the last block brings all of them home. That takes less
-/// time than a copy of its own.
-inline __device__ void finish(const Batch& batch, const DeviceSums& of_block) {
-  __shared__ bool last;
-  __syncthreads();
-  const auto* from = reinterpret_cast<const unsigned long long*>(&of_block);
-  auto* to = reinterpret_cast<unsigned long long*>(batch.sums);
-  for (unsigned i = threadIdx.x; i < sizeof(DeviceSums) / sizeof(*from); i += blockDim.x) {
-    if (from[i] != 0) atomicAdd(to + i, from[i]);
-  }
-  __threadfence();
-  __syncthreads();
-  if (threadIdx.x == 0) last = atomicAdd(batch.ticket, 1u) == gridDim.x - 1;
-  __syncthreads();
-  if (!last) return;
-  __threadfence();
-  for (unsigned i = threadIdx.x; i < batch.word_count; i += blockDim.x) {
-    batch.host_words[i] = *static_cast<volatile unsigned long long*>(batch.words + i);
-    batch.words[i] = 0;
-  }
-  __threadfence_system();
-}
-
-/// Each warp takes every so many chunks, and keeps its sums while they are of one query.
-template <Goal goal>
-__global__ void __launch_bounds__(kSumWarps* kWarp, 3) sumCandidates(const __grid_constant__ Batch batch) {
-  constexpr int kTerms = kTermCount<goal>;
-  constexpr unsigned kChunkRounds = kLargestChunk / kWarp + 1;
-  constexpr unsigned kMostRounds = (1u << core::kShortSumBits) / kWarp - kChunkRounds;
-  __shared__ Columns columns[kSumWarps];
-  __shared__ DeviceSums of_block;  // fewer blocks than warps add to the sums of a single query
-  const unsigned lane = threadIdx.x % kWarp, warp = threadIdx.x / kWarp;
-  if (batch.ticket) {
-    for (unsigned i = threadIdx.x; i < sizeof(DeviceSums) / sizeof(unsigned long long); i += blockDim.x)
-      reinterpret_cast<unsigned long long*>(&of_block)[i] = 0;
-    __syncthreads();
-  }
-  const unsigned chunks =
-      static_cast<unsigned>(min(*batch.taken, static_cast<unsigned long long>(batch.chunk_capacity)));
-  core::ShortSum sums[kTerms] = {};
-  unsigned pairs = 0, rounds = 0;
-  for (unsigned c = blockIdx.x * kSumWarps + warp; c < chunks;) {
-    const Chunk chunk = batch.chunks[c];
-    const core::Setup& setup = batch.setup(chunk.query);
-    const uint2* candidates = batch.candidates + static_cast<std::size_t>(c) * batch.chunk_size;
-    for (unsigned k = lane; k < chunk.count; k += kWarp) {
-      const uint2 candidate = candidates[k];
-      const DevicePair places = pairOf(candidate.x, candidate.y);
-      const core::Pair pair = makePair(setup, places);
-      if (!core::isHit(pair, places.from_a)) continue;
-      ++pairs;
-      const core::Terms terms = core::makeTerms<goal == Goal::wrench>(pair);
+  __device__ void exchange(const core::Pair& pair, const core::Units& units, unsigned lane,
+                           Columns& columns) {
+    core::Contact contact = core::makeContact(pair);
+    core::Terms terms;
+    core::setTerms<goal == Goal::wrench>(pair, contact, terms);
 #pragma unroll
-      for (int i = 0; i < kTerms; ++i) core::add(sums[i], terms.terms[i], unitOf(setup.units, i));
-      if (goal == Goal::wrench && batch.found) {
-        const unsigned long long at = atomicAdd(batch.found, 1ull);
-        if (at < batch.capacity)
-          batch.hits[at] = {batch.first_query + chunk.query, setup.a.grid.ids[places.a],
-                            setup.b.grid.ids[places.b]};
+    for (int pass = 0; pass < kPasses; ++pass) {
+      if (goal == Goal::wrench && pass == kPasses - 1) {
+        asm volatile("" : "+d"(contact.balls.s));  // not computed sooner: there are too few registers
+        terms.terms[core::kEnergy] = core::lensEnergy(contact.balls);
       }
-    }
-    rounds += chunk.count / kWarp + 1;
-    c += gridDim.x * kSumWarps;
-    if (c < chunks && batch.chunks[c].query == chunk.query && rounds <= kMostRounds) continue;
-    __syncwarp();
-    addWarp<kTerms>(batch.ticket ? of_block : batch.sums[chunk.query], setup.units, sums, pairs, lane,
-                    columns[warp]);
 #pragma unroll
-    for (int i = 0; i < kTerms; ++i) sums[i] = {0, 0};
-    pairs = rounds = 0;
+      for (int i = 0; i < kPass && pass * kPass + i < kTerms; ++i) {
+        const int term = pass * kPass + i;
+        const core::Parts parts = core::split(terms.terms[term], unitOf(units, term));
+        columns.at(2 * i, lane) = parts.coarse;
+        columns.at(2 * i + 1, lane) = parts.fine;
+      }
+      __syncwarp();
+      columns.sums[pass][lane] += columns.sum(lane / kShare, lane % kShare);
+      __syncwarp();
+    }
   }
-  if (batch.ticket) finish(batch, of_block);
+
+  __device__ void write(const Batch& batch, const Scene& scene, unsigned query, std::uint32_t place_a,
+                        std::uint32_t place_b, unsigned hits, unsigned lane) {
+    unsigned long long at = 0;
+    if (lane == 0) at = atomicAdd(&batch.counters->found, static_cast<unsigned long long>(__popc(hits)));
+    at = __shfl_sync(kAll, at, 0) + __popc(hits & ((1u << lane) - 1));
+    if ((hits >> lane & 1) == 0 || at >= batch.capacity) return;
+    const unsigned long long a = scene.grids[0].view.ids[place_a], b = scene.grids[1].view.ids[place_b];
+    batch.hits[at] = (static_cast<unsigned long long>(query) << batch.bits_a | a) << batch.bits_b | b;
+  }
+
+  unsigned pairs_, rounds_;
+};
+
+/// One term of a query's sums, in floating point.
+inline __device__ double totalOf(const DeviceSums& sums, const core::Units& units, int term) {
+  const Limbs& limbs = sums.terms[term];
+  const core::Unit& unit = unitOf(units, term);
+  const auto part = [](unsigned long long x, int shift) {
+    const core::FixedSum low = core::shifted(static_cast<std::int64_t>(x), shift % 64);
+    return shift < 64 ? low : core::FixedSum{0, low.lo};
+  };
+  const int bits = unit.fine_bits;
+  return core::toDouble(part(__ldcg(&limbs.fine), 0) + part(__ldcg(&limbs.coarse_low), bits) +
+                            part(__ldcg(&limbs.coarse_high), bits + 32),
+                        unit);
+}
+
+/// What a query gives back: word `word` of core::Totals.
+template <Goal goal>
+inline __device__ unsigned long long resultOf(const DeviceSums& sums, const core::Units& units,
+                                              unsigned word) {
+  if (word >= core::kTerms) {
+    const unsigned long long pairs = __ldcg(&sums.pairs);
+    return goal == Goal::touch ? pairs != 0 : pairs;
+  }
+  const int term = static_cast<int>(word);
+  return static_cast<unsigned long long>(
+      __double_as_longlong(term < kTermCount<goal> ? totalOf(sums, units, term) : 0));
 }
 
 }  // namespace innersphere::device

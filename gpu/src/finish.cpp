@@ -12,8 +12,8 @@ namespace innersphere {
 
 namespace {
 
-Vec3d toVec(const core::FixedSum* terms, const core::Unit& unit) {
-  return {core::toDouble(terms[0], unit), core::toDouble(terms[1], unit), core::toDouble(terms[2], unit)};
+Vec3d toVec(const double* terms) {
+  return {terms[0], terms[1], terms[2]};
 }
 
 std::uint32_t high(std::uint64_t key) {
@@ -33,20 +33,26 @@ void clear(QueryResult::Ranges<T>& ranges, std::size_t queries) {
 
 }  // namespace
 
-Overlap toOverlap(const core::Sums& sums, const core::Setup& setup) {
-  const core::Units& units = setup.units;
+core::Totals toTotals(const core::Sums& sums, const core::Units& units) {
+  core::Totals totals;
+  totals.pairs = sums.pairs;
+  for (int i = 0; i < core::kTerms; ++i) totals.terms[i] = core::toDouble(sums.terms[i], unitOf(units, i));
+  return totals;
+}
+
+Overlap toOverlap(const core::Totals& totals) {
   Overlap overlap;
-  overlap.pair_count = sums.pairs;
-  overlap.volume = core::toDouble(sums.terms[core::kVolume], units.volume);
+  overlap.pair_count = totals.pairs;
+  overlap.volume = totals.terms[core::kVolume];
   if (overlap.volume > 0) {
-    overlap.centroid = toVec(sums.terms + core::kMoment, units.moment);
+    overlap.centroid = toVec(totals.terms + core::kMoment);
     for (double& c : overlap.centroid) c /= overlap.volume;
   }
-  overlap.force = toVec(sums.terms + core::kForce, units.volume);
-  overlap.torque = toVec(sums.terms + core::kTorque, units.torque);
-  overlap.area = toVec(sums.terms + core::kArea, units.area);
-  overlap.stiffness = core::toDouble(sums.terms[core::kStiffness], units.area);
-  overlap.energy = core::toDouble(sums.terms[core::kEnergy], units.energy);
+  overlap.force = toVec(totals.terms + core::kForce);
+  overlap.torque = toVec(totals.terms + core::kTorque);
+  overlap.area = toVec(totals.terms + core::kArea);
+  overlap.stiffness = totals.terms[core::kStiffness];
+  overlap.energy = totals.terms[core::kEnergy];
   return overlap;
 }
 
@@ -149,15 +155,20 @@ void HitSorter::regroupByB(const std::vector<PreparedQuery>& queries, Workers& w
   });
 }
 
-/// Sums the lenses of one sphere with its partners, keys_[begin .. end).
+/// Sums the lenses of one sphere with its partners, keys_[begin .. end): every kContactShares-th of them,
+/// then these sums. So a device can sum those of a large sphere side by side, to the same bits.
 SphereContact HitSorter::sumContact(std::size_t query, std::size_t begin, std::size_t end, bool of_b) const {
-  Values sum{0, {0, 0, 0}, {0, 0, 0}};
-  for (std::size_t k = begin; k < end; ++k) {
-    const Values& pair = values_[of_b ? first_[query] + low(keys_[k]) : k];
+  Values shares[kContactShares];
+  std::fill_n(shares, std::min<std::size_t>(kContactShares, end - begin), Values{0, {0, 0, 0}, {0, 0, 0}});
+  const auto add = [](Values& sum, const Values& pair) {
     sum.volume += pair.volume;
     sum.moment = sum.moment + pair.moment;
     sum.area = sum.area + pair.area;
-  }
+  };
+  for (std::size_t k = begin; k < end; ++k)
+    add(shares[(k - begin) % kContactShares], values_[of_b ? first_[query] + low(keys_[k]) : k]);
+  Values sum{0, {0, 0, 0}, {0, 0, 0}};
+  for (std::size_t s = 0; s < std::min<std::size_t>(kContactShares, end - begin); ++s) add(sum, shares[s]);
   const core::Vec3r centroid = sum.volume > 0 ? 1 / sum.volume * sum.moment : core::Vec3r{0, 0, 0};
   SphereContact contact;
   contact.sphere = high(keys_[begin]);

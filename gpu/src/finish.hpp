@@ -1,17 +1,20 @@
-// From what a backend found to what a caller gets: sums in floating point, pairs sorted, contacts of each
-// sphere.
+// From what a backend found to what a caller gets: sums in floating point and, of the CPU, pairs sorted,
+// contacts of each sphere.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "backend.hpp"
+#include "hits.hpp"
 #include "innersphere/query.hpp"
 #include "workers.hpp"
 
 namespace innersphere {
 
-Overlap toOverlap(const core::Sums& sums, const core::Setup& setup);
+core::Totals toTotals(const core::Sums& sums, const core::Units& units);
+
+Overlap toOverlap(const core::Totals& totals);
 
 /// Sorting makes the lists independent of the order in which hits were found; each sphere's contact is then
 /// summed in the order of its partners. Keeps its memory for the next batch.

@@ -171,7 +171,15 @@ core::Units makeUnits(const Side& a, const Side& b, std::size_t index) {
 
 }  // namespace
 
-PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estimator) {
+const HashGrid& KnownGrids::of(const CollisionModel& model, std::uint32_t prefix, Estimator estimator,
+                               int side) {
+  Known& known = known_[side];
+  if (known.model != &model || known.prefix != prefix)
+    known = {&model, prefix, &model.impl().grid(prefix, estimator)};
+  return *known.grid;
+}
+
+PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estimator, KnownGrids& grids) {
   if (!query.a || !query.b) fail(ErrorCode::bad_argument, index, "a model is a null pointer");
   const Mat3<double> rotation_a = checkedRotation(query.placement_a, index, "A");
   const Mat3<double> rotation_b = checkedRotation(query.placement_b, index, "B");
@@ -184,8 +192,8 @@ PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estim
   }
 
   PreparedQuery prepared;
-  prepared.grid_a = &query.a->impl().grid(query.prefix_a, estimator);
-  prepared.grid_b = &query.b->impl().grid(query.prefix_b, estimator);
+  prepared.grid_a = &grids.of(*query.a, query.prefix_a, estimator, 0);
+  prepared.grid_b = &grids.of(*query.b, query.prefix_b, estimator, 1);
   const double scale_a = query.placement_a.scale, scale_b = query.placement_b.scale;
   const Side a{prepared.grid_a->view(), scaled(rotation_a, scale_a), scale_a, query.margin};
   const Side b{prepared.grid_b->view(), scaled(rotation_b, scale_b), scale_b, 0};

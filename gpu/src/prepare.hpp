@@ -17,9 +17,24 @@ struct PreparedQuery {
   std::size_t clusters() const { return std::size_t{setup.a.clusters} + setup.b.clusters; }
 };
 
+/// The grids of neighbouring queries are often the same: found without the model's lock. Not for use by
+/// several threads.
+class KnownGrids {
+ public:
+  const HashGrid& of(const CollisionModel& model, std::uint32_t prefix, Estimator estimator, int side);
+
+ private:
+  struct Known {
+    const CollisionModel* model = nullptr;
+    std::uint32_t prefix = 0;
+    const HashGrid* grid = nullptr;
+  };
+  Known known_[2];
+};
+
 /// Throws Error as QueryContext::run says; `index` is the query's place in its batch, for messages. Bodies
 /// whose bounding balls or boxes are apart get no clusters to walk. Builds the grids if this is their first
-/// use.
-PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estimator);
+/// use. All calls with the same `grids` have one estimator.
+PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estimator, KnownGrids& grids);
 
 }  // namespace innersphere

@@ -1,10 +1,11 @@
 #include "innersphere/query.hpp"
 
+#include <exception>
 #include <string>
+#include <utility>
 
-#include "cpu_backend.hpp"
+#include "cpu_queries.hpp"
 #include "cuda_backend.hpp"
-#include "finish.hpp"
 #include "innersphere/error.hpp"
 #include "prepare.hpp"
 
@@ -23,7 +24,7 @@ constexpr std::size_t kGrain = 64;  ///< queries of a batch that one thread prep
 struct QueryContext::Impl {
   explicit Impl(const QueryContextOptions& o) : options(o), workers(o.threads), cpu(workers) {
     if (options.backend != Backend::cuda) return;
-    cuda = makeCudaBackend(options.time_kernels);
+    cuda = makeCudaBackend(workers, options.time_kernels);
     last = Backend::cuda;
   }
 
@@ -32,7 +33,8 @@ struct QueryContext::Impl {
     std::size_t clusters = 0;
     for (const PreparedQuery& query : prepared) clusters += query.clusters();
     if (clusters < kDeviceClusters) return false;
-    if (!cuda && !looked_for_device && cudaDeviceAnswers()) cuda = makeCudaBackend(options.time_kernels);
+    if (!cuda && !looked_for_device && cudaDeviceAnswers())
+      cuda = makeCudaBackend(workers, options.time_kernels);
     looked_for_device = true;
     return cuda != nullptr;
   }
@@ -40,7 +42,9 @@ struct QueryContext::Impl {
   void prepare(const PairQuery* queries, std::size_t count, Estimator estimator) {
     prepared.resize(count);
     const auto some = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) prepared[i] = innersphere::prepare(queries[i], i, estimator);
+      KnownGrids grids;
+      for (std::size_t i = begin; i < end; ++i)
+        prepared[i] = innersphere::prepare(queries[i], i, estimator, grids);
     };
     try {
       workers.forRanges(count, kGrain, some);
@@ -50,25 +54,41 @@ struct QueryContext::Impl {
     }
   }
 
-  WalkBackend& choose() {
+  QueryBackend& choose() {
     const bool on_device =
         options.backend == Backend::cuda || (options.backend == Backend::automatic && paysOnDevice());
     last = on_device ? Backend::cuda : Backend::cpu;
     return on_device ? *cuda : cpu;
   }
 
+  void start(const PairQuery* queries, std::size_t count, const QueryOptions& query_options) {
+    if (under_way)
+      throw Error(ErrorCode::bad_argument, "a query is under way in this context; wait for it first");
+    if (count > 0 && !queries) throw Error(ErrorCode::bad_argument, "the queries are a null pointer");
+    if (count >> 32) throw Error(ErrorCode::bad_argument, "a batch has at most 2^32 - 1 queries; split it");
+    prepare(queries, count, query_options.estimator);
+    QueryBackend& backend = choose();
+    backend.start(prepared, query_options.want);
+    under_way = &backend;
+  }
+
+  void finish(QueryResult& result) {
+    QueryBackend& backend = *under_way;
+    under_way = nullptr;
+    backend.finish(result);
+  }
+
   QueryContextOptions options;
   Workers workers;
-  CpuBackend cpu;
-  std::unique_ptr<WalkBackend> cuda;
+  CpuQueries cpu;
+  std::unique_ptr<QueryBackend> cuda;
   bool looked_for_device = false;
   Backend last = Backend::cpu;
+  QueryBackend* under_way = nullptr;
+  std::exception_ptr failed;  ///< what start() met, for wait()
 
   // Scratch, kept from run to run.
   std::vector<PreparedQuery> prepared;
-  std::vector<core::Sums> sums;
-  Hits hits;
-  HitSorter sorter;
   QueryResult single;
 };
 
@@ -89,24 +109,52 @@ QueryContext& QueryContext::operator=(QueryContext&&) noexcept = default;
 
 void QueryContext::run(const PairQuery* queries, std::size_t count, const QueryOptions& options,
                        QueryResult& result) {
-  Impl& impl = *impl_;
-  if (count > 0 && !queries) throw Error(ErrorCode::bad_argument, "the queries are a null pointer");
-  if (count >> 32) throw Error(ErrorCode::bad_argument, "a batch has at most 2^32 - 1 queries; split it");
-  impl.prepare(queries, count, options.estimator);
-  impl.choose().run(impl.prepared, options.want, impl.sums, impl.hits);
-  impl.sorter.run(impl.prepared, impl.sums, impl.hits, options.want, impl.workers, result);
-  result.overlaps.resize(count);
-  impl.workers.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      result.overlaps[i] = toOverlap(impl.sums[i], impl.prepared[i].setup);
-  });
+  if (impl_->failed) wait(result);  // throws
+  impl_->start(queries, count, options);
+  impl_->finish(result);
+}
+
+void QueryContext::start(const PairQuery* queries, std::size_t count, const QueryOptions& options) {
+  if (impl_->failed) return;  // the first error is the one to report
+  try {
+    impl_->start(queries, count, options);
+  } catch (...) {
+    impl_->failed = std::current_exception();
+  }
+}
+
+bool QueryContext::ready() {
+  if (impl_->failed || !impl_->under_way) return true;
+  try {
+    return impl_->under_way->ready();
+  } catch (...) {
+    impl_->failed = std::current_exception();
+    impl_->under_way = nullptr;
+    return true;
+  }
+}
+
+void QueryContext::wait(QueryResult& result) {
+  if (impl_->failed) std::rethrow_exception(std::exchange(impl_->failed, nullptr));
+  if (!impl_->under_way)
+    throw Error(ErrorCode::bad_argument, "no query is under way; start one before waiting");
+  impl_->finish(result);
 }
 
 Overlap QueryContext::overlap(const PairQuery& query, const QueryOptions& options) {
+  startOverlap(query, options);
+  return waitOverlap();
+}
+
+void QueryContext::startOverlap(const PairQuery& query, const QueryOptions& options) {
   QueryOptions sums_only = options;
   if (wantsHits(options.want)) sums_only.want = Want::wrench;
-  run(&query, 1, sums_only, impl_->single);
-  return impl_->single.overlaps[0];
+  start(&query, 1, sums_only);
+}
+
+Overlap QueryContext::waitOverlap() {
+  wait(impl_->single);
+  return impl_->single.overlaps.at(0);
 }
 
 double QueryContext::kernelTime() const {

@@ -59,7 +59,8 @@ TEST(CpuKernels, AllGiveTheSameBits) {
   query.b = b.get();
   query.placement_b = at({0.4, 0.1, 0});
   query.margin = 0.001;
-  const PreparedQuery prepared = prepare(query, 0, Estimator::volume_true);
+  KnownGrids grids;
+  const PreparedQuery prepared = prepare(query, 0, Estimator::volume_true, grids);
   const Recorder first = record(*supportedKernels().front(), prepared);
   EXPECT_GT(first.pairs.size(), 500u);
   for (const CpuKernels* kernels : supportedKernels()) {

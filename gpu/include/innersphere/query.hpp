@@ -94,6 +94,20 @@ class QueryContext {
   /// One pair, only its sums: Want::contacts and Want::pairs give no more than Want::wrench here.
   Overlap overlap(const PairQuery& query, const QueryOptions& options = {});
 
+  /// The same two calls in halves, so that the caller can do other things while a device works: start()
+  /// copies what it needs of the queries and returns, wait() gives what run() would, to the bit. On the CPU
+  /// start() does all the work. A context has one query under way; models must live until wait(). All errors,
+  /// also of a second start() or of a wait() without one, are thrown by wait(). Of batches longer than some
+  /// 10,000 queries, the device gets what follows while ready() or wait() is called.
+  void start(const PairQuery* queries, std::size_t count, const QueryOptions& options);
+  void wait(QueryResult& result);
+  void startOverlap(const PairQuery& query, const QueryOptions& options = {});
+  Overlap waitOverlap();
+
+  /// True if wait() will return at once. With Want::contacts and Want::pairs the device works in two steps,
+  /// the second of which begins when this is called after the first.
+  bool ready();
+
   /// The backend that the last run used: cpu or cuda.
   Backend lastBackend() const;
 

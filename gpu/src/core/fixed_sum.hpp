@@ -34,7 +34,7 @@ INNERSPHERE_HD inline FixedSum operator-(const FixedSum& a) {
 }
 
 /// x 2^shift, 0 <= shift < 64.
-inline FixedSum shifted(std::int64_t x, int shift) {
+INNERSPHERE_HD inline FixedSum shifted(std::int64_t x, int shift) {
   const auto bits = static_cast<std::uint64_t>(x);
   const auto sign = static_cast<std::uint64_t>(x >> 63);
   if (shift == 0) return {bits, sign};
@@ -61,18 +61,28 @@ struct ShortSum {
   std::uint64_t fine;
 };
 
-/// Adds x, rounded to nearest, ties to even, so that a term and its negation cancel.
-INNERSPHERE_HD inline void add(ShortSum& sum, double x, const Unit& unit) {
+constexpr std::uint64_t kMagicBits = 0x4338000000000000u;  ///< of 1.5 * 2^52
+
+/// The two parts of a term, rounded to nearest, ties to even, so that a term and its negation cancel: what
+/// the bits of these numbers are above kMagicBits.
+struct Parts {
+  double coarse, fine;
+};
+
+INNERSPHERE_HD inline Parts split(double x, const Unit& unit) {
   constexpr double kMagic =
       6755399441055744.0;  // 1.5 * 2^52: the last bits of what is added to it are an integer
-  constexpr std::uint64_t kMagicBits = 0x4338000000000000u;
   const double scaled = x * unit.coarse;
   const double coarse = scaled + kMagic;
-  const double fine = (scaled - (coarse - kMagic)) * unit.fine + kMagic;
+  return {coarse, (scaled - (coarse - kMagic)) * unit.fine + kMagic};
+}
+
+INNERSPHERE_HD inline void add(ShortSum& sum, double x, const Unit& unit) {
+  const Parts parts = split(x, unit);
   std::uint64_t bits;
-  memcpy(&bits, &coarse, sizeof bits);
+  memcpy(&bits, &parts.coarse, sizeof bits);
   sum.coarse += bits - kMagicBits;
-  memcpy(&bits, &fine, sizeof bits);
+  memcpy(&bits, &parts.fine, sizeof bits);
   sum.fine += bits - kMagicBits;
 }
 
@@ -82,11 +92,12 @@ inline FixedSum toFixed(const ShortSum& sum, const Unit& unit) {
          shifted(static_cast<std::int64_t>(sum.fine), 0);
 }
 
-inline double toDouble(const FixedSum& sum, const Unit& unit) {
+INNERSPHERE_HD inline double toDouble(const FixedSum& sum, const Unit& unit) {
+  using std::ldexp;
   const bool negative = sum.hi >> 63;
   const FixedSum size = negative ? -sum : sum;
-  const double x = std::ldexp(static_cast<double>(size.hi), 64) + static_cast<double>(size.lo);
-  return std::ldexp(negative ? -x : x, -unit.coarse_shift - unit.fine_bits);
+  const double x = ldexp(static_cast<double>(size.hi), 64) + static_cast<double>(size.lo);
+  return ldexp(negative ? -x : x, -unit.coarse_shift - unit.fine_bits);
 }
 
 }  // namespace innersphere::core

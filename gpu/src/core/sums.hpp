@@ -41,23 +41,35 @@ struct Terms {
   }
 };
 
-/// All terms with kWrench, otherwise the first kVolumeTerms.
+/// With kWrench all terms but the energy, otherwise the first kVolumeTerms.
 template <bool kWrench>
-INNERSPHERE_HD inline Terms makeTerms(const Pair& pair) {
-  const Contact contact = makeContact(pair);
+INNERSPHERE_HD inline void setTerms(const Pair& pair, const Contact& contact, Terms& terms) {
   const double volume = contact.lens.volume, rim = contact.lens.rim_area;
-  Terms terms;
   terms.terms[kVolume] = volume;
   terms.set(kMoment, lensMoment(pair, contact));
-  if (!kWrench) return terms;
+  if (!kWrench) return;
   const Vec3r force = volume * contact.n;
   terms.set(kForce, force);
   terms.set(kTorque, cross(pair.b, force));  // the force is central, so any point of its line will do
   terms.set(kArea, rim * contact.n);
   terms.terms[kStiffness] = rim;
-  terms.terms[kEnergy] = lensEnergy(contact.balls);
+}
+
+/// All terms with kWrench, otherwise the first kVolumeTerms.
+template <bool kWrench>
+INNERSPHERE_HD inline Terms makeTerms(const Pair& pair) {
+  const Contact contact = makeContact(pair);
+  Terms terms;
+  setTerms<kWrench>(pair, contact, terms);
+  if (kWrench) terms.terms[kEnergy] = lensEnergy(contact.balls);
   return terms;
 }
+
+/// The sums in floating point.
+struct Totals {
+  double terms[kTerms];
+  std::uint64_t pairs;
+};
 
 struct Sums {
   std::uint64_t pairs;

@@ -1,0 +1,47 @@
+// What several kernels call.
+#pragma once
+
+#include "cuda_batch.hpp"
+
+namespace innersphere::device {
+
+/// Some of kItem neighbouring clusters of one body of a query.
+struct Item {
+  unsigned query;
+  unsigned side;   ///< 0: A
+  unsigned first;  ///< cluster
+  unsigned mask;   ///< a bit for each that is active
+};
+inline __device__ unsigned long long packItem(const Item& item) {
+  return static_cast<unsigned long long>(item.query) << 40 |
+         static_cast<unsigned long long>(item.side) << 39 |
+         static_cast<unsigned long long>(item.first / kItem) << kItem | item.mask;
+}
+
+inline __device__ Item unpackItem(unsigned long long bits) {
+  return {static_cast<unsigned>(bits >> 40), static_cast<unsigned>(bits >> 39 & 1),
+          static_cast<unsigned>(bits >> kItem & 0x7fffffffu) * kItem,
+          static_cast<unsigned>(bits & ((1u << kItem) - 1))};
+}
+
+inline __device__ Sphere load(const Sphere* sphere) {
+  const float4 s = __ldg(reinterpret_cast<const float4*>(sphere));
+  return {s.x, s.y, s.z, s.w};
+}
+
+/// False if nothing in the ball, which is in the walker's frame, can meet the grid.
+inline __device__ bool ballMeets(const core::GridView& grid, const core::Search& search, const Sphere& ball) {
+  const core::Probe around = core::makeProbe(search, ball);
+  return core::meetsBounds(grid, around.p, around.radius + search.grid_margin + search.tolerance);
+}
+
+/// The sum over this lane and all before it.
+inline __device__ unsigned scan(unsigned x, unsigned lane) {
+  for (unsigned step = 1; step < kWarp; step *= 2) {
+    const unsigned before = __shfl_up_sync(kAll, x, step);
+    if (lane >= step) x += before;
+  }
+  return x;
+}
+
+}  // namespace innersphere::device

@@ -1,0 +1,284 @@
+// The kernels of a query: all pairs of a batch, or a single one in one launch.
+#include "cuda_cull.hpp"
+#include "cuda_kernels.hpp"
+#include "cuda_memory.hpp"
+#include "cuda_sum.hpp"
+
+namespace innersphere::device {
+
+namespace {
+
+constexpr unsigned kSingleWarps = 8;   ///< in a block
+constexpr unsigned kSingleBlocks = 2;  ///< on each multiprocessor, as many as registers allow
+constexpr unsigned kBatchWarps = 4;
+constexpr unsigned kBatchBlocks = 5;
+static_assert(kSingleWarps <= kMostWarps && kBatchWarps <= kMostWarps);
+
+struct WarpMemory {
+  Walking walking[kWarp];
+  Queue queue;
+  Columns columns;
+};
+
+/// What a warp holds while it works on one query.
+template <Goal goal>
+struct Warp {
+  __device__ Warp(WarpMemory& m, unsigned l) : memory(m), lane(l), summer(l, m.columns) {}
+
+  WarpMemory& memory;
+  unsigned lane;
+  unsigned queued = 0;
+  bool touched = false;  ///< Goal::touch: there is a pair
+  Summer<goal> summer;
+
+  __device__ void flush(DeviceSums& sums, const core::Units& units) {
+    summer.flush(sums, units, lane, memory.columns);
+    queued = 0;
+    touched = false;
+  }
+};
+
+/// A cluster to walk, or a share of it: the rounds `part`, part + parts, ...
+struct Job {
+  unsigned side, cluster, part, parts;
+  bool drain;  ///< no cluster: only decide what waits
+};
+
+/// All lanes call it.
+template <Goal goal>
+__device__ __forceinline__ void walkCluster(const Batch& batch, const Scene& scene, unsigned query,
+                                            const Job& job, DeviceSums& sums, Warp<goal>& warp) {
+  WarpMemory& memory = warp.memory;
+  const unsigned lane = warp.lane;
+  const Grid& grid = scene.grids[1 - job.side];
+  bool more = false;
+  std::uint32_t number = 0;
+  do {
+    core::Lookup lookup{};
+    List list{};
+    unsigned self = 0;
+    if (!job.drain) {
+      const Grid& own = scene.grids[job.side];
+      const uint2 run = __ldg(reinterpret_cast<const uint2*>(&own.view.clusters[job.cluster].first));
+      self = (run.x + lane) | (job.side == 0 ? kFromA : 0);
+      const core::Walker walker{own.view, grid.view, scene.query.searches[job.side]};
+      std::uint32_t count = 0;
+      if (lane < run.y && core::makeLookup(walker, load(own.view.spheres + run.x + lane), lookup))
+        list = listOf(grid.view, lookup, number, count);
+      more = __any_sync(kAll, ++number < count);
+    }
+    const Lists lists = lineUp(lookup, list, self, number - 1, lane, memory.walking);
+    unsigned first = job.part * kWarp;
+    do {
+      testStep(grid, lists, first, lane, memory.walking, memory.queue, warp.queued);
+      while (warp.queued >= kWarp || (job.drain && warp.queued > 0)) {
+        const unsigned count = min(warp.queued, kWarp);
+        warp.queued -= count;
+        const bool any =
+            warp.summer.add(batch, scene, query, memory.queue[warp.queued + min(lane, count - 1)],
+                            lane < count, lane, memory.columns);
+        if (goal == Goal::touch && any) {
+          warp.touched = true;
+          return;
+        }
+        if (warp.summer.full()) warp.summer.flush(sums, scene.query.units, lane, memory.columns);
+      }
+      __syncwarp();
+      first += job.parts * kWarp;
+    } while (first < lists.total);
+  } while (more);
+}
+
+__device__ bool isTouched(const DeviceSums& sums) {
+  return *const_cast<const volatile unsigned long long*>(&sums.pairs) != 0;
+}
+
+/// Copies the query and its grids, with so many threads.
+__device__ __forceinline__ void copyScene(const Query& query, unsigned thread, unsigned threads,
+                                          Scene& scene) {
+  const auto copy = [&](const auto& from, auto& to) {
+    constexpr unsigned kWords = sizeof from / sizeof(uint2);
+    for (unsigned i = thread; i < kWords; i += threads)
+      reinterpret_cast<uint2*>(&to)[i] = reinterpret_cast<const uint2*>(&from)[i];
+  };
+  copy(*query.grids[0], scene.grids[0]);
+  copy(*query.grids[1], scene.grids[1]);
+  copy(query, scene.query);
+}
+
+/// True in the last block to come here, for all its threads.
+__device__ bool isLastBlock(const Batch& batch) {
+  __shared__ bool last;
+  __syncthreads();
+  if (threadIdx.x == 0) {
+    __threadfence();
+    last = atomicAdd(&batch.counters->blocks, 1u) == gridDim.x - 1;
+    __threadfence();
+  }
+  __syncthreads();
+  return last;
+}
+
+/// Into how many jobs a cluster is cut: where a block has few, all its warps should get something.
+__device__ unsigned partsOf(unsigned clusters) {
+  return clusters <= kSingleWarps / 4 ? 4 : clusters <= kSingleWarps / 2 ? 2 : 1;
+}
+
+/// A single query: blocks share all its clusters, the warps of a block those that can meet the other body,
+/// and the last block brings the sums home.
+template <Goal goal>
+__global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
+    walkSingle(const __grid_constant__ Batch batch, const __grid_constant__ Query query) {
+  constexpr unsigned kThreads = kSingleWarps * kWarp;
+  __shared__ WarpMemory memory[kSingleWarps];
+  __shared__ Scene scene;
+  __shared__ unsigned active[kThreads], active_count;
+  copyScene(query, threadIdx.x, kThreads, scene);
+  if (threadIdx.x == 0) active_count = 0;
+  Warp<goal> warp(memory[threadIdx.x / kWarp], threadIdx.x % kWarp);
+  __syncthreads();
+
+  const unsigned clusters_a = scene.query.clusters[0], clusters = clusters_a + scene.query.clusters[1];
+  for (unsigned first = blockIdx.x; first < clusters; first += gridDim.x * kThreads) {
+    const unsigned cluster = first + threadIdx.x * gridDim.x;
+    if (cluster < clusters) {
+      const unsigned side = cluster < clusters_a ? 0 : 1;
+      const core::Cluster* of_body = scene.grids[side].view.clusters;
+      if (ballMeets(scene.grids[1 - side].view, scene.query.searches[side],
+                    load(&of_body[side == 0 ? cluster : cluster - clusters_a].ball)))
+        active[atomicAdd(&active_count, 1u)] = cluster;
+    }
+    __syncthreads();
+    const bool last = first + gridDim.x * kThreads >= clusters;
+    const unsigned parts = partsOf(active_count), jobs = parts * active_count;
+    for (unsigned number = threadIdx.x / kWarp; number < jobs || (last && warp.queued > 0);
+         number += kSingleWarps) {
+      Job job{0, 0, number % parts, parts, number >= jobs};
+      if (!job.drain) {
+        job.cluster = active[number / parts];
+        job.side = job.cluster < clusters_a ? 0 : 1;
+        if (job.side != 0) job.cluster -= clusters_a;
+      }
+      walkCluster(batch, scene, 0, job, *batch.sums, warp);
+      if (goal == Goal::touch && warp.touched) warp.flush(*batch.sums, scene.query.units);  // for all to see
+      if (job.drain || (goal == Goal::touch && isTouched(*batch.sums))) break;
+    }
+    __syncthreads();
+    if (threadIdx.x == 0) active_count = 0;
+    __syncthreads();
+  }
+  warp.summer.flushBlock(*batch.sums, scene.query.units, kSingleWarps, warp.lane,
+                         [&](unsigned w) -> Columns& { return memory[w].columns; });
+  if (!isLastBlock(batch)) return;
+  if (threadIdx.x <= kResultWords) {
+    const unsigned long long word = threadIdx.x < kResultWords
+                                        ? resultOf<goal>(*batch.sums, scene.query.units, threadIdx.x)
+                                        : __ldcg(&batch.counters->found);
+    const unsigned long long run = static_cast<unsigned long long>(batch.run) << 32;
+    auto* to = reinterpret_cast<ulonglong2*>(batch.signal->pieces) + threadIdx.x;
+    *to = {run | (word & 0xffffffffu), run | word >> 32};
+  }
+  __syncthreads();
+  if (threadIdx.x < kSumWords) reinterpret_cast<unsigned long long*>(batch.sums)[threadIdx.x] = 0;
+  if (threadIdx.x == 0) *batch.counters = {};
+}
+
+/// A power of two: few enough that all warps end at about the same time.
+__device__ unsigned itemsAtOnce(unsigned items_of_warp) {
+  constexpr unsigned kShares = 8, kMost = 8;
+  unsigned at_once = 1;
+  while (at_once < kMost && 2 * at_once * kShares <= items_of_warp) at_once *= 2;
+  return at_once;
+}
+
+/// All queries: warps take items, which belong to many of them, until none is left.
+template <Goal goal>
+__global__ void __launch_bounds__(kBatchWarps* kWarp, kBatchBlocks)
+    walkBatch(const __grid_constant__ Batch batch) {
+  constexpr unsigned kNone = ~0u;
+  __shared__ WarpMemory memory[kBatchWarps];
+  __shared__ Scene scenes[kBatchWarps];
+  const unsigned lane = threadIdx.x % kWarp;
+  Scene& scene = scenes[threadIdx.x / kWarp];
+  Warp<goal> warp(memory[threadIdx.x / kWarp], lane);
+  const unsigned items = batch.counters->items;
+  const unsigned chunk = itemsAtOnce(items / (gridDim.x * kBatchWarps));
+  const auto take = [&] { return lane == 0 ? atomicAdd(&batch.counters->taken, chunk) : 0; };
+  unsigned taken = take(), at = 0, query = kNone;
+  unsigned long long bits = 0;  // of the item
+  bool left = true;
+  while (left) {
+    while (left && unpackItem(bits).mask == 0) {
+      if (at % chunk == 0) {
+        at = __shfl_sync(kAll, taken, 0);
+        taken = take();  // ahead
+      }
+      left = at < items;
+      if (left) bits = __ldg(batch.items + at++);
+      if (goal == Goal::touch && left && isTouched(batch.sums[unpackItem(bits).query])) bits = 0;
+    }
+    const Item item = unpackItem(bits);
+    const bool drain = !left || item.query != query;
+    if (!drain || query != kNone) {
+      const unsigned cluster =
+          item.first + (drain ? 0 : static_cast<unsigned>(__ffs(static_cast<int>(item.mask)) - 1));
+      walkCluster(batch, scene, query, {item.side, cluster, 0, 1, drain}, batch.sums[query], warp);
+    }
+    if (!drain) {
+      bits = warp.touched ? 0 : bits ^ (item.mask & -item.mask);
+      if (!warp.touched) continue;
+    }
+    if (query != kNone) warp.flush(batch.sums[query], scene.query.units);
+    if (!drain || !left) continue;
+    query = item.query;
+    __syncwarp();
+    copyScene(batch.queries[query], lane, kWarp, scene);
+    __syncwarp();
+  }
+}
+
+/// Brings the sums of all queries home.
+template <Goal goal>
+__global__ void finishBatch(const __grid_constant__ Batch batch) {
+  const unsigned thread = blockIdx.x * blockDim.x + threadIdx.x, query = thread / kResultWords;
+  if (query < batch.count) {
+    const unsigned word = thread % kResultWords;
+    reinterpret_cast<unsigned long long*>(batch.results + query)[word] =
+        resultOf<goal>(batch.sums[query], batch.queries[query].units, word);
+  }
+  __threadfence_system();
+  if (!isLastBlock(batch) || threadIdx.x != 0) return;
+  batch.signal->found = batch.counters->found;
+  __threadfence_system();
+  *static_cast<volatile unsigned*>(&batch.signal->done) = batch.run;
+}
+
+template <Goal goal>
+void launchGoal(const Batch& batch, const Query* single, unsigned most_clusters, unsigned processors,
+                cudaStream_t stream) {
+  if (single) {
+    const unsigned clusters = single->clusters[0] + single->clusters[1];
+    const unsigned blocks = std::min(kSingleBlocks * processors, clusters);
+    walkSingle<goal><<<blocks, kSingleWarps * kWarp, 0, stream>>>(batch, *single);
+  } else {
+    constexpr unsigned kTask = kWarp * kGroup, kThreads = 128;
+    const unsigned tasks = most_clusters / kTask + 2;  // of both bodies together
+    cullClusters<<<dim3(batch.count, (tasks + kCullWarps - 1) / kCullWarps), kCullWarps * kWarp, 0, stream>>>(
+        batch);
+    walkBatch<goal><<<kBatchBlocks * processors, kBatchWarps * kWarp, 0, stream>>>(batch);
+    finishBatch<goal><<<(batch.count * kResultWords + kThreads - 1) / kThreads, kThreads, 0, stream>>>(batch);
+  }
+  INNERSPHERE_CUDA(cudaGetLastError());
+}
+
+}  // namespace
+
+void launchWalk(Goal goal, const Batch& batch, const Query* single, unsigned most_clusters,
+                unsigned processors, cudaStream_t stream) {
+  const auto launch = goal == Goal::touch    ? &launchGoal<Goal::touch>
+                      : goal == Goal::volume ? &launchGoal<Goal::volume>
+                                             : &launchGoal<Goal::wrench>;
+  launch(batch, single, most_clusters, processors, stream);
+}
+
+}  // namespace innersphere::device
