@@ -164,8 +164,9 @@ void walkClusters(const PreparedQuery& query, std::size_t begin, std::size_t end
       const std::size_t n = std::exchange(count, 0);
       return kernels.walk(walker, clusters.data(), n, candidates, sink) && sink.take(candidates);
     };
+    const Occupancy& occupancy = (from_a ? query.grid_b : query.grid_a)->occupancy();
     const auto meeting = [&](const Sphere* balls, std::uint32_t n) {
-      return kernels.ballsMeeting(walker, balls, n);
+      return kernels.ballsMeeting(walker, occupancy, balls, n);
     };
     const std::size_t before = from_a ? 0 : setup.a.clusters;
     const std::size_t all = from_a ? setup.a.clusters : setup.b.clusters;

@@ -96,9 +96,9 @@ inline void evaluateImpl(const core::Setup& setup, std::size_t count, PairValues
 // Each variant is the same code, inlined into a function for its instructions.
 #define INNERSPHERE_KERNELS(name, Lanes, attributes)                                                       \
   struct name {                                                                                            \
-    attributes static std::uint32_t ballsMeeting(const core::Walker& walker, const Sphere* balls,          \
-                                                 std::uint32_t count) {                                    \
-      return innersphere::ballsMeeting(walker, balls, count);                                              \
+    attributes static std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy,   \
+                                                 const Sphere* balls, std::uint32_t count) {               \
+      return innersphere::ballsMeeting(walker, occupancy, balls, count);                                   \
     }                                                                                                      \
     attributes static bool walk(const core::Walker& walker, const std::uint32_t* clusters,                 \
                                 std::size_t count, Candidates& candidates, CandidateSink& sink) {          \

@@ -46,7 +46,8 @@ struct PairValues {
 
 struct CpuKernels {
   /// A bit for each of up to 32 balls of the walking body that can meet the grid.
-  std::uint32_t (*ballsMeeting)(const core::Walker& walker, const Sphere* balls, std::uint32_t count);
+  std::uint32_t (*ballsMeeting)(const core::Walker& walker, const Occupancy& occupancy, const Sphere* balls,
+                                std::uint32_t count);
   /// Finds the candidates of some clusters, and hands them on where the room ends; the last of them stay in
   /// `candidates`. Returns false if it was stopped.
   bool (*walk)(const core::Walker& walker, const std::uint32_t* clusters, std::size_t count,

@@ -8,21 +8,34 @@
 
 #include "cell_lists.hpp"
 #include "cpu_lanes.hpp"
+#include "occupancy.hpp"
 
 namespace innersphere {
 
 static_assert(kLanes <= CellLists::kPastEnd, "lists are read in groups");
 
-/// A bit for each of up to 32 balls of the walking body that meets the bounds of the grid.
-inline std::uint32_t ballsMeeting(const core::Walker& walker, const Sphere* balls, std::uint32_t count) {
+/// A bit for each of up to 32 balls of the walking body that can meet the grid.
+inline std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy, const Sphere* balls,
+                                  std::uint32_t count) {
+  constexpr std::uint32_t kMost = 32;
   const core::Search search = walker.search;
   const core::GridView grid = walker.grid;
+  float x[kMost], y[kMost], z[kMost], radius[kMost];
   std::uint32_t met = 0;
   for (std::uint32_t k = 0; k < count; ++k) {
-    const bool meets = core::ballMeets(search, grid, balls[k]);
-    met |= (meets ? 1u : 0u) << k;
+    const core::Probe probe = core::makeBallProbe(search, balls[k]);
+    x[k] = probe.p.x;
+    y[k] = probe.p.y;
+    z[k] = probe.p.z;
+    radius[k] = probe.radius;
+    met |= (core::meetsBounds(grid, probe.p, probe.radius) ? 1u : 0u) << k;
   }
-  return met;
+  std::uint32_t left = 0;
+  for (; met != 0; met &= met - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(met));
+    left |= (occupancy.mayMeet({x[k], y[k], z[k]}, radius[k]) ? 1u : 0u) << k;
+  }
+  return left;
 }
 
 /// Walkers that can meet the grid.

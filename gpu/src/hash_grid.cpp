@@ -207,6 +207,7 @@ void HashGrid::makeClusters() {
   cluster_tree_.build(clusters_);
   view_.clusters = clusters_.data();
   view_.cluster_count = static_cast<std::uint32_t>(clusters_.size());
+  occupancy_.build(view_);
 }
 
 }  // namespace innersphere

@@ -9,6 +9,7 @@
 #include "cell_lists.hpp"
 #include "cluster_tree.hpp"
 #include "core/grid_view.hpp"
+#include "occupancy.hpp"
 
 namespace innersphere {
 
@@ -61,6 +62,7 @@ class HashGrid {
   std::uint32_t placeOf(std::uint32_t id) const { return places_[id]; }
 
   const ClusterTree& clusterTree() const { return cluster_tree_; }
+  const Occupancy& occupancy() const { return occupancy_; }
 
   /// Copies on devices, made on first use there. The lock guards them.
   struct DeviceCopies {
@@ -84,6 +86,7 @@ class HashGrid {
   std::vector<std::uint32_t> level_first_;  ///< place of the first sphere of each level, from the lowest on
   std::vector<core::Cluster> clusters_;
   ClusterTree cluster_tree_;
+  Occupancy occupancy_;
   CellLists lists_;
   core::GridView view_{};
   mutable DeviceCopies device_copies_;

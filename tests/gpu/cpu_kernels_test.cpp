@@ -44,7 +44,8 @@ Recorder record(const CpuKernels& kernels, const PreparedQuery& query) {
   Candidates candidates;
   const core::Walker walker = core::walkerOf(query.setup, true);
   for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
-    recorder.balls.push_back(kernels.ballsMeeting(walker, &walker.own.clusters[c].ball, 1));
+    recorder.balls.push_back(
+        kernels.ballsMeeting(walker, query.grid_b->occupancy(), &walker.own.clusters[c].ball, 1));
   for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
     EXPECT_TRUE(kernels.walk(walker, &c, 1, candidates, recorder));
   recorder.take(candidates);

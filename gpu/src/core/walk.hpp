@@ -45,13 +45,18 @@ INNERSPHERE_HD inline Walker walkerOf(const Setup& setup, bool from_a) {
   return {setup.b.grid, setup.a.grid, setup.b_in_a};
 }
 
-/// False if nothing in a ball around spheres of the walking body can meet the grid. The ball may be much
-/// larger than the grid, and its place is rounded by a part of the way to it, so it is made a little larger
-/// still.
-INNERSPHERE_HD inline bool ballMeets(const Search& search, const GridView& grid, const Sphere& ball) {
+/// A ball around spheres of the walking body, larger by all margins and tolerances. It may be much larger
+/// than the grid, and its place is rounded by a part of the way to it.
+INNERSPHERE_HD inline Probe makeBallProbe(const Search& search, const Sphere& ball) {
   constexpr float kRounded = 1 + 1.0f / (1 << 20);
   const Probe around = makeProbe(search, ball);
-  return meetsBounds(grid, around.p, kRounded * around.radius + search.grid_margin + search.tolerance);
+  return {around.p, kRounded * around.radius + search.grid_margin + search.tolerance};
+}
+
+/// False if nothing in such a ball can meet the grid.
+INNERSPHERE_HD inline bool ballMeets(const Search& search, const GridView& grid, const Sphere& ball) {
+  const Probe around = makeBallProbe(search, ball);
+  return meetsBounds(grid, around.p, around.radius);
 }
 
 /// False if no sphere of the cluster can meet one of the grid.
