@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <tbb/parallel_for.h>
+
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
@@ -181,7 +183,9 @@ void OverlapBatch::run(Pass pass) {
   }
   if (queries_.empty()) return;
   context().run(queries_.data(), queries_.size(), optionsOf(pass), result_);
-  for (std::size_t i = 0; i < queried_.size(); ++i) takeResult(pass, i, *queried_[i]);
+  // Each pair has its own result, so that their order does not matter.
+  tbb::parallel_for(std::size_t(0), queried_.size(),
+                    [&](std::size_t i) { takeResult(pass, i, *queried_[i]); });
 }
 
 bool OverlapBatch::takesPart(Pass pass, const PackingContact& contact) const {
@@ -233,23 +237,24 @@ PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) cons
   return query;
 }
 
-void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& contact) {
+void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& contact) const {
+  static thread_local std::vector<SphereContact> contacts;
   if (pass == Pass::touch) {
     contact.deep = result_.overlaps[index].pair_count > 0;
     return;
   }
   // Every lens belongs to a sphere of A and to one of B: both lists together have all of it twice.
-  contacts_.clear();
+  contacts.clear();
   const auto append = [&](const QueryResult::Ranges<SphereContact>& ranges) {
     for (std::size_t k = ranges.first[index]; k < ranges.first[index + 1]; ++k) {
       SphereContact half = ranges.items[k];
       half.volume /= 2;
       for (float& component : half.area) component /= 2;
-      contacts_.push_back(half);
+      contacts.push_back(half);
     }
   };
   append(result_.contacts_a);
-  const std::size_t count_a = contacts_.size();
+  const std::size_t count_a = contacts.size();
   append(result_.contacts_b);
 
   const Measure& measure = *contact.measure;
@@ -259,14 +264,14 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
                         measure.prefix_a);
     const PackingBody b(*contact.b.shape, contact.b.transform, Estimator::raw, measure.slack_b,
                         measure.prefix_b);
-    const PackingGauge gauge(a, b, contacts_, count_a);
-    contact.near = !contacts_.empty();
-    contact.touching = measurePatches(contacts_, gauge, measure, reference, contact.patches);
+    const PackingGauge gauge(a, b, contacts, count_a);
+    contact.near = !contacts.empty();
+    contact.touching = measurePatches(contacts, gauge, measure, reference, contact.patches);
     contact.deep = false;
   } else if (pass == Pass::deep) {
-    gradientPatch(contacts_, measure.spacing, reference, contact.patches);
+    gradientPatch(contacts, measure.spacing, reference, contact.patches);
   } else {
-    volumePatches(contacts_, measure.spacing, reference, contact.patches);
+    volumePatches(contacts, measure.spacing, reference, contact.patches);
     contact.overlap = result_.overlaps[index];
   }
   contact.valid = true;

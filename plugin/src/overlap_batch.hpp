@@ -105,7 +105,7 @@ class OverlapBatch {
   QueryOptions optionsOf(Pass pass) const;
   Measure measureOf(const PackingContact& contact) const;
   PairQuery makeQuery(Pass pass, const PackingContact& contact) const;
-  void takeResult(Pass pass, std::size_t index, PackingContact& contact);
+  void takeResult(Pass pass, std::size_t index, PackingContact& contact) const;
 
   mutable std::mutex mutex_;
   BatchCount count_;
@@ -116,7 +116,6 @@ class OverlapBatch {
   std::vector<PackingContact*> queried_;
   std::vector<PairQuery> queries_;
   QueryResult result_;
-  std::vector<SphereContact> contacts_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -39,7 +39,7 @@ TEST_P(FarAway, DepthIsExact) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Distances, FarAway, testing::Values(1e3, 1e6, 1e9, 1e12), [](const auto& info) {
-  return "e" + std::to_string(std::lround(std::log10(info.param)));
+  return std::string("e").append(std::to_string(std::lround(std::log10(info.param))));
 });
 
 TEST(FarAwayWorld, BodiesRestAThousandKilometresOut) {

@@ -1,0 +1,113 @@
+#include "bin_of_tori.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <random>
+
+#include "innersphere/batched_dispatcher.hpp"
+#include "timing.hpp"
+
+namespace innersphere::benchmarks {
+
+struct BinOfTori::Clock {
+  double narrow_phase = 0;
+};
+
+namespace {
+
+/// Measures what Base does in a step.
+template <typename Base, typename Clock>
+class Timed : public Base {
+ public:
+  Timed(btCollisionConfiguration* configuration, Clock& clock) : Base(configuration), clock_(clock) {}
+  void dispatchAllCollisionPairs(btOverlappingPairCache* pairs, const btDispatcherInfo& info,
+                                 btDispatcher* dispatcher) override {
+    clock_.narrow_phase += timeOf([&] { Base::dispatchAllCollisionPairs(pairs, info, dispatcher); });
+  }
+
+ private:
+  Clock& clock_;
+};
+
+}  // namespace
+
+BinOfTori::BinOfTori(int bodies, bool batched, const std::function<void(btCollisionDispatcher&)>& prepare,
+                     const std::function<std::shared_ptr<btCollisionShape>(int)>& make,
+                     const btVector3& inertia)
+    : clock_(std::make_unique<Clock>()),
+      dispatcher_([&]() -> std::unique_ptr<btCollisionDispatcher> {
+        if (batched) return std::make_unique<Timed<BatchedDispatcher<>, Clock>>(&configuration_, *clock_);
+        return std::make_unique<Timed<btCollisionDispatcher, Clock>>(&configuration_, *clock_);
+      }()),
+      world_(dispatcher_.get(), &broadphase_, &solver_, &configuration_) {
+  prepare(*dispatcher_);
+  world_.setGravity(btVector3(0, 0, btScalar(-9.81)));
+  const int side = std::max(2, static_cast<int>(std::cbrt(bodies)));
+  const btScalar pitch = btScalar(2 * (kRing + kTube) + 0.1), half = pitch * btScalar(side) / 2;
+  const auto addWall = [&](const btVector3& normal, btScalar at) {
+    shapes_.push_back(std::make_shared<btStaticPlaneShape>(normal, at));
+    walls_.push_back(std::make_unique<btRigidBody>(btScalar(0), nullptr, shapes_.back().get()));
+    world_.addRigidBody(walls_.back().get());
+  };
+  addWall(btVector3(0, 0, 1), 0);
+  for (const int sign : {1, -1}) {
+    addWall(btVector3(btScalar(sign), 0, 0), -half);
+    addWall(btVector3(0, btScalar(sign), 0), -half);
+  }
+  std::mt19937 engine(1);
+  const auto tilt = [&] { return btScalar(double(engine() % 1000) / 1000 - 0.5); };
+  for (int i = 0; i < bodies; ++i) {
+    shapes_.push_back(make(i));
+    btRigidBody::btRigidBodyConstructionInfo info(1, nullptr, shapes_.back().get(), inertia);
+    const int layer = i / (side * side), x = i % side, y = i / side % side;
+    info.m_startWorldTransform.setOrigin(btVector3((btScalar(x) + btScalar(0.5)) * pitch - half,
+                                                   (btScalar(y) + btScalar(0.5)) * pitch - half,
+                                                   btScalar(1 + 1.2 * layer)));
+    info.m_startWorldTransform.setRotation(btQuaternion(tilt(), tilt(), tilt()));
+    bodies_.push_back(std::make_unique<btRigidBody>(info));
+    bodies_.back()->setActivationState(DISABLE_DEACTIVATION);
+    world_.addRigidBody(bodies_.back().get());
+  }
+}
+
+BinOfTori::~BinOfTori() {
+  for (const auto& body : bodies_) world_.removeRigidBody(body.get());
+  for (const auto& wall : walls_) world_.removeRigidBody(wall.get());
+}
+
+StepTime BinOfTori::step(double dt) {
+  clock_->narrow_phase = 0;
+  StepTime time;
+  const std::clock_t start = std::clock();
+  time.all = timeOf([&] { world_.stepSimulation(btScalar(dt), 0); });
+  time.processors = 1e6 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  time.narrow_phase = clock_->narrow_phase;
+  return time;
+}
+
+std::vector<BodyState> BinOfTori::state() const {
+  std::vector<BodyState> all;
+  for (const auto& body : bodies_) {
+    all.push_back({body->getWorldTransform(), body->getLinearVelocity(), body->getAngularVelocity()});
+  }
+  return all;
+}
+
+void BinOfTori::setState(const std::vector<BodyState>& state) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i]->setCenterOfMassTransform(state[i].transform);
+    bodies_[i]->setLinearVelocity(state[i].velocity);
+    bodies_[i]->setAngularVelocity(state[i].spin);
+  }
+}
+
+int BinOfTori::contacts() const {
+  int count = 0;
+  for (int i = 0; i < dispatcher_->getNumManifolds(); ++i) {
+    count += dispatcher_->getManifoldByIndexInternal(i)->getNumContacts();
+  }
+  return count;
+}
+
+}  // namespace innersphere::benchmarks

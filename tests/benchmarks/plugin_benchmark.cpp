@@ -1,0 +1,229 @@
+// What a step of a Bullet world with packings costs, beside triangle meshes and compounds of spheres in the
+// same world, and what each feature adds. One world falls; the others are set to its state before a step that
+// is measured, so that all do the same work, one after the other, in the same run.
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "bin_of_tori.hpp"
+#include "innersphere/error.hpp"
+#include "innersphere/packer.hpp"
+#include "innersphere/packing_collision_algorithm.hpp"
+#include "innersphere/packing_shape.hpp"
+#include "innersphere/solids.hpp"
+#include "machine.hpp"
+#include "timing.hpp"
+
+namespace {
+
+using namespace innersphere;
+using namespace innersphere::benchmarks;
+
+struct Settings {
+  int bodies = 20;
+  std::size_t spheres = 4000;
+  double settle = 2;
+  double dt = 1.0 / 120;
+  int samples = 15;
+  std::map<std::string, Backend> backends{
+      {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
+  Backend backend = Backend::automatic;
+  bool compare = true;
+};
+
+using Models = std::shared_ptr<const CollisionModel>;
+
+std::shared_ptr<btGImpactMeshShape> gimpactTorus() {
+  constexpr int kRings = 32, kSegments = 16;
+  static btTriangleMesh mesh;
+  if (mesh.getNumTriangles() == 0) {
+    const auto at = [](int i, int j) {
+      const double a = 2 * M_PI * i / kRings, b = 2 * M_PI * j / kSegments;
+      const double r = kRing + kTube * std::cos(b);
+      return btVector3(btScalar(r * std::cos(a)), btScalar(r * std::sin(a)), btScalar(kTube * std::sin(b)));
+    };
+    for (int i = 0; i < kRings; ++i) {
+      for (int j = 0; j < kSegments; ++j) {
+        mesh.addTriangle(at(i, j), at(i + 1, j), at(i + 1, j + 1));
+        mesh.addTriangle(at(i, j), at(i + 1, j + 1), at(i, j + 1));
+      }
+    }
+  }
+  auto shape = std::make_shared<btGImpactMeshShape>(&mesh);
+  shape->setMargin(btScalar(0.01));
+  shape->updateBound();
+  return shape;
+}
+
+std::shared_ptr<btCompoundShape> compoundTorus(const Packing& packing) {
+  static std::vector<std::unique_ptr<btSphereShape>> spheres;
+  auto compound = std::make_shared<btCompoundShape>();
+  for (std::size_t i = 0; i < 64; ++i) {
+    const Sphere& s = packing.spheres[i];
+    if (spheres.size() <= i) spheres.push_back(std::make_unique<btSphereShape>(s.radius));
+    compound->addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(s.x, s.y, s.z)),
+                            spheres[i].get());
+  }
+  return compound;
+}
+
+class Benchmark {
+ public:
+  Benchmark(const Settings& settings, const Models& model) : settings_(settings), model_(model) {
+    PackingShape(model_).calculateLocalInertia(1, inertia_);
+  }
+
+  void addPackings(const std::string& name, const Models& model, const ContactOptions& options,
+                   std::size_t spheres = 0, bool batched = false, double margin = 0) {
+    ContactOptions own = options;
+    own.backend = settings_.backend;
+    add(
+        name, batched,
+        [own](btCollisionDispatcher& d) { PackingCollisionAlgorithm::registerAlgorithm(&d, own); },
+        [=](int) {
+          auto shape = std::make_shared<PackingShape>(model);
+          shape->setSphereCount(spheres);
+          shape->setMargin(btScalar(margin));
+          return shape;
+        });
+  }
+  void add(const std::string& name, bool batched, const std::function<void(btCollisionDispatcher&)>& prepare,
+           const std::function<std::shared_ptr<btCollisionShape>(int)>& make) {
+    kinds_.push_back({name,
+                      std::make_unique<BinOfTori>(settings_.bodies, batched, prepare, make, inertia_),
+                      {},
+                      {},
+                      {},
+                      {},
+                      0});
+  }
+
+  /// The first kind leads.
+  void run() {
+    BinOfTori& lead = *kinds_.front().world;
+    const int settle = static_cast<int>(settings_.settle / settings_.dt);
+    for (int i = 0; i < settle; ++i) lead.step(settings_.dt);
+    for (int sample = 0; sample < settings_.samples; ++sample) {
+      for (int i = 0; i < 8; ++i) lead.step(settings_.dt);
+      const std::vector<BodyState> before = lead.state();
+      lead.step(settings_.dt);
+      const std::vector<BodyState> now = lead.state();
+      for (Kind& kind : kinds_) {
+        // The step before brings new pairs and lets the contacts of the last sample go.
+        kind.world->setState(before);
+        kind.world->step(settings_.dt);
+        kind.world->setState(now);
+        const StepTime time = kind.world->step(settings_.dt);
+        kind.all.push_back(time.all);
+        kind.narrow.push_back(time.narrow_phase);
+        kind.rest.push_back(time.all - time.narrow_phase);
+        kind.processors.push_back(time.processors);
+        kind.contacts = kind.world->contacts();
+      }
+      lead.setState(now);
+    }
+  }
+
+  void print() const {
+    std::printf(
+        "| shape | step [ms] | narrow phase [ms] | the rest [ms] | processor time of the step [ms] | the "
+        "same,"
+        " first row = 1 | contact points |\n|---|---|---|---|---|---|---|\n");
+    const double first = median(kinds_.front().processors);
+    for (const Kind& kind : kinds_) {
+      std::printf("| %s | %.2f | %.2f | %.2f | %.2f | %.2f | %d |\n", kind.name.c_str(),
+                  median(kind.all) / 1e3, median(kind.narrow) / 1e3, median(kind.rest) / 1e3,
+                  median(kind.processors) / 1e3, median(kind.processors) / first, kind.contacts);
+    }
+  }
+
+ private:
+  struct Kind {
+    std::string name;
+    std::unique_ptr<BinOfTori> world;
+    std::vector<double> all, narrow, rest, processors;
+    int contacts;
+  };
+  const Settings& settings_;
+  Models model_;
+  btVector3 inertia_{0, 0, 0};
+  std::vector<Kind> kinds_;
+};
+
+void run(const Settings& settings) {
+  PackOptions pack_options;
+  pack_options.spheres = settings.spheres;
+  const auto packing = std::make_shared<Packing>(pack(*makeTorus(kRing, kTube), pack_options));
+  auto bare = std::make_shared<Packing>(*packing);
+  bare->surface = {};
+  const auto model = std::make_shared<CollisionModel>(packing);
+
+  Benchmark benchmark(settings, model);
+  const std::string n = std::to_string(settings.spheres);
+  benchmark.addPackings("packing, " + n + " spheres", model, {});
+  benchmark.addPackings("the same with BatchedDispatcher", model, {}, 0, true);
+  if (settings.compare) {
+    benchmark.add(
+        "GImpact, 1,024 triangles", false,
+        [](btCollisionDispatcher& d) { btGImpactCollisionAlgorithm::registerAlgorithm(&d); },
+        [](int) { return gimpactTorus(); });
+    benchmark.add(
+        "btCompoundShape of 64 spheres", false, [](btCollisionDispatcher&) {},
+        [&](int) { return compoundTorus(*packing); });
+    for (const std::size_t count : {1024, 256, 64}) {
+      benchmark.addPackings("packing, its first " + std::to_string(count), model, {}, count);
+    }
+    ContactOptions options;
+    options.accuracy = 0.1;
+    benchmark.addPackings("packing, accuracy 0.1 m", model, options);
+    options = {};
+    options.response = Response::rigid;
+    benchmark.addPackings("packing, rigid", model, options);
+    options.response = Response::penalty;
+    benchmark.addPackings("packing, penalty", model, options);
+    options = {};
+    options.stiffness = 1e5;
+    benchmark.addPackings("packing, depth by volume", model, options);
+    benchmark.addPackings("packing without a surface", std::make_shared<CollisionModel>(bare), {});
+    benchmark.addPackings("packing, margin 0.01 m", model, {}, 0, false, 0.01);
+  }
+  benchmark.run();
+  benchmark.print();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  Settings settings;
+  CLI::App app("Cost of a step of a Bullet world: tori in a bin.");
+  app.add_option("--bodies", settings.bodies, "number of tori")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--spheres", settings.spheres, "of each packing, at least 64")
+      ->capture_default_str()
+      ->check(CLI::Range(64, 1000000));
+  app.add_option("--settle", settings.settle, "time before the first measured step [s]")
+      ->capture_default_str();
+  app.add_option("--samples", settings.samples, "measured steps")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--backend", settings.backend, "auto, cpu or cuda")
+      ->transform(CLI::CheckedTransformer(settings.backends, CLI::ignore_case));
+  app.add_flag("!--alone", settings.compare, "only packings, nothing to compare them with");
+  CLI11_PARSE(app, argc, argv);
+  std::printf(
+      "%s",
+      heading("Cost of a step: " + std::to_string(settings.bodies) + " tori in a bin", argc, argv).c_str());
+  std::printf("\nMedians of %d steps of 1/120 s; every row steps from the same states.\n\n",
+              settings.samples);
+  run(settings);
+  return 0;
+} catch (const innersphere::Error& error) {
+  std::fprintf(stderr, "%s: %s\n", toString(error.code()), error.what());
+  return 3;
+}
