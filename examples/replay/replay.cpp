@@ -61,7 +61,7 @@ json cameraJson(const Film& film) {
   }
   const Camera camera = frameCamera(film, frames, kAspect);
   const Eigen::Vector3f target = camera.eye + camera.distance * camera.forward;
-  const Eigen::Vector3f eye = target - 1.2f * camera.distance * camera.forward;
+  const Eigen::Vector3f eye = target - 1.35f * camera.distance * camera.forward;
   constexpr double kDegrees = 57.29577951308232;
   return {{"eye", {eye.x(), eye.y(), eye.z()}},
           {"target", {target.x(), target.y(), target.z()}},

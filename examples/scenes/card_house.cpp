@@ -28,7 +28,7 @@ btTransform tentAt(double x, double z) {
 }  // namespace
 
 void buildCardHouse(SceneWorld& world, const SceneOptions& options) {
-  constexpr double kApart = 0.7;  // [m] of the lower two
+  constexpr double kApart = 0.76;  // [m] of the lower two
   const std::size_t bracket = world.addSolid(*scaledSolid(makeNamedSolid("lbracket"), kArm), options.spheres,
                                              progressOf(options, 0, 2));
   const std::size_t plank =

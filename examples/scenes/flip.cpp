@@ -70,7 +70,7 @@ void buildFlip(SceneWorld& world, const SceneOptions& options) {
                [](const Recording& r) { return r.steps.back().energy() / r.steps.front().energy() - 1; }})
       .known_miss = 0.005;
   world.film.has_ground = false;
-  world.film.viewpoint = {0.4, 0.3, 0.45};
+  world.film.viewpoint = {0.4, 0.3, 0.45, true};
 }
 
 }  // namespace innersphere::demo

@@ -23,8 +23,8 @@ inline void addEstimatorOption(CLI::App& command, Estimator& estimator) {
 }
 
 inline const std::vector<std::pair<std::string, Response>>& responseNames() {
-  static const std::vector<std::pair<std::string, Response>> names = {{"compliant", Response::compliant},
-                                                                      {"rigid", Response::rigid}};
+  static const std::vector<std::pair<std::string, Response>> names = {
+      {"compliant", Response::compliant}, {"rigid", Response::rigid}, {"penalty", Response::penalty}};
   return names;
 }
 
@@ -36,8 +36,9 @@ inline std::string nameOf(Response response) {
 }
 
 inline void addResponseOption(CLI::App& command, Response& response) {
-  addChoice<Response>(command, "--response", response, responseNames(),
-                      "How overlap becomes contact: implicit springs, or the solver removes it");
+  addChoice<Response>(
+      command, "--response", response, responseNames(),
+      "How overlap becomes contact: implicit springs, the solver removes it, or the paper's force");
 }
 
 }  // namespace innersphere::tool

@@ -59,6 +59,12 @@ void addSceneOptions(CLI::App& command, demo::SceneOptions& options) {
   otherwise(command.add_option("--dt", options.dt, "Time step [s]")->check(CLI::Range(1e-6, 1.0)));
   otherwise(command.add_option("--spheres", options.spheres, "Of each solid's packing")->check(positive()));
   addResponseOption(command, options.contact.response);
+  command.add_option("--stiffness", options.contact.stiffness, "Pressure for a metre of overlap [N/m^3]")
+      ->check(notNegative())
+      ->default_str("the scene's own");
+  command.add_option("--damping", options.contact.damping, "Of contacts, as a fraction of critical damping")
+      ->check(notNegative())
+      ->capture_default_str();
   addBackendOption(command, options.contact.backend);
   addEstimatorOption(command, options.contact.estimator);
   command.add_option("--seed", options.seed, "Of random places and orientations")

@@ -123,11 +123,33 @@ TEST_F(SceneRun, AMissedTruthIsAnAnswer) {
   EXPECT_EQ(run("scene run slide --spheres 100 --dt 1 --quiet --check").exit_code, 1);
 }
 
+TEST_F(SceneRun, GalleryHoldsFilmsWithTheirContacts) {
+  succeed("scene gallery slide collisions --spheres 50 --seconds 0.1 --quiet -o gallery.html");
+  const std::string page = readFile(path("gallery.html"));
+  const std::string start = "type=\"application/json\">";
+  const std::size_t begin = page.find(start) + start.size();
+  const auto films = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  ASSERT_EQ(films.size(), 2u);
+  EXPECT_EQ(films[0]["title"], "slide");
+  EXPECT_EQ(films[1]["title"], "collisions");
+  EXPECT_EQ(films[0]["notes"].size(), 6u) << "a line for each truth";
+  // Seven frames in a tenth of a second, and where each one's contacts begin: eight numbers of four bytes, in
+  // base 64.
+  EXPECT_EQ(films[0]["first_contacts"].get<std::string>().size(), 44u);
+  EXPECT_GT(films[0]["contacts"].get<std::string>().size(), 0u);
+  EXPECT_EQ(films[1]["contacts"].get<std::string>().size(), 0u) << "the balls have not met yet";
+  EXPECT_EQ(files(), std::set<std::string>{"gallery.html"});
+  refuse("scene gallery slide -o gallery.html", 5, {"gallery.html", "--force"});
+  refuse("scene gallery nothing -o new.html", 2, {"nothing"});
+  refuse("scene gallery", 2, {"--output"});
+}
+
 TEST_F(SceneRun, BadInputIsNamed) {
   refuse("scene run nothing", 2, {"nothing", "pile", "nut"});
   refuse("scene check pile nothing", 2, {"nothing", "pile"});
   refuse("scene run nut --mesh box", 2, {"nut", "pile"});
   refuse("scene run pile --dt 0", 2, {"--dt"});
+  refuse("scene run pile --stiffness -1", 2, {"--stiffness", "-1"});
   refuse("scene run pile --seconds -1", 2, {"--seconds", "-1"});
 }
 

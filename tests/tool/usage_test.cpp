@@ -9,7 +9,7 @@ class Usage : public ToolTest {};
 
 TEST_F(Usage, EveryCommandHasHelp) {
   for (const char* command : {"", "pack", "info", "check", "convert", "view", "overlap", "scene",
-                              "scene list", "scene run", "solids"}) {
+                              "scene list", "scene run", "scene check", "scene gallery", "solids"}) {
     const Outcome outcome = succeed(std::string(command) + " --help");
     EXPECT_NE(outcome.out.find("Usage:"), std::string::npos) << command;
   }
