@@ -35,9 +35,9 @@ class CudaBackend : public QueryBackend {
     next_ = first_ = 0;
     kernel_time_ = 0;
     staged_.overlaps.resize(queries.size());
-    clear(staged_.pairs);
-    clear(staged_.contacts_a);
-    clear(staged_.contacts_b);
+    begin(staged_.pairs, Want::pairs);
+    begin(staged_.contacts_a, Want::contacts);
+    begin(staged_.contacts_b, Want::contacts);
     while (startPart()) continue;
   }
 
@@ -72,9 +72,10 @@ class CudaBackend : public QueryBackend {
     under_way_ = 0;
   }
 
+  /// What is wanted is overwritten, and then cut to its length: nothing is filled twice.
   template <typename T>
-  void clear(QueryResult::Ranges<T>& ranges) {
-    ranges.items.clear();
+  void begin(QueryResult::Ranges<T>& ranges, Want want) {
+    if (want_ != want || queries_->empty()) ranges.items.clear();
     ranges.first.assign(queries_->size() + 1, 0);
   }
 
@@ -109,8 +110,12 @@ class CudaBackend : public QueryBackend {
 
   template <typename T>
   void append(const device::HitList<T>& from, Part::Range range, QueryResult::Ranges<T>& to) {
-    const std::size_t before = to.items.size(), count = from.first.data()[range.size()];
-    to.items.insert(to.items.end(), from.items.data(), from.items.data() + count);
+    constexpr std::size_t kGrain = 4096;
+    const std::size_t before = to.first[range.begin], count = from.first.data()[range.size()];
+    to.items.resize(before + count);
+    workers_.forRanges(count, kGrain, [&](std::size_t first, std::size_t end) {
+      std::copy(from.items.data() + first, from.items.data() + end, to.items.data() + before + first);
+    });
     for (std::size_t q = 0; q <= range.size(); ++q) to.first[range.begin + q] = before + from.first.data()[q];
   }
 

@@ -12,7 +12,7 @@ namespace innersphere::device {
 
 namespace {
 
-constexpr unsigned kThreads = 128;
+constexpr unsigned kThreads = 256;
 constexpr unsigned kLanes = 8;  ///< that sum one contact, one of PairValues each
 
 unsigned blocksFor(std::size_t threads) {
@@ -73,46 +73,54 @@ struct Summands {
   __device__ double of(unsigned k, unsigned value) const { return values[order ? order[k] : k].of[value]; }
 };
 
-/// The sums of many partners, side by side; all lanes of a warp call it, and value i comes to lane i.
-__device__ double sumMany(const Summands& summands, unsigned begin, unsigned end, unsigned lane,
+/// The sums of many partners, side by side; all threads of a block call it, and value i comes to thread i.
+__device__ double sumMany(const Summands& summands, unsigned begin, unsigned end,
                           PairValues (&shares)[kContactShares]) {
-  static_assert(kContactShares == kWarp, "a share for each lane");
+  static_assert(kContactShares == kThreads, "a share for each thread");
   PairValues share{};
-  for (unsigned k = begin + lane; k < end; k += kContactShares) {
+#pragma unroll 4  // to have several in flight
+  for (unsigned k = begin + threadIdx.x; k < end; k += kContactShares) {
 #pragma unroll
     for (unsigned i = 0; i < PairValues::values; ++i) share.of[i] += summands.of(k, i);
   }
-  shares[lane] = share;
-  __syncwarp();
+  shares[threadIdx.x] = share;
+  __syncthreads();
   double sum = 0;
-  if (lane < PairValues::values) {
-    for (const PairValues& s : shares) sum += s.of[lane];
+  if (threadIdx.x < PairValues::values) {
+    for (const PairValues& s : shares) sum += s.of[threadIdx.x];
   }
-  __syncwarp();
   return sum;
 }
 
-/// kLanes take a contact, each sums one of its values; where there are many to sum, the whole warp helps.
+/// kLanes take a contact, each sums one of its values; where there are many to sum, the whole block helps.
+/// The largest spheres come first, so a block's contacts are far apart: no block gets several of these.
 __global__ void writeContacts(const unsigned long long* keys, unsigned count, unsigned shift,
                               std::uint32_t sphere_mask, Summands summands, const unsigned* heads,
                               const unsigned* head_count, SphereContact* contacts) {
-  __shared__ PairValues shares[kThreads / kWarp][kContactShares];
-  const unsigned thread = blockIdx.x * kThreads + threadIdx.x, contact = thread / kLanes;
-  const unsigned value = thread % kLanes, lane = threadIdx.x % kWarp, all = *head_count;
+  constexpr unsigned kContacts = kThreads / kLanes;
+  __shared__ PairValues shares[kContactShares];
+  __shared__ double sums[kContacts][kLanes];
+  const unsigned all = *head_count, blocks = (all + kContacts - 1) / kContacts;
+  const unsigned row = threadIdx.x / kLanes, value = threadIdx.x % kLanes;
+  const auto contactOf = [&](unsigned of_row) { return blockIdx.x + of_row * blocks; };
+  const auto beginOf = [&](unsigned contact) { return contact < all ? heads[contact] : count; };
+  if (blockIdx.x >= blocks) return;
+  const unsigned contact = contactOf(row);
   const bool valid = contact < all;
-  const unsigned begin = valid ? heads[contact] : 0;
-  const unsigned end = valid ? (contact + 1 < all ? heads[contact + 1] : count) : 0;
+  const unsigned begin = beginOf(contact), end = valid ? beginOf(contact + 1) : begin;
   double sum = 0;
   if (end - begin <= kContactShares && value < PairValues::values) {
+#pragma unroll 4
     for (unsigned k = begin; k < end; ++k) sum += summands.of(k, value);
   }
-  unsigned many = __ballot_sync(kAll, value == 0 && end - begin > kContactShares);
-  for (; many != 0; many &= many - 1) {
-    const int first = __ffs(static_cast<int>(many)) - 1;
-    const double total = sumMany(summands, __shfl_sync(kAll, begin, first), __shfl_sync(kAll, end, first),
-                                 lane, shares[threadIdx.x / kWarp]);
-    const double own = __shfl_sync(kAll, total, static_cast<int>(value));
-    if (lane / kLanes == static_cast<unsigned>(first) / kLanes) sum = own;
+  for (unsigned r = 0; r < kContacts; ++r) {
+    const bool many = r == row && end - begin > kContactShares;
+    if (!__syncthreads_or(many)) continue;
+    const unsigned of_row = contactOf(r);
+    const double total = sumMany(summands, beginOf(of_row), beginOf(of_row + 1), shares);
+    if (threadIdx.x < kLanes) sums[r][threadIdx.x] = total;
+    __syncthreads();
+    if (r == row) sum = sums[r][value];
   }
   const double volume = __shfl_sync(kAll, sum, 0, kLanes);
   if (!valid) return;

@@ -8,7 +8,7 @@
 namespace innersphere {
 
 /// A sphere with more partners than that has them summed in so many shares.
-constexpr unsigned kContactShares = 32;
+constexpr unsigned kContactShares = 256;
 
 /// An overlapping pair of spheres of one query of a batch.
 struct Hit {

@@ -95,12 +95,13 @@ std::vector<PairQuery> sceneBatch(const CollisionModel& a, const CollisionModel&
 }
 
 /// Time of a batch of wrenches per pair, as the host sees it.
-double batchTime(QueryContext& context, const std::vector<PairQuery>& queries, std::size_t runs) {
+Times batchTime(QueryContext& context, const std::vector<PairQuery>& queries, std::size_t runs) {
   QueryResult result;
   const Times t = measure(runs, [&] {
     context.run(queries.data(), queries.size(), {Want::wrench, Estimator::raw}, result);
   });
-  return t.median / static_cast<double>(queries.size());
+  const auto pairs = static_cast<double>(queries.size());
+  return {t.median / pairs, t.p99 / pairs, t.worst / pairs};
 }
 
 /// The device's share of it.
@@ -150,14 +151,32 @@ void devices(const CollisionModel& a, const CollisionModel& b, std::size_t batch
       }
       const benchmarks::PaperCuda paper = benchmarks::runPaperOnDevice(grid_a, grid_b, poses, repeats);
       const std::vector<PairQuery> queries = sceneBatch(a, b, scene, count);
-      const double host = batchTime(context, queries, repeats), kernel = kernelTime(timed, queries, repeats);
-      std::printf("| %zu | %s | %.2f | %.2f | %.2f | %.2f |\n", count, scene.name, paper.kernel / pairs,
-                  paper.host / pairs, kernel, host);
+      const Times host = batchTime(context, queries, repeats);
+      const double kernel = kernelTime(timed, queries, repeats);
+      std::printf("| %zu | %s | %.2f | %.2f | %.2f | %.2f (%.2f) |\n", count, scene.name,
+                  paper.kernel / pairs, paper.host / pairs, kernel, host.median, host.p99);
       std::fflush(stdout);
     }
   }
 }
 #endif
+
+/// From which size on a device is faster, and what Backend::automatic chooses.
+void crossover(std::size_t runs) {
+  QueryContext one({Backend::cpu, 1}), all({Backend::cpu, 0}), cuda({Backend::cuda}), automatic;
+  for (const std::size_t count : {100, 200, 400, 800, 1600, 3200}) {
+    const CollisionModel a(benchmarks::greedyBall(count, 1)), b(benchmarks::greedyBall(count, 2));
+    for (const Scene& scene : kScenes) {
+      const PairQuery query = sceneQuery(a, b, scene);
+      std::printf("| %zu | %s |", count, scene.name);
+      for (QueryContext* context : {&one, &all, &cuda, &automatic}) {
+        const Times t = measure(runs, [&] { context->overlap(query, {Want::wrench, Estimator::raw}); });
+        std::printf(" %.1f |", t.median);
+      }
+      std::printf(" %s |\n", nameOf(automatic.lastBackend()));
+    }
+  }
+}
 
 void sweep(QueryContext& context, Backend backend, const std::string& name, std::size_t count,
            const CollisionModel& a, const CollisionModel& b, double shift) {
@@ -244,11 +263,19 @@ int main(int argc, char** argv) {
           "level after "
           "level, cell after cell, volume only. InnerSphere: wrench.\n\n"
           "| pairs at once | overlap | paper, kernel | paper, host | InnerSphere, kernels | InnerSphere, "
-          "host |\n"
+          "host "
+          "(99th percentile) |\n"
           "|---|---|---|---|---|---|\n");
       devices(a, b, batch, runs);
     }
 #endif
+    if (cudaAvailable()) {
+      std::printf(
+          "\nSmall packings, one wrench, us, as the host sees it.\n\n"
+          "| spheres | overlap | CPU, one thread | CPU, all threads | CUDA | automatic | on |\n"
+          "|---|---|---|---|---|---|---|\n");
+      crossover(runs);
+    }
 
     std::printf(
         "\nThe paper's grid (DJB2, buckets of %zu), one thread, volume only, us.\n\n"

@@ -142,7 +142,7 @@ TEST_P(AsynchronousConformance, MayBeLeftAlone) {
 /// The partners of a large sphere are summed side by side.
 TEST_P(AsynchronousConformance, ContactsOfALargeSphere) {
   Random random(16);
-  std::vector<Sphere> small(3000);
+  std::vector<Sphere> small(9000);
   for (Sphere& s : small) {
     const auto at = [&] { return static_cast<float>(random.uniform(-1, 1)); };
     s = {at(), at(), at(), 0.01f};
