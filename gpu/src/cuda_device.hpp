@@ -31,8 +31,7 @@ inline __device__ Sphere load(const Sphere* sphere) {
 
 /// False if nothing in the ball, which is in the walker's frame, can meet the grid.
 inline __device__ bool ballMeets(const core::GridView& grid, const core::Search& search, const Sphere& ball) {
-  const core::Probe around = core::makeProbe(search, ball);
-  return core::meetsBounds(grid, around.p, around.radius + search.grid_margin + search.tolerance);
+  return core::ballMeets(search, grid, ball);
 }
 
 /// The sum over this lane and all before it.
