@@ -10,7 +10,7 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 run=$here/run.sh
 if [ $# -eq 0 ]; then
-  sed -n '2,9p' "$0" | cut -c 3- >&2
+  sed -n '2,8p' "$0" | cut -c 3- >&2
   exit 2
 fi
 out=$1

@@ -4,7 +4,7 @@ cuda = system("awk '$6 > 0' '".points."' | wc -l") > 0
 depths = "0-1 1-5 5-15 15-100"
 colours = "#7f8c8d #2980b9 #27ae60 #c0392b"
 curve(depth, estimator) = "< awk '$1 == ".(depth - 1)." && $2 == \"".estimator."\"' '".points."'"
-set terminal pngcairo size (cuda ? 1700 : 1100),640 font "sans,13" lw 1.5
+set terminal pngcairo noenhanced size (cuda ? 1700 : 1100),640 font "sans,13" lw 1.5
 set output output
 set logscale xy
 set grid back lc rgb "#dddddd"
@@ -16,6 +16,8 @@ label(n) = n >= 1024 ? sprintf("%dk", n / 1024) : sprintf("%d", n)
 set multiplot layout 1,(cuda ? 2 : 1)
 do for [panel=5:(cuda ? 6 : 5)] {
   set title panel == 5 ? "CPU, one core" : "CUDA, one pair at a time, as the host sees it"
+  set xrange [panel == 5 ? 4 : 10:panel == 5 ? 4000 : 50]
+  set xtics (5, 10, 15, 20, 30, 50, 100, 200, 500, 1000, 2000)
   if (panel == 5 && cuda) { unset key } else { set key outside right top Left reverse samplen 2 }
   plot for [d=1:4] curve(d, "raw") using panel:4 with linespoints pt 6 dt 2 lc rgb word(colours, d) \
       title "plain, ".word(depths, d)." % shared", \

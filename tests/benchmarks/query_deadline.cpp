@@ -107,7 +107,8 @@ int main(int argc, char** argv) {
     std::printf("%s", heading("Queries within a budget of time", argc, argv).c_str());
     if (!arguments.device.empty()) std::printf("GPU: %s\n\n", arguments.device.c_str());
     std::printf(
-        "Wall times in us. Stated: mean of the errors that the queries return; measured: against all "
+        "Wall times in us. Errors where the overlap is over 1 %% of the solid: stated by the queries, and "
+        "measured against all "
         "spheres.\n\n"
         "| solid | budget | median | 99 %% | 99.9 %% | worst | worst over median | late | spheres of each, "
         "median | "

@@ -1,5 +1,5 @@
 # gnuplot -e "points='FILE'; output='FILE.png'" tests/benchmarks/query_growth.gp
-set terminal pngcairo size 900,760 font "sans,13" lw 1.5
+set terminal pngcairo noenhanced size 900,760 font "sans,13" lw 1.5
 set output output
 set logscale xy
 set grid back lc rgb "#dddddd"

@@ -6,10 +6,13 @@ pick(solid, backend, spheres) = "< awk '$1 == \"".solid."\" && $2 == ".spheres."
 # spheres, median and worst time of a solid
 summary(solid, backend) = "< awk '$1 == \"".solid."\" && $3 == \"".backend."\" {print $2, $5}' '".points."' | sort -n -k1,1 -k2,2 | \
 awk 'function row() {if (n) print last, t[int((n + 1) / 2)], t[n]} $1 != last {row(); n = 0; last = $1} {t[++n] = $2} END {row()}'"
-set terminal pngcairo size 1400,560*words(backends) font "sans,13" lw 1.5
+set terminal pngcairo noenhanced size 1400,560*words(backends) font "sans,13" lw 1.5
 set output output
 set grid back lc rgb "#dddddd"
 set key outside right top samplen 2
+set autoscale yfix
+set offsets 0, 0, graph 0.06, graph 0.06
+set ytics (5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 1500, 2000, 3000, 5000, 10000, 20000, 50000)
 set multiplot layout words(backends),2
 do for [backend in backends] {
   set title backend.", 60,000 spheres of each body: one pose after the other"
