@@ -73,6 +73,22 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+TEST(PenaltyResponse, KeepsEnergyAndMomentumWhereNothingDampsIt) {
+  demo::SceneOptions options;
+  options.spheres = 100;
+  options.contact.backend = Backend::cpu;
+  options.contact.response = Response::penalty;
+  options.contact.damping = 0;
+  const demo::ScenePlay play = demo::play(demo::sceneNamed("collisions"), options);
+  // Without damping every impact is elastic, so the pair with restitution 1 has its truth.
+  for (const int i : {0, 1}) {
+    EXPECT_EQ(play.verdicts[static_cast<std::size_t>(i)].outcome, Outcome::holds);
+  }
+  const demo::StepRecord &first = play.recording.steps.front(), &last = play.recording.steps.back();
+  EXPECT_NEAR(last.energy() / first.energy(), 1, 0.01);
+  EXPECT_NEAR(last.momentum[0] / first.momentum[0], 1, 1e-5);
+}
+
 TEST(Catalogue, EverySceneIsTested) {
   // A new scene belongs into the list above, with a variant that takes seconds.
   for (const demo::Scene& scene : demo::scenes()) {
