@@ -73,6 +73,7 @@ bool PackingSide::refresh() {
 
 void OverlapBatch::setOptions(const ContactOptions& options) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  finishLaunch();
   if (options.backend != options_.backend) context_.reset();
   options_ = options;
   for (PackingContact* contact : live_) contact->valid = false;
@@ -85,12 +86,14 @@ void OverlapBatch::add(PackingContact* contact) {
 
 void OverlapBatch::remove(PackingContact* contact) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  finishLaunch();
   live_.erase(std::remove(live_.begin(), live_.end(), contact), live_.end());
 }
 
 const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, const PackingSide& a,
                                                       const PackingSide& b, btScalar separation) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  finishLaunch();
   if (contact.separation != separation) contact.valid = false;
   contact.separation = separation;
   if (isStale(contact, a, b)) {
@@ -113,6 +116,7 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
 
 Overlap OverlapBatch::volumesOf(const PackingContact& contact) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  finishLaunch();
   if (contact.valid && !contact.measure->on_surfaces) return contact.overlap;
   return context().overlap(makeQuery(Pass::volumes, contact), {Want::wrench, options_.estimator});
 }
@@ -124,13 +128,32 @@ QueryContext& OverlapBatch::context() {
 
 void OverlapBatch::launch(const std::vector<PackingContact*>& fresh) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  finishLaunch();
   for (PackingContact* contact : fresh) contact->wanted = true;
   stale_.clear();
   gatherStale(nullptr);
+  if (stale_.empty()) return;
+  prepareStale();
+  makeQueries(Pass::surfaces);
   try {
-    runStale();
+    if (!queries_.empty()) context().start(queries_.data(), queries_.size(), optionsOf(Pass::surfaces));
+    launched_ = true;
   } catch (const Error&) {
-    // runStale() has left all of them invalid, so that each is queried again when it is asked for.
+    // No context: each pair hears of it when it is asked for.
+  }
+}
+
+void OverlapBatch::finishLaunch() {
+  if (!launched_) return;
+  launched_ = false;
+  try {
+    if (!queries_.empty()) {
+      context().wait(result_);
+      takeResults(Pass::surfaces);
+    }
+    runFurtherPasses();
+  } catch (const Error&) {
+    // All of them are invalid still, so that each is queried again when it is asked for.
   }
 }
 
@@ -159,21 +182,35 @@ void OverlapBatch::gatherStale(const PackingContact* asked) {
   }
 }
 
-void OverlapBatch::runStale() {
-  if (stale_.empty()) return;
+void OverlapBatch::prepareStale() {
   ++count_.launches;
   count_.pairs += stale_.size();
   for (PackingContact* contact : stale_) {
     contact->valid = false;
     contact->measure.emplace(measureOf(*contact));
   }
+}
+
+void OverlapBatch::runStale() {
+  prepareStale();
   run(Pass::surfaces);
+  runFurtherPasses();
+}
+
+void OverlapBatch::runFurtherPasses() {
   run(Pass::touch);
   run(Pass::deep);
   run(Pass::volumes);
 }
 
 void OverlapBatch::run(Pass pass) {
+  makeQueries(pass);
+  if (queries_.empty()) return;
+  context().run(queries_.data(), queries_.size(), optionsOf(pass), result_);
+  takeResults(pass);
+}
+
+void OverlapBatch::makeQueries(Pass pass) {
   queried_.clear();
   queries_.clear();
   for (PackingContact* contact : stale_) {
@@ -181,8 +218,9 @@ void OverlapBatch::run(Pass pass) {
     queried_.push_back(contact);
     queries_.push_back(makeQuery(pass, *contact));
   }
-  if (queries_.empty()) return;
-  context().run(queries_.data(), queries_.size(), optionsOf(pass), result_);
+}
+
+void OverlapBatch::takeResults(Pass pass) {
   // Each pair has its own result, so that their order does not matter.
   tbb::parallel_for(std::size_t(0), queried_.size(),
                     [&](std::size_t i) { takeResult(pass, i, *queried_[i]); });

@@ -85,6 +85,7 @@ class OverlapBatch {
 
   /// Queries all pairs now that are out of date and will be asked for: those that were in the step before,
   /// and `fresh` ones. Errors wait until update() asks for the pair.
+  /// A device works on while Bullet collides other pairs: the first one that is asked for waits for it.
   void launch(const std::vector<PackingContact*>& fresh);
 
   BatchCount count() const;
@@ -93,7 +94,10 @@ class OverlapBatch {
   QueryContext& context();
   bool isStale(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
   void gatherStale(const PackingContact* asked);
+  void prepareStale();
   void runStale();
+  void runFurtherPasses();
+  void finishLaunch();
   enum class Pass {
     surfaces,  ///< spheres enlarged so that they find all contact of the surfaces that they stand for
     touch,     ///< as they are, where the surfaces showed no overlap: it may be too deep for them
@@ -101,6 +105,8 @@ class OverlapBatch {
     volumes,   ///< where the volume of overlap is all that is wanted
   };
   void run(Pass pass);
+  void makeQueries(Pass pass);
+  void takeResults(Pass pass);
   bool takesPart(Pass pass, const PackingContact& contact) const;
   QueryOptions optionsOf(Pass pass) const;
   Measure measureOf(const PackingContact& contact) const;
@@ -116,6 +122,7 @@ class OverlapBatch {
   std::vector<PackingContact*> queried_;
   std::vector<PairQuery> queries_;
   QueryResult result_;
+  bool launched_ = false;  ///< the query for the surfaces of queried_ is under way
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,4 +1,27 @@
 // Packings in every kind of world that Bullet has.
+//
+// What Bullet does that a collision algorithm can fall over, and the test that would show it:
+//   elements of its pool have a fixed size, unchecked    Registration.AlgorithmFitsBulletsPool, Worlds.APoolWithTooSmallElements*
+//   the pool of algorithms overflows to the heap         Worlds.MoreAlgorithmsThanThePoolHolds
+//   manifolds may not be had                             Worlds.SlavesToAUsersPoolOfManifolds
+//   normals follow the order of a manifold's bodies      ShapeMatrix, Callbacks.ManifoldsNameTheirBodies*
+//   child algorithms own or clear manifolds              ShapeMatrix, CallbacksOn.PointsAreFewAndKeepTheirImpulses
+//   Mt cannot release a manifold in the same dispatch    ShapeMatrix (Mt), Worlds.Multithreaded, Batch (Mt)
+//   type numbers are few, and one is shared with SDF     Shape.IsRecognisedAmongOthersOfItsType, Registration.SdfShapes*, Foreign*
+//   GImpact overwrites its rows                          Registration.AfterGImpact, Worlds.GImpactRegisteredLater*
+//   contactTest needs its own registration               ShapeMatrix.QueriesFindIt, ContactQuery
+//   compounds are walked by Bullet, with scaling         ShapeMatrix (nested), Worlds.ACompoundScalesItsPackings, Batch.Children*
+//   soft bodies, rays, sweeps, CCD use the triangles     Worlds.ClothFallsOnAPacking, AFastBall*, Shape.RaysAndSweeps*
+//   characters dispatch a cache of their own             Worlds.ACharacterStands*, Penalty.ActsOnceAStep*
+//   one slot for tick and near callbacks                 Worlds.TickCallbacks*, Batch.NearCallbacksStillFilter
+//   the solver loses springs deeper than 4 cm            ContactLaw.SoftContactDeeperThanTheSplitImpulseThreshold
+//   forces add up over substeps, impulses do not         Penalty.SubstepsOfOneCallDoNotAddUp
+//   multi-body links take no impulses                    Robustness.MultiBodyLinks
+//   old points live on, new ones lose warm starting      CallbacksOn.PointsThatWereNotFoundAgain*, PointsAreFew*
+//   the breaking threshold merges points                 Shape.ContactThresholdFollowsTheSpheresNotTheSize
+//   the shape of a living pair may change                Robustness.ChangedShapeOfALivingPair
+//   importers know only Bullet's shapes                  Serialization
+//   a user's own contact law or material callback        ContactLaw.UsersOwnStiffnessIsKept, MaterialCallbackSeesEveryPoint
 #include <gtest/gtest.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
