@@ -87,7 +87,10 @@ void Part::start(const Device& device, const std::vector<PreparedQuery>& queries
     batch_.bits_b = std::max(batch_.bits_b, bitsOf(setup.b.grid.count));
   }
   results_.reserve(range.size());
-  signal_.reserve(1);
+  if (signal_.capacity() == 0) {
+    signal_.reserve(1);
+    *signal_.data() = {};  // no run has this number
+  }
   gather(queries, workers);
   launch();
 }
