@@ -75,7 +75,7 @@ void buildChainHang(SceneWorld& world, const SceneOptions& options) {
                 "9 (2 R - 2 r) below the first; 0.5 %", finalCoordinate(kLinks - 1, 2)});
   expectNoDeeper(world, 0.02, "GImpact with 2,304 triangles a ring");
   world.expect(energyGainBelow(0.04, fallOfAll(world, kTube), "a fall of all links by the tube's radius"))
-      .known_miss = 0.06;
+      .known_miss = options.dt > 0.01 ? 0.15 : 0.01;
 }
 
 void buildChainSwing(SceneWorld& world, const SceneOptions& options) {
