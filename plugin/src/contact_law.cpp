@@ -32,6 +32,13 @@ btVector3 velocityAt(const btCollisionObject& object, const btVector3& point) {
   return body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition());
 }
 
+btVector3 centripetal(const btCollisionObject& object, const btVector3& point) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (body == nullptr) return btVector3(0, 0, 0);
+  const btVector3& spin = body->getAngularVelocity();
+  return spin.cross(spin.cross(point - body->getCenterOfMassPosition()));
+}
+
 }  // namespace
 
 ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step,
@@ -92,6 +99,11 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
 btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
                        const btVector3& normal) {
   return (velocityAt(a, point) - velocityAt(b, point)).dot(normal);
+}
+
+btScalar approachByTurning(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
+                           const btVector3& normal) {
+  return (centripetal(a, point) - centripetal(b, point)).dot(normal);
 }
 
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b) {

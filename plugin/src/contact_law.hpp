@@ -67,6 +67,10 @@ class ContactLaw {
 btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
                        const btVector3& normal);
 
+/// Acceleration with which their turning brings the bodies nearer there [m/s^2].
+btScalar approachByTurning(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
+                           const btVector3& normal);
+
 /// 1 / (1/m_a + 1/m_b), static and kinematic bodies counting as infinitely heavy; 0 if both are.
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b);
 

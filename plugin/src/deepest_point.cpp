@@ -6,7 +6,12 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-constexpr int kSteps = 2;
+constexpr int kSteps = 8;
+constexpr int kStepsBeside = 2;
+/// Of two steps, in fractions of the first.
+constexpr btScalar kSlowest = btScalar(0.1);
+/// Slopes of places beside a point that bears: those that a rolling body meets next, say [rad].
+constexpr btScalar kBeside = btScalar(0.1);
 
 struct Place {
   btScalar depth;   ///< along the direction
@@ -27,33 +32,43 @@ btScalar depthOf(const Measured& m) {
   return (m.gap.on_a - m.gap.on_b).dot(m.direction);
 }
 
+/// Moves a measurement uphill; not where slopes above `steepest` say that the top is far.
+void climb(const Gauge& gauge, btScalar steepest, int steps, Measured& m) {
+  Place place = placeOf(m.gap, m.direction);
+  // How fast the slope falls with distance. Nothing is to be climbed where faces are flat, or fit together.
+  btScalar fall = m.gap.curvature_a + m.gap.curvature_b;
+  if (!(fall > 0) || place.slope.length() > steepest) return;
+  btVector3 shift(0, 0, 0);
+  for (int i = 0; i < steps; ++i) {
+    Gap gap;
+    const btVector3 step = place.slope / fall;
+    if (!gauge.measure(m.index, m.direction, shift + step, gap) || !usable(gap, m.direction)) return;
+    const Place next = placeOf(gap, m.direction);
+    if (next.depth <= place.depth) return;
+    // From here on as fast as it fell along the step: surfaces may be less curved that way.
+    const btScalar fell = (place.slope - next.slope).dot(step) / step.length2();
+    if (fell > kSlowest * fall) fall = fell;
+    shift += step;
+    m.gap = gap;
+    place = next;
+  }
+}
+
 }  // namespace
 
-void appendDeepest(const Gauge& gauge, std::vector<Measured>& measured) {
-  const Measured* start = nullptr;
+void climb(const Gauge& gauge, std::vector<Measured>& measured) {
+  const Measured* deepest = nullptr;
   for (const Measured& m : measured) {
-    if (!usable(m.gap, m.direction)) continue;
-    if (start == nullptr || depthOf(m) > depthOf(*start)) start = &m;
+    if (usable(m.gap, m.direction) && (deepest == nullptr || depthOf(m) > depthOf(*deepest))) deepest = &m;
   }
-  if (start == nullptr) return;
-  Measured best = *start;
-  best.id = kDeepestId;
-  const btVector3 direction = best.direction;
-  btVector3 shift(0, 0, 0);
-  for (int i = 0; i < kSteps; ++i) {
-    const Place top = placeOf(best.gap, direction);
-    // How fast the slope falls with distance. Nothing is to be climbed where faces are flat, or fit together.
-    const btScalar fall = best.gap.curvature_a + best.gap.curvature_b;
-    if (!(fall > 0)) return;
-    if (top.slope.length() < best.gap.faceting) break;
-    Gap gap;
-    const btVector3 step = top.slope / fall;
-    if (!gauge.measure(best.index, direction, shift + step, gap) || !usable(gap, direction)) break;
-    if (placeOf(gap, direction).depth <= top.depth) break;
-    shift += step;
-    best.gap = gap;
+  if (deepest == nullptr) return;
+  Measured top = *deepest;
+  top.id = kDeepestId;
+  climb(gauge, BT_LARGE_FLOAT, kSteps, top);
+  for (Measured& m : measured) {
+    if (usable(m.gap, m.direction)) climb(gauge, kBeside, kStepsBeside, m);
   }
-  measured.push_back(best);
+  if (top.gap.curvature_a + top.gap.curvature_b > 0) measured.push_back(top);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,4 +1,4 @@
-// The deepest point between two curved surfaces.
+// The deepest points between curved surfaces.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Spheres sample a contact at places of their own; where curved solids touch, the deepest point lies between
-/// them. Climbs there from the deepest of `measured`, by the slope of the depth that the normals tell, and
-/// appends what it finds.
-void appendDeepest(const Gauge& gauge, std::vector<Measured>& measured);
+/// Spheres sample a contact at places of their own; where curved solids touch, the points that bear lie
+/// between them: beside them a rolling body would brake. Moves each of `measured` uphill, by the slope of the
+/// depth that the normals tell, and appends the deepest once more, with an id of its own.
+void climb(const Gauge& gauge, std::vector<Measured>& measured);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

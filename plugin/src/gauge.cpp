@@ -9,8 +9,6 @@ namespace {
 /// A surface that is met at a flatter angle than 30 degrees is the side of the solid, not the face in
 /// contact.
 constexpr btScalar kFacing = btScalar(0.5);
-/// A ray that starts inside a sphere by this fraction of its radius starts inside the solid.
-constexpr btScalar kInside = btScalar(0.95);
 /// Normals within 5 degrees are those of one face; a place this deep, in spheres, is under it.
 constexpr btScalar kSameFace = btScalar(0.996);
 constexpr btScalar kSunk = btScalar(0.1);
@@ -91,18 +89,20 @@ void appendCorners(const PackingBody& body, std::size_t triangle, const btVector
 }  // namespace
 
 bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3& shift, Gap& gap) const {
-  if (shift.length2() > 0) return false;
   const Touch& touch = touches_[index];
-  const btVector3 centre = a_.centreOf(touch.sphere);
+  const btScalar radius = a_.ownRadius(touch.sphere);
+  // Only of a flat surface it is known what it is like beside the nearest point.
+  if (shift.length2() > 0 && (touch.curvature != 0 || shift.length() > radius + a_.slack)) return false;
+  const btVector3 from = a_.centreOf(touch.sphere) + shift;
   const btVector3 towards_b = -touch.normal;
-  const btScalar reach = 2 * (a_.ownRadius(touch.sphere) + a_.slack);
   SurfacePoint on_a;
-  if (!leave(a_, centre, towards_b, reach, on_a)) return false;
+  if (!leave(a_, from, towards_b, 2 * (radius + a_.slack), on_a)) return false;
   gap.on_a = on_a.at;
   gap.normal_a = on_a.normal;
   gap.curvature_a = on_a.curvature;
   gap.triangle_a = on_a.triangle;
-  gap.on_b = centre + towards_b * touch.distance;
+  gap.faceting = on_a.faceting;
+  gap.on_b = from + towards_b * touch.distance;
   gap.normal_b = towards_b;
   gap.curvature_b = touch.curvature;
   return true;
@@ -150,7 +150,7 @@ bool PackingGauge::measure(std::size_t index, const btVector3& direction, const 
   const PackingBody& other = of_a ? b_ : a_;
   const std::size_t sphere = contacts_[index].sphere;
   const btScalar radius = own.ownRadius(sphere);
-  if (shift.length() > kInside * radius) return false;
+  if (shift.length() > reachOf(index)) return false;
   const btVector3 way = of_a ? direction : -direction;
   const btVector3 from = own.centreOf(sphere) + shift;
   const btVector3 apart = other.origin() - own.origin();

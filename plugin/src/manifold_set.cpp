@@ -76,19 +76,28 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     point.m_combinedContactDamping1 = law.damping;
     return;
   }
-  const bool spring = law.spring && (point.m_contactPointFlags & kUsersOwn) == 0;
+  bool spring = law.spring && (point.m_contactPointFlags & kUsersOwn) == 0;
+  btScalar depth = spring ? law.depth : from.depth;
+  // A bounce starts from the surface: the depth that was reached within the step must not add to it, nor the
+  // distance that is left, or the give of the spring, take from it.
+  const btScalar approach = approachSpeed(a, b, from.on_b, from.normal);
+  const bool meets = depth + approach * law.time_step > 0;
+  const bool bounces = point.m_combinedRestitution * approach > law.push;
+  if (meets && bounces && (depth < 0 || spring)) {
+    depth = 0;
+    spring = false;
+  }
+  // The solver lets a gap close at a constant speed; points beside the one that a body rolls on turn away
+  // instead, and would brake it.
+  if (depth < 0) {
+    const btScalar turning = approachByTurning(a, b, from.on_b, from.normal);
+    depth = btMin(btScalar(0), depth + turning * law.time_step * law.time_step / 2);
+  }
   if (spring) {
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   }
-  btScalar depth = spring ? law.depth : from.depth;
-  // A bounce starts from the surface: the depth that was reached within the step must not add to it, nor the
-  // distance that is left take from it.
-  const btScalar approach = approachSpeed(a, b, from.on_b, from.normal);
-  const bool meets = depth + approach * law.time_step > 0;
-  const bool bounces = point.m_combinedRestitution * approach > law.push;
-  if (meets && bounces && (depth < 0 || spring)) depth = 0;
   if (depth == from.depth) return;
   point.m_distance1 = -depth;
   point.m_positionWorldOnA = from.on_b + from.normal * depth;

@@ -145,7 +145,7 @@ void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found)
     Measured m;
     if (measure(from, i, m)) measured.push_back(m);
   }
-  appendDeepest(from.gauge, measured);
+  climb(from.gauge, measured);
   const ContactNormal normals(measured, from.gauge);
   const std::size_t first = found.size();
   const auto add = [&](const btVector3& on_b, const btVector3& normal, btScalar depth, std::uint64_t id) {
