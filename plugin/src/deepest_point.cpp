@@ -6,6 +6,8 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
+/// Surfaces fit together if their curvatures add up to less than this part of themselves.
+constexpr btScalar kUnlike = btScalar(0.3);
 constexpr int kSteps = 8;
 constexpr int kStepsBeside = 2;
 /// Of two steps, in fractions of the first.
@@ -37,7 +39,9 @@ void climb(const Gauge& gauge, btScalar steepest, int steps, Measured& m) {
   Place place = placeOf(m.gap, m.direction);
   // How fast the slope falls with distance. Nothing is to be climbed where faces are flat, or fit together.
   btScalar fall = m.gap.curvature_a + m.gap.curvature_b;
-  if (!(fall > 0) || place.slope.length() > steepest) return;
+  if (!(fall > kUnlike * (btFabs(m.gap.curvature_a) + btFabs(m.gap.curvature_b))) ||
+      place.slope.length() > steepest)
+    return;
   btVector3 shift(0, 0, 0);
   for (int i = 0; i < steps; ++i) {
     Gap gap;
@@ -66,7 +70,7 @@ void climb(const Gauge& gauge, std::vector<Measured>& measured) {
   top.id = kDeepestId;
   climb(gauge, BT_LARGE_FLOAT, kSteps, top);
   for (Measured& m : measured) {
-    if (usable(m.gap, m.direction)) climb(gauge, kBeside, kStepsBeside, m);
+    if (gauge.exactB() && usable(m.gap, m.direction)) climb(gauge, kBeside, kStepsBeside, m);
   }
   if (top.gap.curvature_a + top.gap.curvature_b > 0) measured.push_back(top);
 }

@@ -21,7 +21,6 @@ struct SurfacePoint {
   btScalar facing = 0;        ///< cosine between the triangle's normal and the ray
   btScalar curvature = 0;     ///< [1/m]
   std::size_t triangle = 0;
-  btScalar faceting = 0;  ///< angle between both normals [rad]
 };
 
 bool cast(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
@@ -36,7 +35,6 @@ bool cast(const PackingBody& body, const btVector3& from, const btVector3& direc
   point.curvature = hit.curvature / body.scale();
   point.triangle = hit.triangle;
   point.facing = (axes * hit.face).dot(direction);
-  point.faceting = hit.face.distance(hit.normal);
   point.at = from + direction * (hit.distance * body.scale());
   return true;
 }
@@ -101,7 +99,6 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   gap.normal_a = on_a.normal;
   gap.curvature_a = on_a.curvature;
   gap.triangle_a = on_a.triangle;
-  gap.faceting = on_a.faceting;
   gap.on_b = from + towards_b * touch.distance;
   gap.normal_b = towards_b;
   gap.curvature_b = touch.curvature;
@@ -168,7 +165,6 @@ bool PackingGauge::measure(std::size_t index, const btVector3& direction, const 
   gap.curvature_b = of_a ? entered.curvature : left.curvature;
   gap.triangle_a = of_a ? left.triangle : entered.triangle;
   gap.triangle_b = of_a ? entered.triangle : left.triangle;
-  gap.faceting = left.faceting + entered.faceting;
   return true;
 }
 

@@ -23,7 +23,6 @@ struct Gap {
   btScalar curvature_b = 0;
   std::size_t triangle_a = 0;  ///< of A's surface
   std::size_t triangle_b = 0;  ///< of B's, if B is a packing
-  btScalar faceting = 0;  ///< angle between triangles and the surfaces they stand for, of both bodies [rad]
 };
 
 /// Measures along a line through the centre of a sphere in contact.
