@@ -14,6 +14,7 @@ namespace {
 
 std::unique_ptr<btCollisionDispatcher> makeDispatcher(DispatcherKind kind,
                                                       btCollisionConfiguration* configuration) {
+  btSetTaskScheduler(btGetSequentialTaskScheduler());  // btCollisionDispatcherMt asks for it when it is made
   switch (kind) {
     case DispatcherKind::multithreaded:
       return std::make_unique<btCollisionDispatcherMt>(configuration);
@@ -32,7 +33,6 @@ TestWorld::TestWorld(const ContactOptions& options, DispatcherKind kind)
     : owned_dispatcher(makeDispatcher(kind, &configuration)),
       dispatcher(*owned_dispatcher),
       world(&dispatcher, &broadphase, &solver, &configuration) {
-  btSetTaskScheduler(btGetSequentialTaskScheduler());
   PackingCollisionAlgorithm::registerAlgorithm(&dispatcher, options);
   world.setGravity(btVector3(0, 0, btScalar(-9.81)));
 }
