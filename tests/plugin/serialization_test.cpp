@@ -37,6 +37,7 @@ TEST(Serialization, IsACompoundOfSpheres) {
   ASSERT_EQ(recorder.compounds.size(), 1u);
   EXPECT_EQ(recorder.compounds[0]->m_numChildShapes, 27);
   EXPECT_NE(recorder.compounds[0]->m_collisionShapeData.m_name, nullptr);
+  recorder.finishSerialization();  // frees its chunks
 }
 
 #ifdef INNERSPHERE_BULLET_IMPORTER
