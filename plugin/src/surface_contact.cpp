@@ -96,7 +96,7 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
     if (contacts.empty()) return patches_;
   } else {
     caps(0);
-    overlap_ = sumOf(a, touches);
+    if (options.response == Response::penalty) overlap_ = sumOf(a, touches);
   }
   volumePatches(contacts, measure.spacing, packing.getBasis(), patches_);
   return patches_;

@@ -13,6 +13,7 @@
 #include "innersphere/packer.hpp"
 #include "innersphere/query.hpp"
 #include "machine.hpp"
+#include "points_file.hpp"
 
 namespace {
 
@@ -162,12 +163,8 @@ int main(int argc, char** argv) {
   app.add_option("--points", points_path,
                  "Write solid, spheres, overlap, errors raw and volume-true there, for plots");
   CLI11_PARSE(app, argc, argv);
-  const std::unique_ptr<FILE, int (*)(FILE*)> points(
-      points_path.empty() ? nullptr : std::fopen(points_path.c_str(), "w"), std::fclose);
-  if (!points_path.empty() && !points) {
-    std::fprintf(stderr, "cannot write %s\n", points_path.c_str());
-    return 1;
-  }
+  const innersphere::benchmarks::PointsFile points(points_path);
+  if (!points.good()) return 1;
   try {
     std::printf("%s", innersphere::benchmarks::heading("Accuracy of the overlap", argc, argv).c_str());
     printHead();

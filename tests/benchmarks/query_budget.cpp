@@ -12,6 +12,7 @@
 #include "innersphere/error.hpp"
 #include "innersphere/query.hpp"
 #include "machine.hpp"
+#include "points_file.hpp"
 #include "source.hpp"
 #include "sweep.hpp"
 #include "timing.hpp"
@@ -205,12 +206,8 @@ int main(int argc, char** argv) {
   app.add_option("--points", points_path, "Write the rows there, for plots");
   app.add_option("--device", device, "Name of the GPU, for the head of the table");
   CLI11_PARSE(app, argc, argv);
-  const std::unique_ptr<FILE, int (*)(FILE*)> points(
-      points_path.empty() ? nullptr : std::fopen(points_path.c_str(), "w"), std::fclose);
-  if (!points_path.empty() && !points) {
-    std::fprintf(stderr, "cannot write %s\n", points_path.c_str());
-    return 1;
-  }
+  const PointsFile points(points_path);
+  if (!points.good()) return 1;
   try {
     std::printf("%s", heading("Time against error", argc, argv).c_str());
     if (!device.empty()) std::printf("GPU: %s\n\n", device.c_str());

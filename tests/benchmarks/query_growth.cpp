@@ -11,6 +11,7 @@
 #include "innersphere/packer.hpp"
 #include "innersphere/query.hpp"
 #include "machine.hpp"
+#include "points_file.hpp"
 #include "named_meshes.hpp"
 #include "peer.hpp"
 #include "timing.hpp"
@@ -105,12 +106,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--points", points_path, "Write triangles and times there, for plots");
   CLI11_PARSE(app, argc, argv);
-  const std::unique_ptr<FILE, int (*)(FILE*)> points(
-      points_path.empty() ? nullptr : std::fopen(points_path.c_str(), "w"), std::fclose);
-  if (!points_path.empty() && !points) {
-    std::fprintf(stderr, "cannot write %s\n", points_path.c_str());
-    return 1;
-  }
+  const PointsFile points(points_path);
+  if (!points.good()) return 1;
   try {
     std::printf("%s", heading("Two interlocked Chazelle polyhedra", argc, argv).c_str());
     std::printf(

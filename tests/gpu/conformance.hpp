@@ -56,4 +56,22 @@ inline bool sameBits(const Overlap& a, const Overlap& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
+template <typename T>
+void expectSameRanges(const QueryResult::Ranges<T>& x, const QueryResult::Ranges<T>& y) {
+  EXPECT_EQ(x.first, y.first);
+  ASSERT_EQ(x.items.size(), y.items.size());
+  EXPECT_TRUE(x.items.empty() ||
+              std::memcmp(x.items.data(), y.items.data(), x.items.size() * sizeof(T)) == 0);
+}
+
+/// All bits of all results.
+inline void expectSame(const QueryResult& x, const QueryResult& y) {
+  ASSERT_EQ(x.overlaps.size(), y.overlaps.size());
+  for (std::size_t i = 0; i < x.overlaps.size(); ++i)
+    EXPECT_TRUE(sameBits(x.overlaps[i], y.overlaps[i])) << i;
+  expectSameRanges(x.pairs, y.pairs);
+  expectSameRanges(x.contacts_a, y.contacts_a);
+  expectSameRanges(x.contacts_b, y.contacts_b);
+}
+
 }  // namespace innersphere::test

@@ -3,14 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "conformance.hpp"
-
-#ifdef INNERSPHERE_RAPIDCHECK
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
-#endif
+#include "laws.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -82,14 +77,6 @@ bool sameBitsAnywhere(std::uint64_t seed) {
   QueryResult result;
   cpu(3).run(batch, 4, first.options, result);
   return sameBits(alone, result.overlaps[1]) && sameBits(alone, result.overlaps[3]);
-}
-
-void checkLaw(const std::function<bool(std::uint64_t)>& law) {
-#ifdef INNERSPHERE_RAPIDCHECK
-  EXPECT_TRUE(rc::check([&](std::uint32_t seed) { RC_ASSERT(law(seed)); }));
-#else
-  for (std::uint64_t seed = 0; seed < 100; ++seed) EXPECT_TRUE(law(seed)) << "seed " << seed;
-#endif
 }
 
 TEST(Exactness, PairsAreThoseOfBruteForce) {

@@ -3,14 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "conformance.hpp"
-
-#ifdef INNERSPHERE_RAPIDCHECK
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
-#endif
+#include "laws.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -103,14 +98,6 @@ bool equalsBruteForce(std::uint64_t seed) {
   cpu().run(&c.scene.query, 1, {Want::pairs, Estimator::raw}, result);
   return differenceInPairs(oracle, result.pairs.items.data(), result.pairs.items.size()).empty() &&
          differenceInSums(oracle, result.overlaps[0], 1e-8).empty();
-}
-
-void checkLaw(const std::function<bool(std::uint64_t)>& law) {
-#ifdef INNERSPHERE_RAPIDCHECK
-  EXPECT_TRUE(rc::check([&](std::uint32_t seed) { RC_ASSERT(law(seed)); }));
-#else
-  for (std::uint64_t seed = 0; seed < 100; ++seed) EXPECT_TRUE(law(seed)) << "seed " << seed;
-#endif
 }
 
 TEST(Property, RigidMotion) {

@@ -10,11 +10,11 @@ enum class Response {
   compliant,  ///< contact points with stiffness and damping: an implicit spring, stable at any stiffness and
               ///< step
   rigid,      ///< ordinary contact points: the solver removes the penetration
-  penalty,    ///< the force stiffness * sum V n over all overlapping spheres, as impulses before the solver
-              ///< runs: keeps the energy where damping and friction are 0. Explicit: a stiffness that is too
-            ///< high for the step throws bodies apart, see PairOverlap::largest_step. Contacts are reported,
-            ///< with their impulses, but the solver leaves them alone. Links of a btMultiBody, which take no
-            ///< impulses, get compliant contacts
+  /// The force stiffness * sum V n over all overlapping spheres, as impulses before the solver runs: keeps
+  /// the energy where damping and friction are 0. Explicit: a stiffness that is too high for the step throws
+  /// bodies apart, see PairOverlap::largest_step. Contacts are reported, with their impulses, but the solver
+  /// leaves them alone. Links of a btMultiBody, which take no impulses, get compliant contacts.
+  penalty
 };
 
 /// Options of a registration; they hold for every pair of the dispatcher.
