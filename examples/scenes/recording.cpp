@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "innersphere/error.hpp"
 #include "observation.hpp"
@@ -96,8 +97,11 @@ Recording record(SceneWorld& world, double seconds, double dt, const Progress& p
   for (int step = 1; step <= steps; ++step) {
     if (world.drive) world.drive((step - 1) * dt, dt);
     const auto start = Clock::now();
+    const std::clock_t processors = std::clock();
     world.bullet().stepSimulation(btScalar(dt), 0);
+    const std::clock_t worked = std::clock() - processors;
     keep(step, std::chrono::duration<double>(Clock::now() - start).count());
+    recording.steps.back().processor_time = static_cast<double>(worked) / CLOCKS_PER_SEC;
     if (progress && !progress("stepping", static_cast<double>(step) / steps)) {
       throw Error(ErrorCode::cancelled, "the scene was cancelled");
     }

@@ -16,6 +16,7 @@ class SceneWorld;
 struct StepRecord {
   double time = 0;              ///< [s]
   double step_time = 0;         ///< wall-clock time of the step [s]
+  double processor_time = 0;    ///< of the step, of all threads [s]: other programs do not add to it
   double kinetic = 0;           ///< [J]
   double potential = 0;         ///< [J], 0 at z = 0
   Vec3d momentum{};             ///< [kg m/s]

@@ -37,7 +37,7 @@ ScenePlay::~ScenePlay() = default;
 ScenePlay play(const Scene& scene, const SceneOptions& options) {
   ScenePlay result;
   result.options = completed(scene, options);
-  result.world = std::make_unique<SceneWorld>(result.options.contact);
+  result.world = std::make_unique<SceneWorld>(result.options.contact, result.options.bodies);
   result.world->film.title = scene.name;
   scene.build(*result.world, result.options);
   result.recording =

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "body_shape.hpp"
 #include "innersphere/contact_options.hpp"
 #include "innersphere/progress.hpp"
 #include "innersphere/solid.hpp"
@@ -26,6 +27,7 @@ struct SceneOptions {
   /// To use instead of the scene's own solids, scaled to its size; see Scene::takes_solids.
   std::vector<std::shared_ptr<const Solid>> solids;
   ContactOptions contact;
+  BodyOptions bodies;
   Progress progress;  ///< packing takes a while
 };
 

@@ -1,5 +1,7 @@
 #include "world.hpp"
 
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+
 #include "innersphere/packer.hpp"
 #include "innersphere/packing_collision_algorithm.hpp"
 #include "scaled_solid.hpp"
@@ -17,8 +19,10 @@ std::array<float, 3> moved(const btTransform& t, float x, float y, float z) {
 }
 
 // A packing as it is drawn: in the frame of the body.
-Shape lookOf(const std::string& name, const Packing& packing, const btTransform& to_body) {
+Shape lookOf(const std::string& name, const Packing& packing, std::size_t spheres,
+             const btTransform& to_body) {
   Shape look{name, packing.surface, packing.spheres};
+  look.spheres.resize(std::min(look.spheres.size(), spheres));
   for (auto& v : look.surface.vertices) v = moved(to_body, v[0], v[1], v[2]);
   for (Sphere& s : look.spheres) {
     const auto centre = moved(to_body, s.x, s.y, s.z);
@@ -42,13 +46,14 @@ Surface boxSurface(const btVector3& half) {
 
 }  // namespace
 
-SceneWorld::SceneWorld(const ContactOptions& options) {
+SceneWorld::SceneWorld(const ContactOptions& options, const BodyOptions& bodies) : body_options_(bodies) {
   world_.setGravity(btVector3(0, 0, -kGravity));
   // Runs repeat exactly, whatever order the broad phase finds pairs in.
   world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
   // With one friction direction Bullet turns it along the last bit of sliding, and resting bodies creep.
   world_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   PackingCollisionAlgorithm::registerAlgorithm(&dispatcher_, options);
+  if (bodies.shape == BodyShape::gimpact) btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
 }
 
 SceneWorld::~SceneWorld() {
@@ -58,23 +63,33 @@ SceneWorld::~SceneWorld() {
 }
 
 std::size_t SceneWorld::addSolid(const Solid& solid, std::size_t spheres, const Progress& progress) {
-  PackOptions options;
-  options.spheres = spheres;
   SceneSolid& entry = solids_.emplace_back();
-  entry.packing = std::make_shared<Packing>(pack(solid, options, progress));
+  if (body_options_.packing) {
+    entry.packing = body_options_.packing(solid, spheres, progress);
+  } else {
+    PackOptions options;
+    options.spheres = spheres;
+    entry.packing = std::make_shared<Packing>(pack(solid, options, progress));
+  }
   entry.shape = std::make_unique<PackingShape>(std::make_shared<CollisionModel>(entry.packing));
+  entry.shape->setSphereCount(spheres);
+  const btTransform& to_body = entry.shape->principalTransform();
   const Bounds box = solid.bounds();
   entry.size = diagonalOf(box);
   for (int k = 0; k < 3; ++k) entry.centre[k] = btScalar((box.min[k] + box.max[k]) / 2);
   entry.look = static_cast<std::uint32_t>(film.shapes.size());
-  film.shapes.push_back(lookOf(solid.name(), *entry.packing, entry.shape->principalTransform()));
+  film.shapes.push_back(lookOf(solid.name(), *entry.packing, spheres, to_body));
+  if (body_options_.shape != BodyShape::packing) {
+    entry.other = std::make_unique<BulletShape>(body_options_, solid, *entry.packing, spheres, to_body);
+    Shape& look = film.shapes.back();
+    if (body_options_.shape != BodyShape::spheres) look.spheres.clear();
+    if (body_options_.shape == BodyShape::convex) look.surface = entry.other->hulls();
+  }
   return solids_.size() - 1;
 }
 
-btRigidBody& SceneWorld::add(std::string name, btCollisionShape& shape, double mass, const btTransform& place,
-                             double size) {
-  btVector3 inertia(0, 0, 0);
-  if (mass > 0) shape.calculateLocalInertia(btScalar(mass), inertia);
+btRigidBody& SceneWorld::add(std::string name, btCollisionShape& shape, double mass, const btVector3& inertia,
+                             const btTransform& place, double size) {
   btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, &shape, inertia);
   info.m_startWorldTransform = place;
   info.m_friction = kFriction;
@@ -89,7 +104,11 @@ btRigidBody& SceneWorld::addBody(std::size_t solid, double density, const btTran
                                  const Colour& colour) {
   const SceneSolid& entry = solids_[solid];
   film.actors.push_back({entry.look, colour});
-  return add(film.shapes[entry.look].name, *entry.shape, density * entry.packing->solid.volume,
+  const double mass = density * entry.packing->solid.volume;
+  btVector3 inertia(0, 0, 0);
+  if (mass > 0) entry.shape->calculateLocalInertia(btScalar(mass), inertia);
+  btCollisionShape& shape = entry.other ? entry.other->shape() : *entry.shape;
+  return add(film.shapes[entry.look].name, shape, mass, inertia,
              place * btTransform(btQuaternion::getIdentity(), -entry.centre) *
                  entry.shape->principalTransform().inverse(),
              entry.size);
@@ -100,7 +119,7 @@ btRigidBody& SceneWorld::addFixedBox(const btVector3& half_size, const btTransfo
   film.actors.push_back({static_cast<std::uint32_t>(film.shapes.size()), colour});
   film.shapes.push_back({"fixed box", boxSurface(half_size), {}});
   bullet_shapes_.push_back(std::make_unique<btBoxShape>(half_size));
-  return add("fixed box", *bullet_shapes_.back(), 0, place, 2 * half_size.length());
+  return add("fixed box", *bullet_shapes_.back(), 0, btVector3(0, 0, 0), place, 2 * half_size.length());
 }
 
 btRigidBody& SceneWorld::addGround(double height) {

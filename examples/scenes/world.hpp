@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "body_shape.hpp"
 #include "film/film.hpp"
 #include "innersphere/contact_options.hpp"
 #include "innersphere/packing_shape.hpp"
@@ -20,10 +21,12 @@ namespace innersphere::demo {
 /// A solid that was packed for a scene.
 struct SceneSolid {
   std::shared_ptr<const Packing> packing;
-  std::unique_ptr<PackingShape> shape;
-  std::uint32_t look = 0;  ///< index into Film::shapes
-  btVector3 centre;        ///< of its bounding box, in the solid's own frame [m]
-  double size = 0;         ///< diagonal of its bounding box [m]
+  std::unique_ptr<PackingShape>
+      shape;  ///< also says what moves how: mass properties are the same for all shapes
+  std::unique_ptr<BulletShape> other;  ///< what collides in its place; null: nothing does
+  std::uint32_t look = 0;              ///< index into Film::shapes
+  btVector3 centre;                    ///< of its bounding box, in the solid's own frame [m]
+  double size = 0;                     ///< diagonal of its bounding box [m]
 };
 
 /// A body of a scene; the actor with the same index shows it.
@@ -39,7 +42,7 @@ struct SceneBody {
 /// Bodies never go to sleep, so that nothing seems to rest only because Bullet froze it.
 class SceneWorld {
  public:
-  explicit SceneWorld(const ContactOptions& options);
+  explicit SceneWorld(const ContactOptions& options, const BodyOptions& bodies = {});
   ~SceneWorld();
   SceneWorld(const SceneWorld&) = delete;
   SceneWorld& operator=(const SceneWorld&) = delete;
@@ -78,9 +81,10 @@ class SceneWorld {
   Film film;
 
  private:
-  btRigidBody& add(std::string name, btCollisionShape& shape, double mass, const btTransform& place,
-                   double size);
+  btRigidBody& add(std::string name, btCollisionShape& shape, double mass, const btVector3& inertia,
+                   const btTransform& place, double size);
 
+  BodyOptions body_options_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;

@@ -67,6 +67,18 @@ void addSceneOptions(CLI::App& command, demo::SceneOptions& options) {
       ->capture_default_str();
   addBackendOption(command, options.contact.backend);
   addEstimatorOption(command, options.contact.estimator);
+  addChoice<demo::BodyShape>(command, "--shape", options.bodies.shape,
+                             {{"packing", demo::BodyShape::packing},
+                              {"gimpact", demo::BodyShape::gimpact},
+                              {"spheres", demo::BodyShape::spheres},
+                              {"convex", demo::BodyShape::convex}},
+                             "What collides, to compare: packings, or Bullet's triangle meshes, compounds of "
+                             "the packings' spheres, or compounds of convex parts");
+  command
+      .add_option("--concavity", options.bodies.concavity,
+                  "How far convex parts may leave their solid, relative to its size")
+      ->check(positive())
+      ->capture_default_str();
   command.add_option("--seed", options.seed, "Of random places and orientations")
       ->check(notNegative())
       ->capture_default_str();
