@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/grid_view.hpp"
+#include "core/tier_cells.hpp"
 
 namespace innersphere {
 
@@ -26,12 +26,11 @@ struct CellLists {
 class CellLister {
  public:
   /// Lists each sphere in all cells where a walker can meet it: those of each tier that are not farther from
-  /// its centre than its radius and the reach of the tier's walkers. The spheres of tier t are those from
-  /// first_places[t] on. Of `grid`, all but the cells must be there.
-  void list(const core::GridView& grid, const std::vector<std::uint32_t>& first_places, CellLists& lists);
+  /// its centre than its radius and the reach of the tier's walkers. `centred`: the spheres in the order of
+  /// the grid, relative to its centre.
+  void list(const core::GridPlan& plan, const Sphere* centred, CellLists& lists);
 
  private:
-  struct Tier;
   /// A cell of a tier lists a sphere.
   struct DenseEntry {
     std::uint32_t cell;
@@ -65,9 +64,14 @@ class CellLister {
     }
   };
 
-  void listDense(const Tier& tier, std::vector<std::uint32_t>& listed);
-  void listSparse(const Tier& tier, std::vector<std::uint32_t>& listed);
-  void fillTable(const core::GridView& grid, CellLists& lists) const;
+  template <typename Entry>
+  static void addCells(const core::TierCells& tier, const Sphere& sphere, std::uint32_t place,
+                       Entries<Entry>& entries);
+  void listDense(const core::TierCells& tier, std::uint32_t count, const Sphere* centred,
+                 std::vector<std::uint32_t>& listed);
+  void listSparse(const core::TierCells& tier, std::uint32_t count, const Sphere* centred,
+                  std::vector<std::uint32_t>& listed);
+  void fillTable(CellLists& lists) const;
 
   std::vector<core::Cell> cells_;
   std::vector<std::uint32_t> counts_;       ///< of each chunk, of each cell; later where its next place goes

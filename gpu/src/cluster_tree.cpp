@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/grid_plan.hpp"
+
 namespace innersphere {
 
 namespace {
@@ -15,7 +17,7 @@ Sphere ballAround(const Sphere* begin, const Sphere* end) {
     lo = {std::min(lo.x, s->x), std::min(lo.y, s->y), std::min(lo.z, s->z)};
     hi = {std::max(hi.x, s->x), std::max(hi.y, s->y), std::max(hi.z, s->z)};
   }
-  const core::Vec3f middle = 0.5f * (lo + hi);
+  const core::Vec3f middle = core::middleOf(lo, hi);
   double radius = 0;
   for (const Sphere* s = begin; s < end; ++s) {
     const core::Vec3r d = core::Vec3r{s->x, s->y, s->z} - core::Vec3r{middle.x, middle.y, middle.z};

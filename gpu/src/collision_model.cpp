@@ -49,32 +49,21 @@ CollisionModel::Impl::Impl(std::shared_ptr<const Packing> p) : packing(std::move
   }
 }
 
-const HashGrid& CollisionModel::Impl::grid(std::uint32_t prefix, Estimator estimator) {
+const ModelGrid& CollisionModel::Impl::grid(std::uint32_t prefix, Estimator estimator) {
   const std::size_t all = packing->spheres.size();
   std::size_t count = prefix == 0 || prefix > all ? all : prefix;
   const VolumeTrueRadii* radii =
       estimator == Estimator::volume_true ? volumeTrueRadii(*packing, count) : nullptr;
   if (radii) count = radii->count;
-
-  Entry* entry;
-  {
-    const std::lock_guard lock(mutex_);
-    entry = &grids_[Key(static_cast<std::uint32_t>(count), radii)];
-  }
-  if (entry->version.load(std::memory_order_acquire) == version_) return entry->grid;
-  const std::lock_guard lock(entry->mutex);
-  if (entry->version.load(std::memory_order_relaxed) != version_) {
-    build(*entry, count, radii);
-    entry->version.store(version_, std::memory_order_release);
-  }
-  return entry->grid;
+  const std::lock_guard lock(mutex_);
+  return grids_.try_emplace(Key(static_cast<std::uint32_t>(count), radii), *this, count, radii).first->second;
 }
 
-void CollisionModel::Impl::build(Entry& entry, std::size_t count, const VolumeTrueRadii* radii) {
+void CollisionModel::Impl::withSpheres(std::size_t count, const VolumeTrueRadii* radii, const Use& use) {
   // Isolated: while it waits for its own tasks, this thread must not pick up a caller's task that wants the
   // same grid.
-  const auto buildFrom = [&](const Sphere* spheres, GridScratch& scratch) {
-    tbb::this_task_arena::isolate([&] { entry.grid.build(spheres, count, scratch); });
+  const auto isolated = [&](const Sphere* spheres, GridScratch& scratch) {
+    tbb::this_task_arena::isolate([&] { use(spheres, scratch); });
   };
   const auto withRadii = [&](const std::vector<Sphere>& from, std::vector<Sphere>& to) {
     to.assign(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
@@ -84,10 +73,10 @@ void CollisionModel::Impl::build(Entry& entry, std::size_t count, const VolumeTr
   if (moved_.empty()) {
     GridScratch scratch;
     std::vector<Sphere> spheres;
-    return buildFrom(radii ? withRadii(packing->spheres, spheres) : packing->spheres.data(), scratch);
+    return isolated(radii ? withRadii(packing->spheres, spheres) : packing->spheres.data(), scratch);
   }
   const std::lock_guard lock(scratch_.mutex);
-  buildFrom(radii ? withRadii(moved_, scratch_.spheres) : moved_.data(), scratch_.grid);
+  isolated(radii ? withRadii(moved_, scratch_.spheres) : moved_.data(), scratch_.grid);
 }
 
 float CollisionModel::Impl::radiusOf(std::size_t sphere, const VolumeTrueRadii& radii) const {

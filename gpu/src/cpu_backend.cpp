@@ -164,7 +164,7 @@ void walkClusters(const PreparedQuery& query, std::size_t begin, std::size_t end
       const std::size_t n = std::exchange(count, 0);
       return kernels.walk(walker, clusters.data(), n, candidates, sink) && sink.take(candidates);
     };
-    const Occupancy& occupancy = (from_a ? query.grid_b : query.grid_a)->occupancy();
+    const Occupancy& occupancy = (from_a ? query.grid_b : query.grid_a)->onCpu().occupancy();
     const auto meeting = [&](const Sphere* balls, std::uint32_t n) {
       return kernels.ballsMeeting(walker, occupancy, balls, n);
     };
@@ -172,7 +172,7 @@ void walkClusters(const PreparedQuery& query, std::size_t begin, std::size_t end
     const std::size_t all = from_a ? setup.a.clusters : setup.b.clusters;
     const std::size_t first = std::clamp(begin, before, before + all) - before;
     const std::size_t last = std::clamp(end, before, before + all) - before;
-    const ClusterTree& tree = (from_a ? query.grid_a : query.grid_b)->clusterTree();
+    const ClusterTree& tree = (from_a ? query.grid_a : query.grid_b)->onCpu().clusterTree();
     const bool go_on = tree.forMeeting(first, last, meeting, [&](std::size_t cluster) {
       clusters[count++] = static_cast<std::uint32_t>(cluster);
       return count < together || walk();

@@ -19,8 +19,8 @@ constexpr unsigned kItem = 8;    ///< neighbouring clusters that a warp of a bat
 /// A grid, with what only kernels read.
 struct alignas(16) Grid {
   core::GridView view;
-  /// The spheres of view.listed, relative to the centre. After them come, as in view.listed, all spheres in
-  /// their order, for walkers that look at all, up to a multiple of kListStep.
+  /// The spheres of view.listed, relative to the centre. After them come all spheres in their order, for
+  /// walkers that look at all, and some that meet nothing.
   const Sphere* entries;
   const Sphere* groups;         ///< balls around kGroup clusters each
   const std::uint32_t* places;  ///< of the packing's spheres in the grid

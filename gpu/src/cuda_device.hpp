@@ -34,6 +34,13 @@ inline __device__ bool ballMeets(const core::GridView& grid, const core::Search&
   return core::ballMeets(search, grid, ball);
 }
 
+/// Over all lanes.
+template <typename T>
+inline __device__ T maximum(T x) {
+  for (unsigned step = 1; step < kWarp; step *= 2) x = max(x, __shfl_xor_sync(kAll, x, step));
+  return x;
+}
+
 /// The sum over this lane and all before it.
 inline __device__ unsigned scan(unsigned x, unsigned lane) {
   for (unsigned step = 1; step < kWarp; step *= 2) {

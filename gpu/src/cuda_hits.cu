@@ -155,15 +155,6 @@ __global__ void writeFirst(const unsigned long long* keys, unsigned shift, const
   first[query] = lo;
 }
 
-/// Calls a function of CUB with memory for its own use.
-template <typename F>
-void withScratch(DeviceArray<std::byte>& scratch, const F& f) {
-  std::size_t size = 0;
-  INNERSPHERE_CUDA(f(nullptr, size));
-  scratch.reserve(size);
-  INNERSPHERE_CUDA(f(scratch.data(), size));
-}
-
 template <typename T>
 void prepareList(HitList<T>& list, std::size_t items, unsigned queries) {
   list.items.reserve(items);

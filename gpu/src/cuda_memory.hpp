@@ -66,6 +66,15 @@ using DeviceArray = CudaArray<T, OnDevice>;
 template <typename T>
 using PinnedArray = CudaArray<T, Pinned>;
 
+/// Calls a function of CUB with memory for its own use.
+template <typename F>
+void withScratch(DeviceArray<std::byte>& scratch, const F& f) {
+  std::size_t size = 0;
+  INNERSPHERE_CUDA(f(nullptr, size));
+  scratch.reserve(size);
+  INNERSPHERE_CUDA(f(scratch.data(), size));
+}
+
 /// A moment in a stream, made on first use.
 class Event {
  public:

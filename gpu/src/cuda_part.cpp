@@ -31,7 +31,7 @@ class Grids {
  public:
   explicit Grids(const Device& device) : device_(device) {}
 
-  const Grid* of(const HashGrid& grid, int side) {
+  const Grid* of(const ModelGrid& grid, int side) {
     Known& known = known_[side];
     if (known.grid != &grid) known = {&grid, gridOnDevice(grid, device_.number, device_.stream).onDevice()};
     return known.copy;
@@ -39,7 +39,7 @@ class Grids {
 
  private:
   struct Known {
-    const HashGrid* grid = nullptr;
+    const ModelGrid* grid = nullptr;
     const Grid* copy = nullptr;
   };
   const Device& device_;

@@ -61,8 +61,9 @@ class Summer {
                       bool valid, unsigned lane, Columns& columns) {
     const bool from_a = candidate.x & kFromA;
     const std::uint32_t own = candidate.x & kPlace;
-    const std::uint32_t* listed = scene.grids[from_a ? 1 : 0].view.listed;
-    const std::uint32_t partner = __ldg(listed + candidate.y);
+    const core::GridView& grid = scene.grids[from_a ? 1 : 0].view;
+    const bool listed = candidate.y < grid.listed_count;  // see Grid::entries
+    const std::uint32_t partner = listed ? __ldg(grid.listed + candidate.y) : candidate.y - grid.listed_count;
     const std::uint32_t place_a = from_a ? own : partner, place_b = from_a ? partner : own;
     core::Pair pair = core::makePair(scene.query.frame, load(scene.grids[0].view.spheres + place_a),
                                      load(scene.grids[1].view.spheres + place_b));

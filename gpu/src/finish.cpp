@@ -117,11 +117,14 @@ void HitSorter::evaluate(const std::vector<PreparedQuery>& queries, Workers& wor
     while (begin < end) {
       const std::size_t stop = std::min({end, first_[q], begin + PairValues::kSize});
       const PreparedQuery& query = queries[q - 1];
-      for (std::size_t k = begin; k < stop; ++k) {
-        pairs.a[k - begin] = query.grid_a->placeOf(high(keys_[k]));
-        pairs.b[k - begin] = query.grid_b->placeOf(low(keys_[k]));
+      if (begin < stop) {
+        const HashGrid &a = query.grid_a->onCpu(), &b = query.grid_b->onCpu();
+        for (std::size_t k = begin; k < stop; ++k) {
+          pairs.a[k - begin] = a.placeOf(high(keys_[k]));
+          pairs.b[k - begin] = b.placeOf(low(keys_[k]));
+        }
+        cpuKernels().evaluate(query.setup, stop - begin, pairs);
       }
-      if (begin < stop) cpuKernels().evaluate(query.setup, stop - begin, pairs);
       for (std::size_t k = begin; k < stop; ++k) {
         const auto value = [&](int i) { return pairs.of[static_cast<std::size_t>(i)][k - begin]; };
         constexpr int kMoment = PairValues::moment, kArea = PairValues::area;

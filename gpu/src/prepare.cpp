@@ -171,8 +171,8 @@ core::Units makeUnits(const Side& a, const Side& b, std::size_t index) {
 
 }  // namespace
 
-const HashGrid& KnownGrids::of(const CollisionModel& model, std::uint32_t prefix, Estimator estimator,
-                               int side) {
+const ModelGrid& KnownGrids::of(const CollisionModel& model, std::uint32_t prefix, Estimator estimator,
+                                int side) {
   Known& known = known_[side];
   if (known.model != &model || known.prefix != prefix)
     known = {&model, prefix, &model.impl().grid(prefix, estimator)};
@@ -195,8 +195,8 @@ PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estim
   prepared.grid_a = &grids.of(*query.a, query.prefix_a, estimator, 0);
   prepared.grid_b = &grids.of(*query.b, query.prefix_b, estimator, 1);
   const double scale_a = query.placement_a.scale, scale_b = query.placement_b.scale;
-  const Side a{prepared.grid_a->view(), scaled(rotation_a, scale_a), scale_a, query.margin};
-  const Side b{prepared.grid_b->view(), scaled(rotation_b, scale_b), scale_b, 0};
+  const Side a{prepared.grid_a->plan().view, scaled(rotation_a, scale_a), scale_a, query.margin};
+  const Side b{prepared.grid_b->plan().view, scaled(rotation_b, scale_b), scale_b, 0};
   const Vec3d& ta = query.placement_a.translation;
   const Vec3d& tb = query.placement_b.translation;
   const Vec3r offset{tb[0] - ta[0], tb[1] - ta[1], tb[2] - ta[2]};
@@ -212,6 +212,12 @@ PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estim
   setup.a.clusters = a.grid.cluster_count;
   setup.b.clusters = b.grid.cluster_count;
   return prepared;
+}
+
+void bringToCpu(PreparedQuery& query) {
+  if (query.clusters() == 0) return;
+  query.setup.a.grid = query.grid_a->onCpu().view();
+  query.setup.b.grid = query.grid_b->onCpu().view();
 }
 
 }  // namespace innersphere

@@ -4,15 +4,15 @@
 #include <cstddef>
 
 #include "core/setup.hpp"
-#include "hash_grid.hpp"
 #include "innersphere/query.hpp"
+#include "model_grid.hpp"
 
 namespace innersphere {
 
 struct PreparedQuery {
-  core::Setup setup;  ///< with the grids in the memory of the CPU
-  const HashGrid* grid_a;
-  const HashGrid* grid_b;
+  core::Setup setup;  ///< its grids have no arrays; see bringToCpu()
+  const ModelGrid* grid_a;
+  const ModelGrid* grid_b;
 
   std::size_t clusters() const { return std::size_t{setup.a.clusters} + setup.b.clusters; }
 };
@@ -21,20 +21,23 @@ struct PreparedQuery {
 /// several threads.
 class KnownGrids {
  public:
-  const HashGrid& of(const CollisionModel& model, std::uint32_t prefix, Estimator estimator, int side);
+  const ModelGrid& of(const CollisionModel& model, std::uint32_t prefix, Estimator estimator, int side);
 
  private:
   struct Known {
     const CollisionModel* model = nullptr;
     std::uint32_t prefix = 0;
-    const HashGrid* grid = nullptr;
+    const ModelGrid* grid = nullptr;
   };
   Known known_[2];
 };
 
 /// Throws Error as QueryContext::run says; `index` is the query's place in its batch, for messages. Bodies
-/// whose bounding balls or boxes are apart get no clusters to walk. Builds the grids if this is their first
-/// use. All calls with the same `grids` have one estimator.
+/// whose bounding balls or boxes are apart get no clusters to walk. Builds no grids. All calls with the same
+/// `grids` have one estimator.
 PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estimator, KnownGrids& grids);
+
+/// For a walk on the CPU: builds the grids there if this is their first use.
+void bringToCpu(PreparedQuery& query);
 
 }  // namespace innersphere

@@ -58,7 +58,11 @@ struct QueryContext::Impl {
     const bool on_device =
         options.backend == Backend::cuda || (options.backend == Backend::automatic && paysOnDevice());
     last = on_device ? Backend::cuda : Backend::cpu;
-    return on_device ? *cuda : cpu;
+    if (on_device) return *cuda;
+    workers.forRanges(prepared.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) bringToCpu(prepared[i]);
+    });
+    return cpu;
   }
 
   void start(const PairQuery* queries, std::size_t count, const QueryOptions& query_options) {

@@ -45,7 +45,7 @@ Recorder record(const CpuKernels& kernels, const PreparedQuery& query) {
   const core::Walker walker = core::walkerOf(query.setup, true);
   for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
     recorder.balls.push_back(
-        kernels.ballsMeeting(walker, query.grid_b->occupancy(), &walker.own.clusters[c].ball, 1));
+        kernels.ballsMeeting(walker, query.grid_b->onCpu().occupancy(), &walker.own.clusters[c].ball, 1));
   for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
     EXPECT_TRUE(kernels.walk(walker, &c, 1, candidates, recorder));
   recorder.take(candidates);
@@ -61,7 +61,8 @@ TEST(CpuKernels, AllGiveTheSameBits) {
   query.placement_b = at({0.4, 0.1, 0});
   query.margin = 0.001;
   KnownGrids grids;
-  const PreparedQuery prepared = prepare(query, 0, Estimator::volume_true, grids);
+  PreparedQuery prepared = prepare(query, 0, Estimator::volume_true, grids);
+  bringToCpu(prepared);
   const Recorder first = record(*supportedKernels().front(), prepared);
   EXPECT_GT(first.pairs.size(), 500u);
   for (const CpuKernels* kernels : supportedKernels()) {

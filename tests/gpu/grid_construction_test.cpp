@@ -72,7 +72,7 @@ TEST(GridConstruction, MemoryOfOtherGridsDoesNotMatter) {
   GridScratch scratch;
   for (int round = 0; round < 2; ++round) {
     for (const Spheres& spheres : sets) {
-      grid.build(spheres.data(), spheres.size(), scratch);
+      grid.build(spheres.data(), planGrid(spheres.data(), spheres.size()), scratch);
       expectSame(grid, HashGrid(spheres));
     }
   }

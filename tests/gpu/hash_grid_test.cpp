@@ -175,7 +175,8 @@ TEST(HashGrid, HilbertCurve) {
     std::map<std::uint64_t, Place> cells;
     for (std::uint32_t x = 0; x < n; ++x) {
       for (std::uint32_t y = 0; y < n; ++y) {
-        for (std::uint32_t z = 0; z < n; ++z) cells[core::hilbertPlace(x, y, z, bits)] = {x, y, z};
+        for (std::uint32_t z = 0; z < n; ++z)
+          cells[core::hilbertPlace(core::kHilbertTable, x, y, z, bits)] = {x, y, z};
       }
     }
     ASSERT_EQ(cells.size(), std::size_t{n} * n * n);
@@ -187,7 +188,8 @@ TEST(HashGrid, HilbertCurve) {
       EXPECT_EQ(steps, 1);
     }
     for (const auto& [place, cell] : cells)
-      EXPECT_EQ(core::hilbertPlace(cell[0] >> 1, cell[1] >> 1, cell[2] >> 1, bits - 1), place >> 3);
+      EXPECT_EQ(core::hilbertPlace(core::kHilbertTable, cell[0] >> 1, cell[1] >> 1, cell[2] >> 1, bits - 1),
+                place >> 3);
   }
 }
 

@@ -23,14 +23,14 @@ TEST(CollisionModel, RejectsWhatIsNoPacking) {
 TEST(CollisionModel, BuildsEachGridOnce) {
   const auto model = makeModel(randomSpheres(300, 0.3, 20, 1), true);
   CollisionModel::Impl& impl = model->impl();
-  const HashGrid* all = &impl.grid(0, Estimator::raw);
+  const ModelGrid* all = &impl.grid(0, Estimator::raw);
   EXPECT_EQ(all, &impl.grid(0, Estimator::raw));
   EXPECT_EQ(all, &impl.grid(1u << 30, Estimator::raw));
   EXPECT_NE(all, &impl.grid(0, Estimator::volume_true));
   EXPECT_EQ(&impl.grid(64, Estimator::volume_true), &impl.grid(100, Estimator::volume_true));
   EXPECT_EQ(&impl.grid(3, Estimator::volume_true),
             &impl.grid(3, Estimator::raw));  // none stored: the raw radii
-  EXPECT_EQ(impl.grid(64, Estimator::volume_true).view().count, 64u);
+  EXPECT_EQ(impl.grid(64, Estimator::volume_true).plan().view.count, 64u);
 }
 
 TEST(CollisionModel, CanBeUsedByManyThreadsAtOnce) {

@@ -3,17 +3,19 @@
 
 #include <cstdint>
 
-namespace innersphere::core {
+#include "core/vec3.hpp"
 
-namespace detail {
+namespace innersphere::core {
 
 /// The curve as a machine. In each of 24 orientations of a cube it visits the eight octants in an order, and
 /// each of them in an orientation of its own. An orientation is the octant where the curve enters and the
 /// axis along which it leaves (C. H. Hamilton, "Compact Hilbert Indices", 2006).
-struct HilbertTable {
+struct alignas(8) HilbertTable {
   std::uint8_t digit[24][8];  ///< when an octant is visited
   std::uint8_t next[24][8];   ///< the orientation in it
 };
+
+namespace detail {
 
 constexpr unsigned rotateLeft3(unsigned x, unsigned by) {
   by %= 3;
@@ -39,19 +41,20 @@ constexpr HilbertTable makeHilbertTable() {
   return table;
 }
 
-constexpr HilbertTable kHilbertTable = makeHilbertTable();
-
 }  // namespace detail
 
+constexpr HilbertTable kHilbertTable = detail::makeHilbertTable();
+
 /// Place of the cell (x, y, z) of 2^bits along each axis: of its 3 * bits bits, the upper 3 k are the place
-/// of the cube of 2^(bits - k) cells along each axis that it is in.
-inline std::uint64_t hilbertPlace(std::uint32_t x, std::uint32_t y, std::uint32_t z, int bits) {
+/// of the cube of 2^(bits - k) cells along each axis that it is in. `table`: kHilbertTable, or a copy of it.
+INNERSPHERE_HD inline std::uint64_t hilbertPlace(const HilbertTable& table, std::uint32_t x, std::uint32_t y,
+                                                 std::uint32_t z, int bits) {
   std::uint64_t place = 0;
   unsigned state = 0;
   for (int bit = bits - 1; bit >= 0; --bit) {
     const unsigned octant = (x >> bit & 1) | (y >> bit & 1) << 1 | (z >> bit & 1) << 2;
-    place = place << 3 | detail::kHilbertTable.digit[state][octant];
-    state = detail::kHilbertTable.next[state][octant];
+    place = place << 3 | table.digit[state][octant];
+    state = table.next[state][octant];
   }
   return place;
 }

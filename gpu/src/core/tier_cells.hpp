@@ -1,0 +1,96 @@
+// The cells of one tier of a grid, and which of them list a sphere.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "core/grid_plan.hpp"
+
+namespace innersphere::core {
+
+/// Squared distance from x to the cell number `cell` of an axis, in cells; without a branch.
+INNERSPHERE_HD inline float gap2(float x, std::uint32_t cell) {
+  const float middle =
+      static_cast<float>(static_cast<std::int32_t>(cell)) - 0.5f;  // number 0 is before the first
+  const float outside = fabsf(x - middle) - 0.5f;
+  const float gap = 0.5f * (outside + fabsf(outside));
+  return gap * gap;
+}
+
+/// Room for a list, in whole steps.
+INNERSPHERE_HD inline std::uint32_t padded(std::uint32_t count) {
+  return (count + kListStep - 1) / kListStep * kListStep;
+}
+
+/// Where to look for the cells that list a sphere: those with a point that is not farther away than its
+/// radius and the reach of the tier's walkers, by the squares of three gaps, added up in this order.
+struct CellsNear {
+  float centre[3];  ///< in cells
+  float far2;
+  std::uint32_t lo[3], hi[3];
+
+  INNERSPHERE_HD bool isFar(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    return gap2(centre[2], z) + gap2(centre[1], y) + gap2(centre[0], x) > far2;
+  }
+};
+
+/// Cells are numbered along x, then y, then z: in the order of their keys.
+struct TierCells {
+  int number;
+  std::uint32_t first_place;  ///< of the spheres that it may list
+  std::uint32_t size[3];
+  float scale;  ///< cells in a metre: squares of lengths in cells are neither too small nor too large
+  float reach;  ///< of walkers, in cells
+  Vec3f half;
+  std::uint64_t count;  ///< of cells
+
+  INNERSPHERE_HD std::uint64_t cellAt(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    return (static_cast<std::uint64_t>(z) * size[1] + y) * size[0] + x;
+  }
+
+  INNERSPHERE_HD std::uint64_t keyOf(std::uint64_t cell) const {
+    const std::uint64_t row = cell / size[0];
+    return cellKey(number, static_cast<std::uint32_t>(cell % size[0]),
+                   static_cast<std::uint32_t>(row % size[1]), static_cast<std::uint32_t>(row / size[1]));
+  }
+
+  /// `s` is relative to the centre of the grid.
+  INNERSPHERE_HD CellsNear near(const Sphere& s) const {
+    const float far = s.radius * scale + reach;
+    CellsNear cells{
+        {(s.x + half.x) * scale, (s.y + half.y) * scale, (s.z + half.z) * scale}, far * far, {}, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+      const float lo = cells.centre[axis] - far + 1;
+      const auto hi = static_cast<std::uint32_t>(cells.centre[axis] + far + 1);
+      cells.lo[axis] = static_cast<std::uint32_t>(lo > 0 ? lo : 0.0f);
+      cells.hi[axis] = hi < size[axis] - 1 ? hi : size[axis] - 1;
+    }
+    return cells;
+  }
+};
+
+inline TierCells makeTier(const GridPlan& plan, int number) {
+  constexpr float kMax = std::numeric_limits<float>::max();
+  TierCells tier{};
+  tier.number = number;
+  tier.first_place = plan.firstPlace(number);
+  tier.scale = powerOfTwo(-(plan.view.finest + number));
+  tier.reach = reachOf(plan.view, number) * tier.scale;
+  tier.half = plan.view.half;
+  tier.count = 1;
+  CellBox all{};
+  cellBox(plan.view, number, {-kMax, -kMax, -kMax}, {kMax, kMax, kMax}, all);
+  for (int axis = 0; axis < 3; ++axis) {
+    tier.size[axis] = all.hi[axis] + 1;
+    tier.count *= tier.size[axis];
+  }
+  return tier;
+}
+
+/// Of a dense tier each cell has a counter; of another one only those that list something.
+inline bool isDense(const TierCells& tier, std::uint32_t spheres) {
+  const std::uint64_t most = 64 + std::uint64_t{8} * spheres, limit = std::uint64_t{1} << 31;
+  return tier.count <= (most < limit ? most : limit);
+}
+
+}  // namespace innersphere::core

@@ -1,0 +1,105 @@
+// What the kernels that build a grid read and write. The build has the paper's steps: give each sphere its
+// level and its place on a curve, sort by these, count what each cell will list, sum the counts up to where
+// each list begins, fill the lists, and hash the cells.
+#pragma once
+
+#include "core/tier_cells.hpp"
+#include "cuda_batch.hpp"
+#include "cuda_memory.hpp"
+
+namespace innersphere::device {
+
+/// All tiers of a grid; their cells numbered through.
+struct Tiers {
+  core::TierCells of[core::kMostLevels];
+  std::uint64_t first[core::kMostLevels + 1];  ///< cell of each; after the last: how many there are
+  int count;
+};
+
+/// Warps take a cluster each, or a part of one: large spheres are in many cells.
+struct Jobs {
+  unsigned first[core::kMostLevels + 1];  ///< of each level; after the last: how many there are
+  unsigned parts[core::kMostLevels];      ///< of a cluster of the level
+  unsigned first_cluster[core::kMostLevels];
+};
+
+struct BuildPlan {
+  core::GridPlan grid;
+  Tiers tiers;
+  Jobs jobs;
+};
+
+/// Whether all tiers may have a counter for each cell.
+bool isDense(const BuildPlan& plan);
+BuildPlan makeBuildPlan(const core::GridPlan& plan);
+
+/// The arrays of a grid, and for how much there is room.
+struct GridArrays {
+  Sphere* spheres;
+  std::uint32_t* ids;
+  std::uint32_t* places;
+  core::Cluster* clusters;
+  Sphere* groups;
+  core::Cell* cells;
+  std::uint32_t* listed;
+  Sphere* entries;
+  Grid* header;
+  std::uint64_t listed_room;
+  std::uint64_t table_room;  ///< a power of two
+};
+
+/// What a build finds out, in memory of the host.
+struct BuildStatus {
+  std::uint64_t cells;   ///< with a list
+  std::uint64_t listed;  ///< places, with what fills up the lists
+  unsigned longest;      ///< list
+};
+
+/// The table is at most half full.
+__host__ __device__ inline std::uint64_t tableSizeFor(std::uint64_t cells) {
+  std::uint64_t size = 1;
+  while (size < 2 * cells) size *= 2;
+  return size;
+}
+
+__host__ __device__ inline bool fits(const BuildStatus& status, const GridArrays& arrays) {
+  return status.listed <= arrays.listed_room && tableSizeFor(status.cells) <= arrays.table_room;
+}
+
+/// Lists longer than that are put in order by sorting them all.
+constexpr unsigned kLongestInOrder = 256;
+
+/// Device memory that is only needed while a grid is built.
+struct BuildScratch {
+  DeviceArray<Sphere> given;              ///< in the order of the packing
+  DeviceArray<std::uint64_t> keys[2];     ///< of spheres, or of what cells list
+  DeviceArray<std::uint32_t> numbers[2];  ///< sorted by them
+  DeviceArray<std::uint32_t> counts;      ///< of cells
+  DeviceArray<std::uint64_t> sums;        ///< of what cells list; see packed()
+  DeviceArray<std::uint32_t> starts;      ///< of the cells' runs in what was sorted
+  DeviceArray<unsigned> longest;          ///< list
+  DeviceArray<unsigned long long> found;  ///< pairs of a cell and a sphere that it lists
+  DeviceArray<std::byte> cub;
+  PinnedArray<BuildStatus> status;
+};
+
+/// Puts the spheres in order, with their clusters. Needs scratch.given. With `count` it also counts what each
+/// cell will list.
+void launchOrder(const BuildPlan& plan, const GridArrays& arrays, bool count, BuildScratch& scratch,
+                 cudaStream_t stream);
+
+/// The lists of dense tiers, from their counts. Where not all fits it does nothing but tell scratch.status.
+void launchFill(const BuildPlan& plan, const GridArrays& arrays, BuildScratch& scratch, cudaStream_t stream);
+
+/// The lists of any tiers, by sorting. The first step waits for the device and gives the status; then room
+/// must be made.
+BuildStatus sortLists(const BuildPlan& plan, const GridArrays& arrays, BuildScratch& scratch,
+                      cudaStream_t stream);
+void launchSorted(const BuildPlan& plan, const GridArrays& arrays, const BuildStatus& status,
+                  BuildScratch& scratch, cudaStream_t stream);
+
+__host__ __device__ inline std::size_t groupCount(std::size_t clusters) {
+  return (clusters + kGroup - 1) / kGroup;
+}
+
+}  // namespace innersphere::device
