@@ -12,9 +12,11 @@
 namespace innersphere::demo {
 namespace {
 
-// Relative to the diagonal: Bullet's own 0.04 m is far too much for bodies of this size. Triangles grow by
-// it, hulls are made smaller first.
-constexpr double kMargin = 1e-3;
+// Margins relative to the diagonal: Bullet's own 0.04 m is far too much for bodies of this size. Triangles
+// grow by theirs, and chains and bowls of them come out best with as little as this; hulls are made smaller
+// first.
+constexpr double kTriangleMargin = 1e-4;
+constexpr double kHullMargin = 1e-3;
 
 void addFaces(const btConvexHullComputer& hull, Surface& surface) {
   const auto first = static_cast<std::uint32_t>(surface.vertices.size());
@@ -41,11 +43,11 @@ BulletShape::BulletShape(const BodyOptions& options, const Solid& solid, const P
                          std::size_t spheres, const btTransform& to_body) {
   const double size = diagonalOf(solid.bounds());
   if (options.shape == BodyShape::gimpact) {
-    addTriangles(packing, to_body, btScalar(kMargin * size));
+    addTriangles(packing, to_body, btScalar(kTriangleMargin * size));
   } else if (options.shape == BodyShape::spheres) {
     addSpheres(packing, spheres, to_body);
   } else {
-    addHulls(solid, options.concavity * size, to_body, btScalar(kMargin * size));
+    addHulls(solid, options.concavity * size, to_body, btScalar(kHullMargin * size));
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 using Polygon = std::vector<Vec3d>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kDeepest = 10;         // halvings: 1,024 parts at most
+constexpr int kDeepest = 8;          // halvings: 256 parts at most
 constexpr int kPairs = 400;          // of points, between which a part is looked at
 constexpr double kAnyWay = kPi / 2;  // [rad] wider sectors are cut across, whatever is in them
 

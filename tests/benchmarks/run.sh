@@ -3,9 +3,9 @@
 #
 #   ./tests/benchmarks/run.sh PART [ARGUMENTS]      for example: packing_benchmark --help
 #
-# PART `query` runs all that measure the query, with plots: see query.sh. Tables go to stdout as Markdown. To keep one:
-# redirect it into tests/benchmarks/results/PART.md. Only what the part needs is built, in build-benchmarks/, and
-# CUDA only where there is a device.
+# PARTs `query` and `trade` run all that belongs to one question, with plots: see query.sh and trade.sh. Tables go to stdout as
+# Markdown. To keep one: redirect it into tests/benchmarks/results/PART.md. Only what the part needs is built, in
+# build-benchmarks/, and CUDA only where there is a device.
 set -euo pipefail
 caller=$PWD
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -18,9 +18,9 @@ if [ -z "$part" ]; then
   exit 2
 fi
 shift
-if [ "$part" = query ]; then
+if [ "$part" = query ] || [ "$part" = trade ]; then
   cd "$caller"
-  exec "$here/query.sh" "$@"
+  exec "$here/$part.sh" "$@"
 fi
 
 # shellcheck disable=SC2086  # a list of names

@@ -1,0 +1,117 @@
+# gnuplot -e "table='FILE.csv'; picture='scenes'; output='FILE.png'" tests/benchmarks/trade.gp
+# Pictures of the table that trade_measure writes: scenes, rates, volume, direction, pressure.
+# Columns: 1 scene, 2 measure, 3 way, 4 pieces, 5 response, 6 estimator, 7 backend, 8 rate, 9 value, 10 error, 11 unit,
+# 12 processor time.
+set datafile separator ","
+rows(condition) = "< awk -F, '!/^#/ && ".condition."' '".table."'"
+# Sorted by pieces, so that lines run from few to many.
+along(condition) = "< awk -F, '!/^#/ && ".condition."' '".table."' | sort -t, -k4,4n -k8,8n"
+have(condition) = system("awk -F, '!/^#/ && ".condition."' '".table."' | wc -l") > 0
+label(n) = n >= 1024 ? sprintf("%dk", int(n / 1024)) : sprintf("%d", n)
+floor_at(x, low) = x > low ? x : low
+
+packing = "#c0392b"; rigid = "#8e44ad"; penalty = "#e67e22"; gimpact = "#2980b9"; spheres = "#7f8c8d"; convex = "#27ae60"
+set terminal pngcairo noenhanced size 1400,900 font "sans,12" lw 1.5
+set output output
+set logscale xy
+set grid back lc rgb "#dddddd"
+set format "%g"
+set key top right samplen 2 opaque font ",10"
+set tics font ",10"
+
+if (picture eq "scenes") {
+  names = "rest chain-hang chain-swing bowls"
+  titles = '"Five solids at rest: worst height, % of the size" "Chain of ten rings: length, % of it" "Swinging chain, 1 s: distance from a fine run, % of the length" "Five bowls: worst height, %"'
+  set multiplot layout 2,2 title "Error over processor time of a step, at 240 steps/s, one core" font ",14"
+  do for [i=1:4] {
+    is = '$1 == "'.word(names, i).'" && ($2 == "worst" || $2 == "trajectory") && $7 == "cpu" && $8 == 240'
+    set title word(titles, i)
+    set ylabel "error, %"
+    set xlabel "processor time of a step, ms"
+    if (i == 1) { set key bottom right } else { unset key }
+    set yrange [1e-3:100]
+    set autoscale x
+    plot along(is.' && $3 == "packing" && $5 == "compliant"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
+      "" using ($12/1e3):(floor_at($10, 1.2e-3)):(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      along(is.' && $3 == "packing" && $5 == "rigid"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 5 lc rgb rigid title "packing, rigid", \
+      along(is.' && $3 == "packing" && $5 == "penalty"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 9 lc rgb penalty title "packing, penalty", \
+      rows(is.' && $3 == "gimpact"') using ($12/1e3):(floor_at($10, 1.2e-3)) with points pt 13 ps 2.2 lc rgb gimpact title "GImpact mesh", \
+      "" using ($12/1e3):(floor_at($10, 1.2e-3)):(sprintf("%d tri", $4)) with labels offset 0,0.9 font ",9" tc rgb gimpact notitle, \
+      along(is.' && $3 == "spheres"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 6 dt 2 lc rgb spheres title "btCompoundShape of spheres", \
+      "" using ($12/1e3):(floor_at($10, 1.2e-3)):(label($4)) with labels offset 0,-0.9 font ",9" tc rgb spheres notitle, \
+      along(is.' && $3 == "convex"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 4 dt 2 lc rgb convex title "btCompoundShape of hulls", \
+      "" using ($12/1e3):(floor_at($10, 1.2e-3)):(label($4)) with labels offset 0,-0.9 font ",9" tc rgb convex notitle
+  }
+  unset multiplot
+}
+
+if (picture eq "rates") {
+  names = "rest chain-hang chain-swing chain-heavy"
+  titles = '"Five solids at rest" "Chain of ten rings, length" "Swinging chain, distance from a fine run" "The same chain, last ring 100 times as heavy"'
+  set multiplot layout 2,2 title "Error over processor time of a simulated second, by steps per second; 1,024 spheres" font ",14"
+  do for [i=1:4] {
+    is = '$1 == "'.word(names, i).'" && ($2 == "worst" || $2 == "trajectory") && $7 == "cpu"'
+    set title word(titles, i)
+    set ylabel "error, %"
+    set xlabel "processor time of a simulated second, ms"
+    if (i == 1) { set key bottom right } else { unset key }
+    set yrange [1e-3:300]
+    x(us, rate) = us * rate / 1e3
+    plot along(is.' && $3 == "packing" && $5 == "compliant" && $4 == 1024') using (x($12, $8)):(floor_at($10, 1.2e-3)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
+      "" using (x($12, $8)):(floor_at($10, 1.2e-3)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      along(is.' && $3 == "packing" && $5 == "rigid" && $4 == 1024') using (x($12, $8)):(floor_at($10, 1.2e-3)) with linespoints pt 5 lc rgb rigid title "packing, rigid", \
+      "" using (x($12, $8)):(floor_at($10, 1.2e-3)):(sprintf("%d", $8)) with labels offset 0,-0.9 font ",9" tc rgb rigid notitle, \
+      along(is.' && $3 == "gimpact"') using (x($12, $8)):(floor_at($10, 1.2e-3)) with linespoints pt 13 ps 1.5 lc rgb gimpact title "GImpact mesh", \
+      "" using (x($12, $8)):(floor_at($10, 1.2e-3)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb gimpact notitle, \
+      along(is.' && $3 == "spheres" && $4 == 256') using (x($12, $8)):(floor_at($10, 1.2e-3)) with linespoints pt 6 dt 2 lc rgb spheres title "btCompoundShape of 256 spheres", \
+      "" using (x($12, $8)):(floor_at($10, 1.2e-3)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb spheres notitle
+  }
+  unset multiplot
+}
+
+if (picture eq "volume" || picture eq "direction") {
+  names = system("awk -F, '$1 ~ /^overlap-/ && $1 != \"overlap-ball\" { print $1 }' '".table."' | uniq | tr '\\n' ' '")
+  set multiplot layout 2,(words(names) + 1) / 2 title picture eq "volume" ? "Error of the overlap volume over the time of a query, where 2 % of a solid is shared" : "Error of the direction of the push over the time of collision detection, where 2 % of a solid is shared" font ",14"
+  do for [i=1:words(names)] {
+    is = '$1 == "'.word(names, i).'" && $2 == "'.picture.'" && $7 == "cpu"'
+    onCuda = '$1 == "'.word(names, i).'" && $2 == "'.picture.'" && $7 == "cuda" && $6 == "volume-true"'
+    set title substr(word(names, i), 9, -1)
+    set xlabel "time, us"
+    set ylabel picture eq "volume" ? "mean |error|, %" : "mean angle, degrees"
+    if (i == 1) { set key bottom left } else { unset key }
+    if (picture eq "volume") {
+      set yrange [0.1:150]
+      plot along(is.' && $6 == "volume-true"') using 12:10 with linespoints pt 7 lw 2 lc rgb packing title "packing, volume-true radii", \
+        "" using 12:10:(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+        along(is.' && $6 == "raw"') using 12:10 with linespoints pt 7 dt 2 lc rgb penalty title "packing, as packed (the paper)", \
+        (have(onCuda) ? along(onCuda) : along(is.' && $6 == "none"')) using 12:10 with linespoints pt 7 lc rgb "black" title (have(onCuda) ? "packing, CUDA" : "")
+    } else {
+      set yrange [0.2:100]
+      plot along(is.' && $6 == "volume-true"') using 12:10 with linespoints pt 7 lw 2 lc rgb packing title "packing, gradient of the volume", \
+        "" using 12:10:(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+        along(is.' && $6 == "raw"') using 12:10 with linespoints pt 7 dt 2 lc rgb penalty title "packing, force of the paper", \
+        rows(is.' && $3 == "gimpact"') using 12:10 with points pt 13 ps 2.2 lc rgb gimpact title "GImpact mesh", \
+        along(is.' && $3 == "spheres"') using 12:10 with linespoints pt 6 dt 2 lc rgb spheres title "compound of spheres", \
+        along(is.' && $3 == "convex"') using 12:10 with linespoints pt 4 dt 2 lc rgb convex title "compound of hulls"
+    }
+  }
+  unset multiplot
+}
+
+if (picture eq "pressure") {
+  set terminal pngcairo noenhanced size 1000,500 font "sans,12" lw 1.5
+  set output output
+  set multiplot layout 1,2 title "How far a body sinks into a plane under a given stiffness: error of the depth" font ",14"
+  set xlabel "processor time of a step with both bodies, us"
+  set ylabel "error, %"
+  do for [body in "box ball"] {
+    is = '$1 == "soft" && $2 == "depth of the '.body.'" && $7 == "cpu"'
+    set title body
+    set yrange [0.01:500]
+    if (body eq "box") { set key top right } else { unset key }
+    plot along(is.' && $6 == "volume-true"') using 12:(floor_at($10, 0.012)) with linespoints pt 7 lw 2 lc rgb packing title "volume-true radii", \
+      "" using 12:(floor_at($10, 0.012)):(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      along(is.' && $6 == "raw"') using 12:(floor_at($10, 0.012)) with linespoints pt 7 dt 2 lc rgb penalty title "as packed (the paper)"
+  }
+  unset multiplot
+}
