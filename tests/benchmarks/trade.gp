@@ -11,7 +11,7 @@ label(n) = n >= 1024 ? sprintf("%dk", int(n / 1024)) : sprintf("%d", n)
 floor_at(x, low) = x > low ? x : low
 
 packing = "#c0392b"; rigid = "#8e44ad"; penalty = "#e67e22"; gimpact = "#2980b9"; spheres = "#7f8c8d"; convex = "#27ae60"
-set terminal pngcairo noenhanced size 1400,900 font "sans,12" lw 1.5
+set terminal pngcairo noenhanced size 1250,820 font "sans,11" lw 1.5
 set output output
 set logscale xy
 set grid back lc rgb "#dddddd"
@@ -20,15 +20,16 @@ set key top right samplen 2 opaque font ",10"
 set tics font ",10"
 
 if (picture eq "scenes") {
-  names = "rest chain-hang chain-swing bowls"
-  titles = '"Five solids at rest: worst height, % of the size" "Chain of ten rings: length, % of it" "Swinging chain, 1 s: distance from a fine run, % of the length" "Five bowls: worst height, %"'
+  names = "chain-hang chain-swing bowls stack"
+  titles = '"Chain of ten rings: its length" "Swinging chain, 1 s: distance from a fine run, % of the length" "Five bowls in each other: worst height" "Stack of ten boxes: height, % of a box"'
   set multiplot layout 2,2 title "Error over processor time of a step, at 240 steps/s, one core" font ",14"
   do for [i=1:4] {
     is = '$1 == "'.word(names, i).'" && ($2 == "worst" || $2 == "trajectory") && $7 == "cpu" && $8 == 240'
+    if (!have(is)) { continue }
     set title word(titles, i)
     set ylabel "error, %"
     set xlabel "processor time of a step, ms"
-    if (i == 1) { set key bottom right } else { unset key }
+    if (i == 1) { set key bottom left } else { unset key }
     set yrange [1e-3:100]
     set autoscale x
     plot along(is.' && $3 == "packing" && $5 == "compliant"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
@@ -51,10 +52,11 @@ if (picture eq "rates") {
   set multiplot layout 2,2 title "Error over processor time of a simulated second, by steps per second; 1,024 spheres" font ",14"
   do for [i=1:4] {
     is = '$1 == "'.word(names, i).'" && ($2 == "worst" || $2 == "trajectory") && $7 == "cpu"'
+    if (!have(is)) { continue }
     set title word(titles, i)
     set ylabel "error, %"
     set xlabel "processor time of a simulated second, ms"
-    if (i == 1) { set key bottom right } else { unset key }
+    if (i == 1) { set key top right } else { unset key }
     set yrange [1e-3:300]
     x(us, rate) = us * rate / 1e3
     plot along(is.' && $3 == "packing" && $5 == "compliant" && $4 == 1024') using (x($12, $8)):(floor_at($10, 1.2e-3)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
@@ -107,6 +109,7 @@ if (picture eq "pressure") {
   do for [body in "box ball"] {
     is = '$1 == "soft" && $2 == "depth of the '.body.'" && $7 == "cpu"'
     set title body
+    if (!have(is)) { continue }
     set yrange [0.01:500]
     if (body eq "box") { set key top right } else { unset key }
     plot along(is.' && $6 == "volume-true"') using 12:(floor_at($10, 0.012)) with linespoints pt 7 lw 2 lc rgb packing title "volume-true radii", \
