@@ -12,6 +12,8 @@ if [ $# -eq 0 ]; then
   sed -n '2,7p' "$0" | cut -c 3- >&2
   exit 2
 fi
+. "$here/../../examples/setup.sh"
+need_packages gnuplot-nox
 out=$1
 shift
 mkdir -p "$out"
@@ -25,7 +27,7 @@ done
 for shape in packing gimpact spheres convex; do
   spheres=1000
   [ $shape = spheres ] && spheres=256
-  "$run" innersphere scene run bowls --shape $shape --spheres $spheres --png "$out/shape-$shape.png" --width 480 \
+  "$run" innersphere scene run bowls --shape $shape --spheres $spheres --concavity 0.01 --png "$out/shape-$shape.png" --width 480 \
     --height 300 --force >/dev/null
 done
 "$here/trade_page.sh" "$out" >"$out/trade.html"

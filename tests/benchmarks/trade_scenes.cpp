@@ -24,17 +24,18 @@ struct Subject {
   double tolerance;  ///< of the scene's own truths, relative to the length that errors are to be relative to
   std::vector<std::size_t> spheres;
   std::vector<double> rates;
+  std::vector<double> concavities;
 };
 
 const std::vector<Subject>& subjects() {
   static const std::vector<Subject> all = {
-      {"rest", 3, 0.005, {64, 256, 1024, 4096, 16384}, {60, 120, 480}},
-      {"soft", 2.5, 0.05, {64, 256, 1024, 4096, 16384}, {}},
-      {"chain-hang", 2, 0.005, {64, 256, 1024, 4096, 16384}, {60, 120, 480}},
-      {"chain-heavy", 2, 0.02, {64, 256, 1024, 4096}, {60, 120, 480}},
-      {"chain-swing", 1, 0, {64, 256, 1024, 4096, 16384}, {60, 120, 480, 960}},
-      {"stack", 3, 0.005, {64, 256, 1024, 4096}, {60, 120, 480}},
-      {"bowls", 4, 0.005, {256, 1024, 4096}, {60, 120}},
+      {"rest", 3, 0.005, {64, 256, 1024, 4096, 16384}, {60, 120, 480}, {0.01, 0.001}},
+      {"soft", 2.5, 0.05, {64, 256, 1024, 4096, 16384}, {}, {}},
+      {"chain-hang", 2, 0.005, {64, 256, 1024, 4096, 16384}, {60, 120, 480}, {0.01, 0.003, 0.001}},
+      {"chain-heavy", 2, 0.02, {64, 256, 1024, 4096}, {60, 120, 480}, {0.01, 0.003, 0.001}},
+      {"chain-swing", 1, 0, {64, 256, 1024, 4096, 16384}, {60, 120, 480, 960}, {0.01, 0.003, 0.001}},
+      {"stack", 3, 0.005, {64, 256, 1024, 4096}, {60, 120, 480}, {0.01}},
+      {"bowls", 4, 0.005, {256, 1024, 4096}, {60, 120}, {0.03, 0.01}},
   };
   return all;
 }
@@ -47,15 +48,16 @@ Way packingOf(std::size_t spheres, Response response, double rate) {
   return way;
 }
 
-void addOtherShapes(double rate, bool all, std::vector<Way>& ways) {
+/// `all`: with every budget, or else with one that does well.
+void addOtherShapes(const Subject& subject, double rate, bool all, std::vector<Way>& ways) {
   Way way;
   way.rate = rate;
   way.shape = BodyShape::gimpact;
   ways.push_back(way);
   way.shape = BodyShape::convex;
-  for (const double concavity : {0.01, 0.003, 0.001}) {
+  for (const double concavity : subject.concavities) {
     way.concavity = concavity;
-    if (all || concavity == 0.003) ways.push_back(way);
+    if (all || concavity == subject.concavities.back()) ways.push_back(way);
   }
   way.shape = BodyShape::spheres;
   for (const std::size_t spheres : {std::size_t{64}, std::size_t{256}, std::size_t{1024}}) {
@@ -86,9 +88,9 @@ std::vector<Way> waysOf(const Subject& subject, const TradeOptions& options) {
     ways.push_back(packingOf(1024, Response::compliant, rate));
     ways.push_back(packingOf(1024, Response::rigid, rate));
   }
-  addOtherShapes(240, true, ways);
-  if (subject.scene != "bowls") addOtherShapes(60, false, ways);
-  if (subject.scene == "chain-swing") addOtherShapes(960, false, ways);
+  addOtherShapes(subject, 240, true, ways);
+  if (subject.scene != "bowls") addOtherShapes(subject, 60, false, ways);
+  if (subject.scene == "chain-swing") addOtherShapes(subject, 960, false, ways);
   return ways;
 }
 
