@@ -23,36 +23,63 @@ struct SurfacePoint {
   std::size_t triangle = 0;
 };
 
-bool cast(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
-          SurfacePoint& point) {
+/// In the frame of a surface.
+struct Ray {
+  Ray(const PackingBody& body, const btVector3& start, const btVector3& way, btScalar length)
+      : from((start * body.world.getBasis()) / body.scale()),
+        direction(way * body.world.getBasis()),
+        reach(length / body.scale()) {}
+  btVector3 from;
+  btVector3 direction;
+  btScalar reach;
+};
+
+SurfacePoint pointOf(const PackingBody& body, const SurfaceTree::Hit& hit, const btVector3& from,
+                     const btVector3& direction) {
   const btMatrix3x3& axes = body.world.getBasis();
-  SurfaceTree::Hit hit;
-  if (!body.shape().surfaceTree().cast((from * axes) / body.scale(), direction * axes, reach / body.scale(),
-                                       hit)) {
-    return false;
-  }
+  SurfacePoint point;
   point.normal = axes * hit.normal;
   point.curvature = hit.curvature / body.scale();
   point.triangle = hit.triangle;
   point.facing = (axes * hit.face).dot(direction);
   point.at = from + direction * (hit.distance * body.scale());
-  return true;
+  return point;
 }
 
-/// Where a ray from inside the solid leaves it.
+/// Where a ray from inside the solid leaves it; through triangle `known`, if it does.
 bool leave(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
-           SurfacePoint& point) {
-  if (!cast(body, from, direction, reach, point) || point.facing < kFacing) return false;
+           std::size_t known, SurfacePoint& point) {
+  const SurfaceTree& tree = body.shape().surfaceTree();
+  const Ray ray(body, from, direction, reach);
+  SurfaceTree::Hit hit;
+  const bool again =
+      known != Gap::kNone && tree.castAt(known, ray.from, ray.direction, ray.reach, hit) && hit.distance > 0;
+  if (!again && !tree.cast(ray.from, ray.direction, ray.reach, hit)) return false;
+  point = pointOf(body, hit, from, direction);
+  if (point.facing < kFacing) return false;
   point.at += direction * body.margin;
   return true;
 }
 
-/// Where the line of a ray enters the solid: ahead of it, or behind if it starts inside.
+/// Where the line of a ray enters the solid: ahead of it, or behind if it starts inside; through triangle
+/// `known`, if it does.
 bool enter(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
-           SurfacePoint& point) {
-  if (!cast(body, from, direction, reach, point)) return false;
-  if (point.facing > 0 && !cast(body, from, -direction, reach, point)) return false;
-  if (btFabs(point.facing) < kFacing) return false;
+           std::size_t known, SurfacePoint& point) {
+  const SurfaceTree& tree = body.shape().surfaceTree();
+  const Ray ray(body, from, direction, reach);
+  SurfaceTree::Hit hit;
+  if (known != Gap::kNone && tree.castAt(known, ray.from, ray.direction, ray.reach, hit)) {
+    point = pointOf(body, hit, from, direction);
+  } else {
+    if (!tree.cast(ray.from, ray.direction, ray.reach, hit)) return false;
+    point = pointOf(body, hit, from, direction);
+    if (point.facing > 0) {
+      if (!tree.cast(ray.from, -ray.direction, ray.reach, hit)) return false;
+      point = pointOf(body, hit, from, -direction);
+      point.facing = -point.facing;
+    }
+  }
+  if (point.facing > -kFacing) return false;
   point.at -= direction * body.margin;
   return true;
 }
@@ -94,7 +121,7 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   const btVector3 from = a_.centreOf(touch.sphere) + shift;
   const btVector3 towards_b = -touch.normal;
   SurfacePoint on_a;
-  if (!leave(a_, from, towards_b, 2 * (radius + a_.slack), on_a)) return false;
+  if (!leave(a_, from, towards_b, 2 * (radius + a_.slack), gap.triangle_a, on_a)) return false;
   gap.on_a = on_a.at;
   gap.normal_a = on_a.normal;
   gap.curvature_a = on_a.curvature;
@@ -153,7 +180,9 @@ bool PackingGauge::measure(std::size_t index, const btVector3& direction, const 
   const btVector3 apart = other.origin() - own.origin();
   const btScalar reach = 2 * (radius + a_.slack + b_.slack);
   SurfacePoint left, entered;
-  if (!leave(own, from, way, reach, left) || !enter(other, from - apart, way, reach, entered)) return false;
+  if (!leave(own, from, way, reach, of_a ? gap.triangle_a : gap.triangle_b, left) ||
+      !enter(other, from - apart, way, reach, of_a ? gap.triangle_b : gap.triangle_a, entered))
+    return false;
   const btVector3 offset = own.origin() - a_.origin();
   left.at += offset;
   entered.at += offset + apart;

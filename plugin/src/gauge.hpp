@@ -21,8 +21,10 @@ struct Gap {
   btVector3 normal_b{0, 0, 0};  ///< unit, into B: equal to normal_a where flat faces meet
   btScalar curvature_a = 0;     ///< [1/m], positive where A is convex, 0 where it is flat
   btScalar curvature_b = 0;
-  std::size_t triangle_a = 0;  ///< of A's surface
-  std::size_t triangle_b = 0;  ///< of B's, if B is a packing
+  std::size_t triangle_a = kNone;  ///< of A's surface
+  std::size_t triangle_b = kNone;  ///< of B's, if B is a packing
+
+  static constexpr std::size_t kNone = ~std::size_t(0);
 };
 
 /// Measures along a line through the centre of a sphere in contact.
@@ -31,7 +33,8 @@ class Gauge {
   virtual ~Gauge() = default;
   /// At contact `index` of the list that the gauge was made for, along `direction` from A to B (a shape that
   /// is no packing chooses its own), with the line moved sideways by `shift`. False if the line does not pass
-  /// both surfaces near there.
+  /// both surfaces near there. The triangles that `gap` comes with are taken if the line passes them; all are
+  /// looked at only where they are kNone, or missed.
   virtual bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                        Gap& gap) const = 0;
   /// The direction from A to B in which the sphere of a contact is nearest to the other solid's surface.

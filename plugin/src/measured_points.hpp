@@ -3,22 +3,12 @@
 
 #include <vector>
 
+#include "candidates.hpp"
 #include "contact_patch.hpp"
 #include "gauge.hpp"
-#include "measure.hpp"
-#include "patch_moments.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
-
-struct PatchContacts {
-  const std::vector<SphereContact>& contacts;
-  const std::vector<std::size_t>& indices;  ///< those of the patch
-  const PatchMoments& moments;
-  const std::vector<std::uint64_t>& old_ids;  ///< points of the step before
-  const Gauge& gauge;
-  const Measure& measure;
-};
 
 /// A point and the part of the patch's area that it stands for.
 struct MeasuredPoint {
@@ -26,8 +16,10 @@ struct MeasuredPoint {
   btScalar area;  ///< [m^2]
 };
 
-/// Appends those contacts of the patch that are on, or near, both surfaces.
-void measurePoints(const PatchContacts& from, std::vector<MeasuredPoint>& found);
+/// Appends those contacts of the candidates' patch `p` that are on, or near, both surfaces: not further apart
+/// than `separation` [m]. Leaves the lines that they were measured along in the candidates.
+void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, btScalar separation,
+                   std::vector<MeasuredPoint>& found);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

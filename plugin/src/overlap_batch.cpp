@@ -16,18 +16,68 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
+/// In units of the spacing: bodies that have moved less since a query have the same candidates for contacts,
+constexpr btScalar kMeasureAgain = btScalar(0.25);
+/// and less since they were measured, the same contacts. The error is of second order: a hundredth of this.
+constexpr btScalar kCarry = btScalar(0.02);
+
 bool same(const btVector3& a, const btVector3& b) {
   return a.x() == b.x() && a.y() == b.y() && a.z() == b.z();
-}
-
-bool same(const btTransform& a, const btTransform& b) {
-  return same(a.getOrigin(), b.getOrigin()) && same(a.getBasis()[0], b.getBasis()[0]) &&
-         same(a.getBasis()[1], b.getBasis()[1]) && same(a.getBasis()[2], b.getBasis()[2]);
 }
 
 /// By how much spheres without volume-true radii are enlarged to fill their solid [m].
 btScalar gapsOf(const PackingShape& shape, const Prefix& prefix) {
   return prefix.volume_true == nullptr ? prefix.recess() * shape.getLocalScaling().x() : btScalar(0);
+}
+
+struct Bodies {
+  explicit Bodies(const PackingContact& contact)
+      : a(*contact.a.shape, contact.a.transform, Estimator::raw, contact.measure->slack_a,
+          contact.measure->prefix_a),
+        b(*contact.b.shape, contact.b.transform, Estimator::raw, contact.measure->slack_b,
+          contact.measure->prefix_b) {}
+  PackingBody a;
+  PackingBody b;
+};
+
+/// Leaves those of `contacts` in the result of a search that are candidates.
+void keepCandidates(const std::vector<SphereContact>& contacts, std::size_t count_a, SearchResult& search) {
+  constexpr std::size_t kNone = ~std::size_t(0);
+  static thread_local std::vector<std::size_t> place;
+  place.assign(contacts.size(), kNone);
+  for (std::size_t i : search.candidates.indices) place[i] = 0;
+  search.contacts.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (i == count_a) search.count_a = search.contacts.size();
+    if (place[i] == kNone) continue;
+    place[i] = search.contacts.size();
+    search.contacts.push_back(contacts[i]);
+  }
+  if (count_a == contacts.size()) search.count_a = search.contacts.size();
+  for (std::size_t& i : search.candidates.indices) i = place[i];
+}
+
+/// Whether surfaces are near each other at any of the candidates.
+bool measureOnSurfaces(const Bodies& bodies, PackingContact& contact) {
+  SearchResult& search = contact.search;
+  const PackingGauge gauge(bodies.a, bodies.b, search.contacts, search.count_a);
+  return measurePatches(search.candidates, gauge, *contact.measure, contact.patches);
+}
+
+/// The patches were made for where the bodies are now.
+void finish(PackingContact& contact) {
+  contact.measured = contact.patches;
+  contact.measured_at = {contact.a.transform, contact.b.transform};
+  contact.valid = true;
+}
+
+/// To where the bodies are now.
+void carryOn(PackingContact& contact) {
+  const Placed now{contact.a.transform, contact.b.transform};
+  if (contact.measured_at.a == now.a && contact.measured_at.b == now.b) return;
+  const auto origin = [&](const btTransform& a) { return contact.a.shape->impl().toWorld(a).getOrigin(); };
+  carry(contact.measured, contact.measured_at, origin(contact.measured_at.a), now, origin(now.a),
+        contact.patches);
 }
 
 }  // namespace
@@ -48,9 +98,9 @@ PackingSide::PackingSide(const btCollisionObjectWrapper& wrapper, const PackingS
   }
 }
 
-bool PackingSide::operator==(const PackingSide& other) const {
+bool PackingSide::isAlike(const PackingSide& other) const {
   return object == other.object && shape == other.shape && margin == other.margin && prefix == other.prefix &&
-         same(scaling, other.scaling) && same(transform, other.transform);
+         same(scaling, other.scaling);
 }
 
 bool PackingSide::refresh() {
@@ -96,9 +146,13 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
   finishLaunch();
   if (contact.separation != separation) contact.valid = false;
   contact.separation = separation;
-  if (isStale(contact, a, b)) {
-    contact.a = a;
-    contact.b = b;
+  const Age age = ageOf(contact, a, b);
+  contact.a = a;
+  contact.b = b;
+  if (age == Age::current) {
+    carryOn(contact);
+  } else {
+    contact.searching = age == Age::stale;
     stale_.assign(1, &contact);
     gatherStale(&contact);
     try {
@@ -162,10 +216,20 @@ BatchCount OverlapBatch::count() const {
   return count_;
 }
 
-/// Also if the bodies have become faster: contacts are wanted from further away then.
-bool OverlapBatch::isStale(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const {
-  return !contact.valid || !(contact.a == a) || !(contact.b == b) ||
-         measureOf(contact).separation > contact.measure->separation;
+OverlapBatch::Age OverlapBatch::ageOf(const PackingContact& contact, const PackingSide& a,
+                                      const PackingSide& b) const {
+  if (!contact.valid || !contact.a.isAlike(a) || !contact.b.isAlike(b)) return Age::stale;
+  const Placed now{a.transform, b.transform};
+  const bool at_rest = contact.search.at.a == now.a && contact.search.at.b == now.b;
+  const btScalar size_a = a.shape->getAngularMotionDisc(), size_b = b.shape->getAngularMotionDisc();
+  const Measure& measure = *contact.measure;
+  const btScalar searched = motionBetween(contact.search.at, now, size_a, size_b);
+  // Also if the bodies have become faster: contacts are wanted from further away then.
+  if (neededSeparation(contact) + searched > measure.separation) return Age::stale;
+  if (at_rest) return Age::current;
+  if (!measure.on_surfaces || contact.deep || searched > kMeasureAgain * measure.spacing) return Age::stale;
+  const btScalar measured = motionBetween(contact.measured_at, now, size_a, size_b);
+  return measured <= kCarry * measure.spacing ? Age::current : Age::moved;
 }
 
 /// Appends all pairs but `asked`.
@@ -174,7 +238,10 @@ void OverlapBatch::gatherStale(const PackingContact* asked) {
     if (other == asked || !other->wanted) continue;
     if (!other->a.object->isActive() && !other->b.object->isActive()) continue;
     PackingSide a = other->a, b = other->b;
-    if (!a.refresh() || !b.refresh() || !isStale(*other, a, b)) continue;
+    if (!a.refresh() || !b.refresh()) continue;
+    const Age age = ageOf(*other, a, b);
+    if (age == Age::current) continue;
+    other->searching = age == Age::stale;
     other->a = a;
     other->b = b;
     other->wanted = false;
@@ -183,12 +250,16 @@ void OverlapBatch::gatherStale(const PackingContact* asked) {
 }
 
 void OverlapBatch::prepareStale() {
-  ++count_.launches;
-  count_.pairs += stale_.size();
+  std::size_t searching = 0;
   for (PackingContact* contact : stale_) {
     contact->valid = false;
+    if (!contact->searching) continue;
     contact->measure.emplace(measureOf(*contact));
+    ++searching;
   }
+  count_.launches += searching > 0 ? 1 : 0;
+  count_.pairs += searching;
+  count_.measured += stale_.size() - searching;
 }
 
 void OverlapBatch::runStale() {
@@ -198,6 +269,7 @@ void OverlapBatch::runStale() {
 }
 
 void OverlapBatch::runFurtherPasses() {
+  measureAgain();
   run(Pass::touch);
   run(Pass::deep);
   run(Pass::volumes);
@@ -227,6 +299,7 @@ void OverlapBatch::takeResults(Pass pass) {
 }
 
 bool OverlapBatch::takesPart(Pass pass, const PackingContact& contact) const {
+  if (!contact.searching) return false;
   if (!contact.measure->on_surfaces) return pass == Pass::volumes;
   switch (pass) {
     case Pass::surfaces:
@@ -253,9 +326,15 @@ QueryOptions OverlapBatch::optionsOf(Pass pass) const {
   }
 }
 
+btScalar OverlapBatch::neededSeparation(const PackingContact& contact) const {
+  return btMax(contact.separation, sweepOf(*contact.a.object, *contact.b.object, contact.time_step));
+}
+
 Measure OverlapBatch::measureOf(const PackingContact& contact) const {
-  const btScalar sweep = sweepOf(*contact.a.object, *contact.b.object, contact.time_step);
-  return Measure(options_, *contact.a.shape, *contact.b.shape, btMax(contact.separation, sweep));
+  const PackingShape &a = *contact.a.shape, &b = *contact.b.shape;
+  const btScalar needed = neededSeparation(contact);
+  // Further than that, so that what is found is good for the next steps too.
+  return Measure(options_, a, b, needed + kMeasureAgain * Measure(options_, a, b, 0).spacing);
 }
 
 PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) const {
@@ -297,14 +376,15 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
 
   const Measure& measure = *contact.measure;
   const btMatrix3x3& reference = contact.a.transform.getBasis();
+  contact.search.at = {contact.a.transform, contact.b.transform};
   if (pass == Pass::surfaces) {
-    const PackingBody a(*contact.a.shape, contact.a.transform, Estimator::raw, measure.slack_a,
-                        measure.prefix_a);
-    const PackingBody b(*contact.b.shape, contact.b.transform, Estimator::raw, measure.slack_b,
-                        measure.prefix_b);
-    const PackingGauge gauge(a, b, contacts, count_a);
+    const Bodies bodies(contact);
+    SearchResult& search = contact.search;
+    findCandidates(contacts, PackingGauge(bodies.a, bodies.b, contacts, count_a), measure.spacing, reference,
+                   contact.patches, search.candidates);
+    keepCandidates(contacts, count_a, search);
     contact.near = !contacts.empty();
-    contact.touching = measurePatches(contacts, gauge, measure, reference, contact.patches);
+    contact.touching = measureOnSurfaces(bodies, contact);
     contact.deep = false;
   } else if (pass == Pass::deep) {
     gradientPatch(contacts, measure.spacing, reference, contact.patches);
@@ -312,7 +392,19 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
     volumePatches(contacts, measure.spacing, reference, contact.patches);
     contact.overlap = result_.overlaps[index];
   }
-  contact.valid = true;
+  finish(contact);
+}
+
+/// Those that moved too little for a query.
+void OverlapBatch::measureAgain() {
+  tbb::parallel_for(std::size_t(0), stale_.size(), [&](std::size_t i) {
+    PackingContact& contact = *stale_[i];
+    if (contact.searching) return;
+    turn(contact.a.transform.getBasis() * contact.measured_at.a.getBasis().transpose(),
+         contact.search.candidates);
+    contact.touching = measureOnSurfaces(Bodies(contact), contact);
+    finish(contact);
+  });
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

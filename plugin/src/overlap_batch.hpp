@@ -9,10 +9,12 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
+#include "candidates.hpp"
 #include "contact_patch.hpp"
 #include "innersphere/contact_options.hpp"
 #include "innersphere/query.hpp"
 #include "measure.hpp"
+#include "motion.hpp"
 #include "packing_body.hpp"
 
 namespace innersphere {
@@ -22,7 +24,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 struct PackingSide {
   PackingSide(const btCollisionObjectWrapper& wrapper, const PackingShape& packing_shape);
 
-  bool operator==(const PackingSide& other) const;
+  /// The same but for where it is.
+  bool isAlike(const PackingSide& other) const;
   /// To where the body is now. False if that cannot be known: a changed shape, a body at NaN, a compound of
   /// compounds of compounds ...
   bool refresh();
@@ -39,7 +42,15 @@ struct PackingSide {
   std::array<int, kMaxNesting> child_of{};  ///< which child of them, innermost first
 };
 
-/// The contact of two packings, kept until one of them moves.
+/// What a query leaves to be measured, as long as the bodies do not move much against each other.
+struct SearchResult {
+  Placed at;
+  std::vector<SphereContact> contacts;  ///< only the candidates
+  std::size_t count_a = 0;              ///< of A's spheres, which come first
+  Candidates candidates;                ///< directions as when they were measured last
+};
+
+/// The contact of two packings.
 struct PackingContact {
   PackingContact(const PackingSide& first, const PackingSide& second) : a(first), b(second) {}
 
@@ -48,25 +59,31 @@ struct PackingContact {
   btScalar separation = 0;         ///< asked for; see Measure
   btScalar time_step = 0;          ///< within which contacts may close [s]
   std::optional<Measure> measure;  ///< of the last query
-  std::vector<ContactPatch> patches;
-  Overlap overlap;        ///< only where depth is not measured on the surfaces
-  bool valid = false;     ///< patches belong to the transforms in a and b
-  bool near = false;      ///< enlarged spheres overlap
-  bool touching = false;  ///< the surfaces are near each other
-  bool deep = false;      ///< they are not, and yet the solids overlap
-  bool wanted = false;    ///< asked for since it was in a batch
+  SearchResult search;
+  Placed measured_at;
+  std::vector<ContactPatch> measured;  ///< there
+  std::vector<ContactPatch> patches;   ///< for the transforms in a and b
+  Overlap overlap;                     ///< only where depth is not measured on the surfaces
+  bool valid = false;                  ///< all of the above belongs together
+  bool searching = false;              ///< in the present launch
+  bool near = false;                   ///< enlarged spheres overlap
+  bool touching = false;               ///< the surfaces are near each other
+  bool deep = false;                   ///< they are not, and yet the solids overlap
+  bool wanted = false;                 ///< asked for since it was in a batch
 };
 
 /// What a batch has done since it was made.
 struct BatchCount {
-  std::size_t launches = 0;  ///< of queries for all pairs that were out of date
+  std::size_t launches = 0;  ///< of queries for all pairs that needed one
   std::size_t pairs = 0;     ///< that were in them
+  std::size_t measured = 0;  ///< pairs that were measured again without a query
 };
 
 /// Bullet asks for one pair at a time. The first one that is out of date makes one query for all pairs that
-/// were asked for lately and have moved, so that a step costs one launch, and one more for each pair that is
-/// new. A launch is up to three queries, one after the other: see Pass. Safe to use from several threads at
-/// once.
+/// were asked for lately and need one, so that a step costs one launch, and one more for each pair that is
+/// new. A launch is up to three queries, one after the other: see Pass. Pairs that have moved less than what a
+/// query leaves room for are measured again where it found contact, and those that have hardly moved at all
+/// take their contacts along. Safe to use from several threads at once.
 class OverlapBatch {
  public:
   /// Error no_device if the options ask for CUDA by name and there is none.
@@ -92,7 +109,12 @@ class OverlapBatch {
 
  private:
   QueryContext& context();
-  bool isStale(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
+  enum class Age {
+    current,  ///< as measured, or so nearly that the patches only need to be carried along
+    moved,    ///< the candidates need to be measured again
+    stale,    ///< needs a query
+  };
+  Age ageOf(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
   void gatherStale(const PackingContact* asked);
   void prepareStale();
   void runStale();
@@ -109,9 +131,11 @@ class OverlapBatch {
   void takeResults(Pass pass);
   bool takesPart(Pass pass, const PackingContact& contact) const;
   QueryOptions optionsOf(Pass pass) const;
+  btScalar neededSeparation(const PackingContact& contact) const;
   Measure measureOf(const PackingContact& contact) const;
   PairQuery makeQuery(Pass pass, const PackingContact& contact) const;
   void takeResult(Pass pass, std::size_t index, PackingContact& contact) const;
+  void measureAgain();
 
   mutable std::mutex mutex_;
   BatchCount count_;

@@ -75,6 +75,13 @@ const std::vector<SphereContact>& aimed(const std::vector<SphereContact>& contac
   return result;
 }
 
+void collectIds(const std::vector<ContactPatch>& patches, std::vector<std::uint64_t>& ids) {
+  ids.clear();
+  for (const ContactPatch& patch : patches) {
+    for (int i = 0; i < patch.count; ++i) ids.push_back(patch.points[i].id);
+  }
+}
+
 void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vector<ContactPatch>& patches) {
   if (!(moments.area > 0)) return;
   ContactPatch patch;
@@ -87,23 +94,32 @@ void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vecto
 
 }  // namespace
 
-bool measurePatches(const std::vector<SphereContact>& contacts, const Gauge& gauge, const Measure& measure,
-                    const btMatrix3x3& reference, std::vector<ContactPatch>& patches) {
+void findCandidates(const std::vector<SphereContact>& contacts, const Gauge& gauge, btScalar spacing,
+                    const btMatrix3x3& reference, const std::vector<ContactPatch>& patches,
+                    Candidates& candidates) {
   static thread_local std::vector<std::uint64_t> old_ids;
-  static thread_local std::vector<MeasuredPoint> found;
-  old_ids.clear();
-  for (const ContactPatch& old : patches) {
-    for (int i = 0; i < old.count; ++i) old_ids.push_back(old.points[i].id);
-  }
+  collectIds(patches, old_ids);
+  candidates.indices.clear();
+  candidates.lines.clear();
+  candidates.patches.clear();
   const Sorted* sorted = &sortIntoPatches(contacts, reference);
   if (sorted->patches.empty() && !contacts.empty())
     sorted = &sortIntoPatches(aimed(contacts, gauge), reference);
-  found.clear();
   for (std::size_t p = 0; p < sorted->moments.size(); ++p) {
     const PatchMoments& moments = sorted->moments[p];
     if (moments.area > 0)
-      measurePoints({contacts, sorted->members[p], moments, old_ids, gauge, measure}, found);
+      pickCandidates({contacts, sorted->members[p], moments, old_ids, gauge, spacing}, candidates);
   }
+}
+
+bool measurePatches(Candidates& candidates, const Gauge& gauge, const Measure& measure,
+                    std::vector<ContactPatch>& patches) {
+  static thread_local std::vector<std::uint64_t> old_ids;
+  static thread_local std::vector<MeasuredPoint> found;
+  collectIds(patches, old_ids);
+  found.clear();
+  for (std::size_t p = 0; p < candidates.patches.size(); ++p)
+    measurePoints(candidates, p, gauge, measure.separation, found);
   selectPatches(found, old_ids, measure.spacing, patches);
   return std::any_of(found.begin(), found.end(),
                      [&](const MeasuredPoint& m) { return m.point.depth > -measure.spacing; });

@@ -74,6 +74,7 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
                                                         btScalar separation) {
   static thread_local std::vector<Touch> touches;
   static thread_local std::vector<SphereContact> contacts;
+  static thread_local Candidates candidates;
   overlap_.reset();
   if (!surface_) return patches_;
   const Measure measure(options, packing_, other_, separation);
@@ -90,8 +91,9 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
   if (measure.on_surfaces) {
     caps(a.slack);
     assert(contacts.size() == touches.size());  // the gauge counts on it
-    if (measurePatches(contacts, SurfaceGauge(a, touches), measure, packing.getBasis(), patches_))
-      return patches_;
+    const SurfaceGauge gauge(a, touches);
+    findCandidates(contacts, gauge, measure.spacing, packing.getBasis(), patches_, candidates);
+    if (measurePatches(candidates, gauge, measure, patches_)) return patches_;
     caps(0);
     if (contacts.empty()) return patches_;
   } else {

@@ -4,6 +4,8 @@
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
 
+#include "vec.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -56,13 +58,37 @@ bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScal
   hit.triangle = static_cast<std::size_t>(nearest.triangle);
   hit.distance = nearest.m_hitFraction * length;
   hit.face = nearest.face.normalized();
+  complete(from, direction, hit);
+  return true;
+}
+
+bool SurfaceTree::castAt(std::size_t triangle, const btVector3& from, const btVector3& direction,
+                         btScalar length, Hit& hit) const {
+  btVector3 v[3];
+  for (int k = 0; k < 3; ++k) v[k] = toBullet(surface_.vertices[surface_.triangles[triangle][k]]) - from;
+  const btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
+  const btScalar along = normal.dot(direction), height = normal.dot(v[0]);
+  if (!(btFabs(height) < length * btFabs(along))) return false;
+  hit.distance = height / along;
+  const btVector3 at = direction * hit.distance;
+  for (int k = 0; k < 3; ++k) {
+    const btVector3& corner = v[k];
+    if ((v[(k + 1) % 3] - corner).cross(at - corner).dot(normal) < 0) return false;
+  }
+  hit.triangle = triangle;
+  hit.face = normal.normalized();
+  complete(from, direction, hit);
+  return true;
+}
+
+/// What the curved surface is like where its triangle is hit.
+void SurfaceTree::complete(const btVector3& from, const btVector3& direction, Hit& hit) const {
   const SmoothNormals& normals = normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
   hit.curvature = normals.curvature(hit.triangle);
   const SmoothNormals::Place place = normals.at(hit.triangle, from + direction * hit.distance);
   hit.normal = place.normal;
   const btScalar facing = hit.face.dot(direction);
   if (btFabs(facing) > kGrazing) hit.distance += place.bulge / facing;
-  return true;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

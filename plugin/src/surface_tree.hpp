@@ -36,8 +36,13 @@ class SurfaceTree {
   };
   /// `direction` is a unit vector. False if nothing is met within `length`.
   bool cast(const btVector3& from, const btVector3& direction, btScalar length, Hit& hit) const;
+  /// The same for one triangle and the line on both sides of `from`: the distance is negative behind it.
+  bool castAt(std::size_t triangle, const btVector3& from, const btVector3& direction, btScalar length,
+              Hit& hit) const;
 
  private:
+  void complete(const btVector3& from, const btVector3& direction, Hit& hit) const;
+
   const Surface& surface_;
   Lazy<SmoothNormals> normals_;
   std::unique_ptr<btTriangleIndexVertexArray> triangles_;

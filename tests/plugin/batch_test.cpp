@@ -51,7 +51,7 @@ TEST_P(Batch, AStepIsOneLaunchForAllPairs) {
   EXPECT_EQ(countOf(world).pairs, 4u);
   for (int i = 0; i < 5; ++i) {
     for (const auto& body : world.bodies) {  // all move in every step
-      if (!body->isStaticObject()) body->setLinearVelocity(btVector3(btScalar(0.1), 0, 0));
+      if (!body->isStaticObject()) body->setLinearVelocity(btVector3(1, 0, 0));
     }
     const BatchCount before = countOf(world);
     world.run(1.0 / 60);
@@ -104,8 +104,8 @@ TEST_P(Batch, ChildrenOfCompoundsTakePart) {
   world.run(0.1);
   EXPECT_GT(world.contactCount(), 0);
   for (int i = 0; i < 5; ++i) {
-    body.setLinearVelocity(btVector3(btScalar(0.1), 0, 0));
-    body.setAngularVelocity(btVector3(0, 0, btScalar(0.1)));
+    body.setLinearVelocity(btVector3(1, 0, 0));
+    body.setAngularVelocity(btVector3(0, 0, 1));
     const BatchCount before = countOf(world);
     world.run(1.0 / 60);
     EXPECT_EQ(countOf(world).launches, before.launches + 1);
