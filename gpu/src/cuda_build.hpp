@@ -16,17 +16,25 @@ struct Tiers {
   int count;
 };
 
-/// Warps take a cluster each, or a part of one: large spheres are in many cells.
+/// A warp takes a cluster and a tier, or a part of that: large spheres are in many cells. The largest come
+/// first, as they take longest.
 struct Jobs {
-  unsigned first[core::kMostLevels + 1];  ///< of each level; after the last: how many there are
-  unsigned parts[core::kMostLevels];      ///< of a cluster of the level
+  unsigned end[core::kMostLevels];  ///< of the jobs of each level and of all above it
+  unsigned of_cluster[core::kMostLevels];
   unsigned first_cluster[core::kMostLevels];
+  /// For a tier, by how many levels the cluster's is above the first one that the tier lists.
+  unsigned parts[core::kMostLevels];
+  unsigned all;
 };
 
 struct BuildPlan {
   core::GridPlan grid;
   Tiers tiers;
   Jobs jobs;
+  /// Spheres whose keys have the same upper bits come into one bucket first. There are about twice as many of
+  /// them as spheres.
+  int bucket_shift;
+  std::uint32_t buckets;
 };
 
 /// Whether all tiers may have a counter for each cell.
@@ -57,9 +65,13 @@ struct BuildStatus {
 
 /// The table is at most half full.
 __host__ __device__ inline std::uint64_t tableSizeFor(std::uint64_t cells) {
+#if defined(__CUDA_ARCH__)
+  return std::uint64_t{1} << (64 - __clzll(static_cast<long long>(2 * cells - 1)));
+#else
   std::uint64_t size = 1;
   while (size < 2 * cells) size *= 2;
   return size;
+#endif
 }
 
 __host__ __device__ inline bool fits(const BuildStatus& status, const GridArrays& arrays) {
@@ -72,19 +84,19 @@ constexpr unsigned kLongestInOrder = 256;
 /// Device memory that is only needed while a grid is built.
 struct BuildScratch {
   DeviceArray<Sphere> given;              ///< in the order of the packing
-  DeviceArray<std::uint64_t> keys[2];     ///< of spheres, or of what cells list
-  DeviceArray<std::uint32_t> numbers[2];  ///< sorted by them
-  DeviceArray<std::uint32_t> counts;      ///< of cells
+  DeviceArray<std::uint64_t> keys[2];     ///< of spheres, or of cells
+  DeviceArray<std::uint32_t> numbers[2];  ///< that go with them
+  DeviceArray<std::uint32_t> counts;      ///< of buckets of spheres, then of cells; the longest list
+  DeviceArray<std::uint32_t> starts;      ///< of buckets, or of cells in what was sorted
   DeviceArray<std::uint64_t> sums;        ///< of what cells list; see packed()
-  DeviceArray<std::uint32_t> starts;      ///< of the cells' runs in what was sorted
   DeviceArray<unsigned> longest;          ///< list
   DeviceArray<unsigned long long> found;  ///< pairs of a cell and a sphere that it lists
   DeviceArray<std::byte> cub;
   PinnedArray<BuildStatus> status;
 };
 
-/// Puts the spheres in order, with their clusters. Needs scratch.given. With `count` it also counts what each
-/// cell will list.
+/// Puts the spheres in order, with their clusters, and clears the table. Needs scratch.given. With `count` it
+/// also counts what each cell will list.
 void launchOrder(const BuildPlan& plan, const GridArrays& arrays, bool count, BuildScratch& scratch,
                  cudaStream_t stream);
 

@@ -6,84 +6,87 @@
 
 namespace innersphere::device {
 
-/// A cluster for a warp, or a part of it.
+/// A cluster and a tier for a warp, or a part of these.
 struct ClusterJob {
   unsigned cluster, part, parts;
+  int tier;
   std::uint32_t first, count;  ///< spheres
 };
 
 /// False if there is no such job.
 inline __device__ bool clusterJob(const BuildPlan& plan, unsigned number, ClusterJob& job) {
   const Jobs& jobs = plan.jobs;
-  int level = 0;
-  while (level < plan.grid.levels && number >= jobs.first[level + 1]) ++level;
-  if (level == plan.grid.levels) return false;
-  job.parts = jobs.parts[level];
-  const unsigned at = number - jobs.first[level], of_level = at / job.parts;
-  job.part = at % job.parts;
+  if (number >= jobs.all) return false;
+  int level = plan.grid.levels - 1;
+  while (number >= jobs.end[level]) --level;
+  const unsigned at = number - (level + 1 < plan.grid.levels ? jobs.end[level + 1] : 0);
+  const unsigned of_level = at / jobs.of_cluster[level];
   job.cluster = jobs.first_cluster[level] + of_level;
   job.first = plan.grid.level_first[level] + of_level * core::kClusterSize;
   job.count = min(core::kClusterSize, plan.grid.level_first[level + 1] - job.first);
-  return true;
+  job.part = at % jobs.of_cluster[level];
+  for (job.tier = 0;; ++job.tier) {
+    job.parts = jobs.parts[plan.grid.levelsAbove(level, job.tier)];
+    if (job.part < job.parts) return true;
+    job.part -= job.parts;
+  }
 }
 
-/// Calls f(tier, x, y, z, place) for each cell that lists one of the spheres of a job; `sphere` is the
-/// lane's, relative to the centre. Lanes take spheres or, where these are in many cells, cells.
-template <typename F>
+constexpr unsigned kTogether = 8;  ///< cells that a lane looks at together, so that their atomics overlap
+
+/// Calls f(cells, mask) for some of the cells near a sphere, from number `from` on, with those that list it
+/// in the mask.
+template <typename Cell, typename F>
+__device__ __forceinline__ void someCells(const core::TierCells& tier, const core::CellsNear& near,
+                                          unsigned from, const F& f) {
+  const std::uint32_t nx = near.hi[0] - near.lo[0] + 1, ny = near.hi[1] - near.lo[1] + 1, row = from / nx;
+  std::uint32_t x = near.lo[0] + from % nx, y = near.lo[1] + row % ny, z = near.lo[2] + row / ny;
+  Cell cells[kTogether];
+  unsigned mask = 0;
+#pragma unroll
+  for (unsigned k = 0; k < kTogether; ++k) {
+    cells[k] = (static_cast<Cell>(z) * tier.size[1] + y) * tier.size[0] + x;
+    if (z <= near.hi[2] && !near.isFar(x, y, z)) mask |= 1u << k;
+    const bool next_row = ++x > near.hi[0];
+    x = next_row ? near.lo[0] : x;
+    y += next_row ? 1 : 0;
+    const bool next_layer = y > near.hi[1];
+    y = next_layer ? near.lo[1] : y;
+    z += next_layer ? 1 : 0;
+  }
+  f(cells, mask);
+}
+
+/// Calls f(cells, mask, place) for all cells of the job's tier that list one of its spheres, kTogether at a
+/// time: their numbers and a bit for each that counts. `sphere` is the lane's, relative to the centre. Lanes
+/// share all cells, as some spheres are in many.
+template <typename Cell, typename F>
 __device__ void forCells(const Tiers& tiers, const ClusterJob& job, const Sphere& sphere, unsigned lane,
                          core::CellsNear (&shared)[kWarp], const F& f) {
-  constexpr unsigned kFew = 32;
-  const std::uint32_t place = job.first + lane;
-  for (int t = 0; t < tiers.count; ++t) {
-    const core::TierCells& tier = tiers.of[t];
-    const bool listed = lane < job.count && place >= tier.first_place;
-    if (!__any_sync(kAll, listed)) return;  // nor do later tiers list them
-    core::CellsNear near{};
-    std::uint64_t cells = 0;
-    if (listed) {
-      near = tier.near(sphere);
-      cells = 1;
-      for (int axis = 0; axis < 3; ++axis) cells *= near.hi[axis] - near.lo[axis] + 1;
-    }
-    if (__all_sync(kAll, cells <= kFew)) {
-      if (!listed || job.part != 0) continue;
-      for (std::uint32_t z = near.lo[2]; z <= near.hi[2]; ++z) {
-        for (std::uint32_t y = near.lo[1]; y <= near.hi[1]; ++y) {
-          for (std::uint32_t x = near.lo[0]; x <= near.hi[0]; ++x) {
-            if (!near.isFar(x, y, z)) f(tier, tiers.first[t], x, y, z, place);
-          }
-        }
-      }
-      continue;
-    }
-    std::uint64_t begin = cells;
-    for (unsigned step = 1; step < kWarp; step *= 2) {
-      const std::uint64_t before = __shfl_up_sync(kAll, begin, step);
-      if (lane >= step) begin += before;
-    }
-    const std::uint64_t total = __shfl_sync(kAll, begin, kWarp - 1);
-    begin -= cells;
-    __syncwarp();
+  const core::TierCells& tier = tiers.of[job.tier];
+  unsigned calls = 0;
+  if (lane < job.count && job.first + lane >= tier.first_place) {
+    const core::CellsNear near = tier.near(sphere);
+    unsigned cells = 1;
+    for (int axis = 0; axis < 3; ++axis) cells *= near.hi[axis] - near.lo[axis] + 1;
+    calls = (cells + kTogether - 1) / kTogether;
     shared[lane] = near;
-    __syncwarp();
-    for (std::uint64_t all = std::uint64_t{job.part} * kWarp; all < total;
-         all += std::uint64_t{job.parts} * kWarp) {
-      const std::uint64_t at = all + lane;
-      unsigned owner = 0;
-      for (unsigned step = kWarp / 2; step > 0; step /= 2) {
-        if (__shfl_sync(kAll, begin, owner + step) <= at) owner += step;
-      }
-      const std::uint64_t first = __shfl_sync(kAll, begin, owner);
-      if (at >= total) continue;
-      const core::CellsNear& of = shared[owner];
-      std::uint64_t number = at - first;
-      const std::uint32_t nx = of.hi[0] - of.lo[0] + 1, ny = of.hi[1] - of.lo[1] + 1;
-      const auto x = of.lo[0] + static_cast<std::uint32_t>(number % nx);
-      number /= nx;
-      const auto y = of.lo[1] + static_cast<std::uint32_t>(number % ny);
-      const auto z = of.lo[2] + static_cast<std::uint32_t>(number / ny);
-      if (!of.isFar(x, y, z)) f(tier, tiers.first[t], x, y, z, job.first + owner);
+  }
+  const unsigned scanned = scan(calls, lane), begin = scanned - calls;
+  const unsigned total = __shfl_sync(kAll, scanned, kWarp - 1);
+  __syncwarp();
+  for (unsigned all = job.part * kWarp; all < total; all += job.parts * kWarp) {
+    const unsigned at = all + lane;
+    unsigned owner = 0;
+#pragma unroll
+    for (unsigned step = kWarp / 2; step > 0; step /= 2) {
+      if (__shfl_sync(kAll, begin, owner + step) <= at) owner += step;
     }
+    const unsigned first = __shfl_sync(kAll, begin, owner);
+    if (at < total)
+      someCells<Cell>(
+          tier, shared[owner], kTogether * (at - first),
+          [&](const Cell(&cells)[kTogether], unsigned mask) { f(cells, mask, job.first + owner); });
   }
 }
 

@@ -1,18 +1,20 @@
 #include "cuda_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace innersphere::device {
 
 namespace {
 
-/// Cells that warps look at side by side if they take a whole cluster each.
-constexpr double kCellsOfAPart = 512;
+/// Cells of a tier that a warp looks at.
+constexpr double kCellsOfAPart = 1024;
 
-/// Cells of the finest tier near a sphere of a level, at most.
-double cellsNear(const core::GridPlan& plan, int level) {
-  const double radius = std::ldexp(0.5, plan.lowest_level + level - plan.view.finest);  // in cells
+/// Cells near a sphere, at most, if its level is `above` that of the tier's largest walkers, whose diameter
+/// is half a cell.
+double cellsNear(int above) {
+  const double radius = std::ldexp(0.25, above);  // in cells
   return std::pow(2 * (radius + 0.25) + 2, 3);
 }
 
@@ -35,15 +37,28 @@ BuildPlan makeBuildPlan(const core::GridPlan& grid) {
     plan.tiers.of[t] = core::makeTier(grid, t);
     plan.tiers.first[t + 1] = plan.tiers.first[t] + plan.tiers.of[t].count;
   }
-  unsigned cluster = 0;
+  const int bits = grid.keyBits(),
+            bucket_bits = std::min(bits, static_cast<int>(std::bit_width(grid.view.count)));
+  plan.bucket_shift = bits - bucket_bits;
+  plan.buckets = 1u << bucket_bits;
+  Jobs& jobs = plan.jobs;
+  for (int above = 0; above < grid.levels; ++above)
+    jobs.parts[above] =
+        static_cast<unsigned>(std::clamp(core::kClusterSize * cellsNear(above) / kCellsOfAPart, 1.0, 1e5));
+  unsigned clusters[core::kMostLevels] = {}, before = 0;
   for (int level = 0; level < grid.levels; ++level) {
     const unsigned spheres = grid.level_first[level + 1] - grid.level_first[level];
-    const unsigned clusters = (spheres + core::kClusterSize - 1) / core::kClusterSize;
-    const double cells = std::min(spheres, core::kClusterSize) * cellsNear(grid, level);
-    plan.jobs.parts[level] = static_cast<unsigned>(std::clamp(cells / kCellsOfAPart, 1.0, 4096.0));
-    plan.jobs.first_cluster[level] = cluster;
-    plan.jobs.first[level + 1] = plan.jobs.first[level] + clusters * plan.jobs.parts[level];
-    cluster += clusters;
+    clusters[level] = (spheres + core::kClusterSize - 1) / core::kClusterSize;
+    if (spheres > 0 && cellsNear(grid.levelsAbove(level, 0)) >= 0x1p31)
+      throw Error(ErrorCode::bad_argument, "the spheres differ too much in size for a device; use fewer");
+    jobs.first_cluster[level] = before;
+    before += clusters[level];
+    for (int t = 0; t < grid.view.tiers && grid.levelsAbove(level, t) >= 0; ++t)
+      jobs.of_cluster[level] += jobs.parts[grid.levelsAbove(level, t)];
+  }
+  for (int level = grid.levels - 1; level >= 0; --level) {
+    jobs.all += clusters[level] * jobs.of_cluster[level];
+    jobs.end[level] = jobs.all;
   }
   return plan;
 }
@@ -65,7 +80,7 @@ void CudaGrid::build(const Sphere* spheres, const core::GridPlan& grid, cudaStre
   launchOrder(plan, arrays(), dense, *scratch_, stream);
   if (!dense || !fill(plan, stream)) {
     const BuildStatus status = sortLists(plan, arrays(), *scratch_, stream);
-    makeRoom(status, count);
+    makeRoom(status, count, stream);
     launchSorted(plan, arrays(), status, *scratch_, stream);
     INNERSPHERE_CUDA(cudaStreamSynchronize(stream));
   }
@@ -80,12 +95,12 @@ bool CudaGrid::fill(const BuildPlan& plan, cudaStream_t stream) {
     const BuildStatus& status = *scratch_->status.data();
     if (status.longest > kLongestInOrder) return false;
     if (fits(status, arrays())) return true;
-    makeRoom(status, plan.grid.view.count);
+    makeRoom(status, plan.grid.view.count, stream);
   }
 }
 
-/// The first time just enough, then with room to grow.
-void CudaGrid::makeRoom(const BuildStatus& status, std::uint32_t spheres) {
+/// The first time just enough, then with room to grow; with an empty table.
+void CudaGrid::makeRoom(const BuildStatus& status, std::uint32_t spheres, cudaStream_t stream) {
   if (status.listed >> 32 != 0)
     throw Error(ErrorCode::bad_argument, "the spheres fill more than 2^32 places in the grid; use fewer");
   if (listed_.capacity() < status.listed) {
@@ -94,6 +109,7 @@ void CudaGrid::makeRoom(const BuildStatus& status, std::uint32_t spheres) {
     entries_.reserve(room + spheres + core::kListStep);
   }
   cells_.reserve(tableSizeFor(status.cells));
+  INNERSPHERE_CUDA(cudaMemsetAsync(cells_.data(), 0xff, cells_.capacity() * sizeof(core::Cell), stream));
 }
 
 GridArrays CudaGrid::arrays() const {

@@ -24,7 +24,7 @@ class CudaGrid : public DeviceGrid {
  private:
   GridArrays arrays() const;
   bool fill(const BuildPlan& plan, cudaStream_t stream);
-  void makeRoom(const BuildStatus& status, std::uint32_t spheres);
+  void makeRoom(const BuildStatus& status, std::uint32_t spheres, cudaStream_t stream);
 
   int device_;
   DeviceArray<Grid> header_;

@@ -71,15 +71,14 @@ inline __device__ int hashShift(std::uint64_t cells) {
   return 64 - (63 - __clzll(static_cast<long long>(tableSizeFor(cells))));
 }
 
-/// A thread takes a cell. With linear probing, a smaller key goes first and a larger one moves on: whoever
-/// comes when, the table is the same.
+/// Puts a cell into the table, by a thread of its own; all lanes call it. With linear probing, a smaller key
+/// goes first and a larger one moves on: whoever comes when, the table is the same.
 template <typename Cells>
-__global__ void insertCells(const __grid_constant__ BuildPlan plan, const __grid_constant__ GridArrays arrays,
-                            const Cells cells, unsigned* longest) {
-  const std::uint64_t cell = std::uint64_t{blockIdx.x} * kListThreads + threadIdx.x;
+__device__ void insertCell(const BuildPlan& plan, const GridArrays& arrays, const Cells& cells,
+                           std::uint64_t cell, unsigned* longest) {
   const BuildStatus status = cells.status(0);
   const std::uint32_t count = cell < cells.cells ? cells.counts[cell] : 0;
-  const unsigned most = __reduce_max_sync(kAll, count);
+  const std::uint32_t most = maximum(count);
   if (threadIdx.x % kWarp == 0 && most > kLongestInOrder) atomicMax(longest, most);
   if (count == 0 || !fits(status, arrays)) return;
   core::GridView view{};
@@ -94,13 +93,10 @@ __global__ void insertCells(const __grid_constant__ BuildPlan plan, const __grid
   }
 }
 
-/// Writes place number `at` of the lists.
-inline __device__ void writePlace(const core::GridPlan& plan, const GridArrays& arrays, std::uint64_t at,
-                                  std::uint32_t place) {
+/// What a list holds of a place: its sphere, or something that meets nothing.
+inline __device__ Sphere entryOf(const core::GridPlan& plan, const GridArrays& arrays, std::uint32_t place) {
   const float far = __int_as_float(0x7f800000);
-  arrays.listed[at] = place;
-  arrays.entries[at] =
-      place < plan.view.count ? plan.centred(load(arrays.spheres + place)) : Sphere{far, far, far, -far};
+  return place < plan.view.count ? plan.centred(load(arrays.spheres + place)) : Sphere{far, far, far, -far};
 }
 
 /// A ball around the balls of a group of clusters; a warp calls it.
@@ -126,10 +122,8 @@ __device__ void finishGrid(const BuildPlan& plan, const GridArrays& arrays, cons
                            const BuildStatus& status, std::uint64_t thread, std::uint64_t threads) {
   const core::GridPlan& grid = plan.grid;
   const std::uint32_t count = grid.view.count;
-  const float far = __int_as_float(0x7f800000);
   for (std::uint64_t i = thread; i < count + core::kListStep; i += threads)
-    arrays.entries[status.listed + i] =
-        i < count ? grid.centred(load(arrays.spheres + i)) : Sphere{far, far, far, -far};
+    arrays.entries[status.listed + i] = entryOf(grid, arrays, static_cast<std::uint32_t>(i));
   for (std::uint64_t i = thread; i < tableSizeFor(status.cells); i += threads) {
     const std::uint64_t key = arrays.cells[i].key;
     arrays.cells[i] = key == kNoKey ? core::Cell{0, 0, 0} : cells.find(plan.tiers, key);

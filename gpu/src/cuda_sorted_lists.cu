@@ -26,14 +26,23 @@ __global__ void findPairs(const __grid_constant__ BuildPlan plan, const Sphere* 
   ClusterJob job;
   if (!clusterJob(plan, blockIdx.x * kWarps + warp, job)) return;
   const Sphere s = lane < job.count ? plan.grid.centred(load(spheres + job.first + lane)) : Sphere{};
-  forCells(plan.tiers, job, s, lane, shared[warp],
-           [&](const core::TierCells& tier, std::uint64_t, std::uint32_t x, std::uint32_t y, std::uint32_t z,
-               std::uint32_t place) {
-             const unsigned long long at = atomicAdd(found, 1ull);
-             if (!keys) return;
-             keys[at] = core::cellKey(tier.number, x, y, z);
-             numbers[at] = place;
-           });
+  forCells<std::uint64_t>(plan.tiers, job, s, lane, shared[warp],
+                          [&](const std::uint64_t(&cells)[kTogether], unsigned mask, std::uint32_t place) {
+                            unsigned long long at =
+                                atomicAdd(found, static_cast<unsigned long long>(__popc(mask)));
+                            if (!keys) return;
+                            for (unsigned k = 0; k < kTogether; ++k) {
+                              if ((mask >> k & 1) == 0) continue;
+                              keys[at] = plan.tiers.of[job.tier].keyOf(cells[k]);
+                              numbers[at++] = place;
+                            }
+                          });
+}
+
+/// A thread takes a cell.
+__global__ void insertCells(const __grid_constant__ BuildPlan plan, const __grid_constant__ GridArrays arrays,
+                            const SortedCells cells, unsigned* longest) {
+  insertCell(plan, arrays, cells, std::uint64_t{blockIdx.x} * kListThreads + threadIdx.x, longest);
 }
 
 /// A warp takes a cell.
@@ -46,8 +55,11 @@ __global__ void writeLists(const __grid_constant__ BuildPlan plan, const __grid_
   for (std::uint64_t cell = thread / kWarp; cell < cells.cells; cell += threads / kWarp) {
     const std::uint32_t count = cells.counts[cell];
     const std::uint64_t first = placesOf(cells.sums[cell]);
-    for (std::uint32_t k = lane; k < core::padded(count); k += kWarp)
-      writePlace(plan.grid, arrays, first + k, k < count ? numbers[starts[cell] + k] : plan.grid.view.count);
+    for (std::uint32_t k = lane; k < core::padded(count); k += kWarp) {
+      const std::uint32_t place = k < count ? numbers[starts[cell] + k] : plan.grid.view.count;
+      arrays.listed[first + k] = place;
+      arrays.entries[first + k] = entryOf(plan.grid, arrays, place);
+    }
   }
   finishGrid(plan, arrays, cells, cells.status(0), thread, threads);
 }
@@ -75,8 +87,8 @@ BuildStatus sortLists(const BuildPlan& plan, const GridArrays& arrays, BuildScra
   std::uint64_t pairs = 0;
   const auto find = [&](std::uint64_t* keys, std::uint32_t* numbers) {
     INNERSPHERE_CUDA(cudaMemsetAsync(scratch.found.data(), 0, sizeof(unsigned long long), stream));
-    findPairs<<<blocksFor(std::uint64_t{kWarp} * plan.jobs.first[plan.grid.levels]), kListThreads, 0,
-                stream>>>(plan, arrays.spheres, scratch.found.data(), keys, numbers);
+    findPairs<<<blocksFor(std::uint64_t{kWarp} * plan.jobs.all), kListThreads, 0, stream>>>(
+        plan, arrays.spheres, scratch.found.data(), keys, numbers);
     INNERSPHERE_CUDA(cudaGetLastError());
   };
   find(nullptr, nullptr);
@@ -125,7 +137,6 @@ void launchSorted(const BuildPlan& plan, const GridArrays& arrays, const BuildSt
   cells.sums = scratch.sums.data();
   cells.cells = status.cells;
   cells.keys = scratch.keys[1].data();
-  INNERSPHERE_CUDA(cudaMemsetAsync(arrays.cells, 0xff, arrays.table_room * sizeof(core::Cell), stream));
   insertCells<<<blocksFor(status.cells), kListThreads, 0, stream>>>(plan, arrays, cells,
                                                                     scratch.longest.data());
   writeLists<<<blocksFor(kWarp * status.cells), kListThreads, 0, stream>>>(

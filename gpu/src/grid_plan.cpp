@@ -12,7 +12,6 @@
 namespace innersphere {
 
 using core::GridPlan;
-using core::Vec3f;
 using core::Vec3r;
 
 namespace {
@@ -20,74 +19,97 @@ namespace {
 constexpr double kListed = 8;  ///< cells of the finest tier that list a sphere, on average, at most
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Maxima over all spheres, which may be taken in any order.
-template <std::size_t kValues>
-struct Maxima {
-  std::array<double, kValues> of;
-  Maxima() { of.fill(-kInfinity); }
-  void add(std::size_t i, double x) { of[i] = std::max(of[i], x); }
-};
-
-/// Calls f(sphere, maxima) for each.
-template <std::size_t kValues, typename F>
-Maxima<kValues> maximaOf(const Sphere* spheres, std::size_t count, const F& f) {
+/// Adds all spheres up in some order, which must not matter: `Sum` has add(sphere) and add(other sum).
+template <typename Sum>
+Sum sumOf(const Sphere* spheres, std::size_t count, const Sum& none) {
   constexpr std::size_t kGrain = 4096;
   using Range = tbb::blocked_range<const Sphere*>;
-  const auto of = [&](const Range& range, Maxima<kValues> maxima) {
-    for (const Sphere& s : range) f(s, maxima);
-    return maxima;
+  const auto of = [](const Range& range, Sum sum) {
+    for (const Sphere& s : range) sum.add(s);
+    return sum;
   };
   const Range all(spheres, spheres + count, kGrain);
-  if (count <= kGrain) return of(all, {});
-  return tbb::parallel_reduce(all, Maxima<kValues>{}, of, [](Maxima<kValues> a, const Maxima<kValues>& b) {
-    for (std::size_t i = 0; i < kValues; ++i) a.add(i, b.of[i]);
+  if (count <= kGrain) return of(all, none);
+  return tbb::parallel_reduce(all, none, of, [](Sum a, const Sum& b) {
+    a.add(b);
     return a;
   });
 }
 
-void measure(const Sphere* spheres, std::size_t count, GridPlan& plan) {
-  enum { kUpper = 0, kLower = 3, kLargest = 6, kSmallest = 7, kReach2 = 8, kBounds = 9 };
-  const Maxima<kBounds> bounds = maximaOf<kBounds>(spheres, count, [](const Sphere& s, auto& maxima) {
-    const double c[3] = {s.x, s.y, s.z}, r = s.radius;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      maxima.add(kUpper + axis, c[axis] + r);
-      maxima.add(kLower + axis, r - c[axis]);
-    }
-    maxima.add(kLargest, r);
-    maxima.add(kSmallest, -r);
-    maxima.add(kReach2, c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
-  });
-  core::GridView& view = plan.view;
-  const auto middle = [&](std::size_t axis) {
-    return static_cast<float>((bounds.of[kUpper + axis] - bounds.of[kLower + axis]) / 2);
-  };
-  view.centre = {middle(0), middle(1), middle(2)};
-  // Measured from the rounded centre, so that nothing of a small sphere far from the origin is lost.
-  const Vec3r centre{view.centre.x, view.centre.y, view.centre.z};
-  const Maxima<4> sizes = maximaOf<4>(spheres, count, [&](const Sphere& s, auto& maxima) {
+/// What holds all spheres, and how many of each level there are.
+struct Measures {
+  static constexpr int kLowest = -126;  ///< level of any radius
+  Vec3r hi{-kInfinity, -kInfinity, -kInfinity}, minus_lo = hi;
+  double reach2 = 0;  ///< of the centres, from the origin
+  float smallest = std::numeric_limits<float>::max(), largest = 0;
+  std::array<std::uint32_t, 256> levels{};
+
+  void add(const Sphere& s) {
+    const double x = s.x, y = s.y, z = s.z, r = s.radius;
+    hi = {std::max(hi.x, x + r), std::max(hi.y, y + r), std::max(hi.z, z + r)};
+    minus_lo = {std::max(minus_lo.x, r - x), std::max(minus_lo.y, r - y), std::max(minus_lo.z, r - z)};
+    reach2 = std::max(reach2, x * x + y * y + z * z);
+    smallest = std::min(smallest, s.radius);
+    largest = std::max(largest, s.radius);
+    ++levels[static_cast<std::size_t>(core::levelOf(s.radius) - kLowest)];
+  }
+  void add(const Measures& other) {
+    const Vec3r &h = other.hi, &l = other.minus_lo;
+    hi = {std::max(hi.x, h.x), std::max(hi.y, h.y), std::max(hi.z, h.z)};
+    minus_lo = {std::max(minus_lo.x, l.x), std::max(minus_lo.y, l.y), std::max(minus_lo.z, l.z)};
+    reach2 = std::max(reach2, other.reach2);
+    smallest = std::min(smallest, other.smallest);
+    largest = std::max(largest, other.largest);
+    for (std::size_t level = 0; level < levels.size(); ++level) levels[level] += other.levels[level];
+  }
+};
+
+/// Half the box and the radius of the ball around all spheres. Measured from the rounded centre, so that
+/// nothing of a small sphere far from the origin is lost.
+struct Extent {
+  Vec3r centre;
+  Vec3r half{0, 0, 0};
+  double radius = 0;
+
+  void add(const Sphere& s) {
     const Vec3r d = Vec3r{s.x, s.y, s.z} - centre;
     const double r = s.radius;
-    maxima.add(0, std::fabs(d.x) + r);
-    maxima.add(1, std::fabs(d.y) + r);
-    maxima.add(2, std::fabs(d.z) + r);
-    maxima.add(3, std::sqrt(dot(d, d)) + r);
-  });
-  view.half = {roundUp(sizes.of[0]), roundUp(sizes.of[1]), roundUp(sizes.of[2])};
+    half = {std::max(half.x, std::fabs(d.x) + r), std::max(half.y, std::fabs(d.y) + r),
+            std::max(half.z, std::fabs(d.z) + r)};
+    radius = std::max(radius, std::sqrt(dot(d, d)) + r);
+  }
+  void add(const Extent& other) {
+    half = {std::max(half.x, other.half.x), std::max(half.y, other.half.y), std::max(half.z, other.half.z)};
+    radius = std::max(radius, other.radius);
+  }
+};
+
+void measure(const Measures& measures, const Sphere* spheres, std::size_t count, GridPlan& plan) {
+  core::GridView& view = plan.view;
+  const auto middle = [](double hi, double minus_lo) { return static_cast<float>((hi - minus_lo) / 2); };
+  view.centre = {middle(measures.hi.x, measures.minus_lo.x), middle(measures.hi.y, measures.minus_lo.y),
+                 middle(measures.hi.z, measures.minus_lo.z)};
+  const Extent extent = sumOf(spheres, count, Extent{{view.centre.x, view.centre.y, view.centre.z}});
+  view.half = {roundUp(extent.half.x), roundUp(extent.half.y), roundUp(extent.half.z)};
   view.count = static_cast<std::uint32_t>(count);
-  view.radius = roundUp(sizes.of[3]);
-  view.largest = static_cast<float>(bounds.of[kLargest]);
-  view.reach = roundUp(std::sqrt(bounds.of[kReach2]) + view.largest);
+  view.radius = roundUp(extent.radius);
+  view.largest = measures.largest;
+  view.reach = roundUp(std::sqrt(measures.reach2) + view.largest);
+  // Spheres so small that coordinates would need more bits than a key has count as of a coarser level.
   const float widest = std::max({view.half.x, view.half.y, view.half.z});
-  plan.lowest_level = std::max(core::levelOf(static_cast<float>(-bounds.of[kSmallest])),
-                               core::levelOf(widest) - (core::kAxisBits - 2));
+  plan.lowest_level =
+      std::max(core::levelOf(measures.smallest), core::levelOf(widest) - (core::kAxisBits - 2));
   plan.levels = plan.levelAt(view.largest) + 1;
   const float cells = 2 * widest * core::powerOfTwo(-plan.lowest_level);
   plan.curve_bits = std::bit_width(static_cast<std::uint32_t>(cells) | 1u);
 }
 
-void countLevels(const Sphere* spheres, std::size_t count, GridPlan& plan) {
+void countLevels(const Measures& measures, GridPlan& plan) {
   std::uint32_t counts[core::kMostLevels] = {};
-  for (std::size_t i = 0; i < count; ++i) ++counts[plan.levelAt(spheres[i].radius)];
+  for (std::size_t i = 0; i < measures.levels.size(); ++i) {
+    const int level = static_cast<int>(i) + Measures::kLowest - plan.lowest_level;
+    if (measures.levels[i] > 0) counts[std::max(level, 0)] += measures.levels[i];
+  }
   std::uint32_t before = 0;
   plan.view.cluster_count = 0;
   for (int level = 0; level < core::kMostLevels; ++level) {
@@ -127,8 +149,9 @@ float roundUp(double x) {
 
 GridPlan planGrid(const Sphere* spheres, std::size_t count) {
   GridPlan plan{};
-  measure(spheres, count, plan);
-  countLevels(spheres, count, plan);
+  const Measures measures = sumOf(spheres, count, Measures{});
+  measure(measures, spheres, count, plan);
+  countLevels(measures, plan);
   chooseTiers(plan);
   return plan;
 }

@@ -24,6 +24,13 @@ struct GridPlan {
     return tier == 0 ? 0 : level_first[view.finest + tier - 1 - lowest_level];
   }
 
+  /// By how many levels one is above the first that a tier lists; negative for those that it does not list.
+  /// The first tier lists all.
+  INNERSPHERE_HD int levelsAbove(int level, int tier) const {
+    const int first = view.finest + tier - 1 - lowest_level;
+    return tier == 0 && level < first ? 0 : level - first;
+  }
+
   INNERSPHERE_HD int levelAt(float radius) const {
     const int level = levelOf(radius) - lowest_level;
     return level > 0 ? level : 0;
