@@ -88,20 +88,23 @@ struct BuildScratch {
   DeviceArray<std::uint32_t> numbers[2];  ///< that go with them
   DeviceArray<std::uint32_t> counts;      ///< of buckets of spheres, then of cells; the longest list
   DeviceArray<std::uint32_t> starts;      ///< of buckets, or of cells in what was sorted
+  DeviceArray<std::uint32_t> sorted;      ///< spheres
   DeviceArray<std::uint64_t> sums;        ///< of what cells list; see packed()
-  DeviceArray<unsigned> longest;          ///< list
+  DeviceArray<std::uint64_t> block_sums;
   DeviceArray<unsigned long long> found;  ///< pairs of a cell and a sphere that it lists
   DeviceArray<std::byte> cub;
   PinnedArray<BuildStatus> status;
 };
 
-/// Puts the spheres in order, with their clusters, and clears the table. Needs scratch.given. With `count` it
-/// also counts what each cell will list.
-void launchOrder(const BuildPlan& plan, const GridArrays& arrays, bool count, BuildScratch& scratch,
-                 cudaStream_t stream);
+/// What a launch does.
+struct BuildSteps {
+  bool order;  ///< puts the spheres in order, with their clusters, and clears the table
+  bool count;  ///< counts what cells list and makes their lists; where not all fits it only tells the status
+};
 
-/// The lists of dense tiers, from their counts. Where not all fits it does nothing but tell scratch.status.
-void launchFill(const BuildPlan& plan, const GridArrays& arrays, BuildScratch& scratch, cudaStream_t stream);
+/// For dense tiers both steps, and once more without the first when there is room; for others the first.
+void launchBuild(const BuildPlan& plan, const GridArrays& grid, const Sphere* given, BuildSteps steps,
+                 BuildScratch& scratch, cudaStream_t stream);
 
 /// The lists of any tiers, by sorting. The first step waits for the device and gives the status; then room
 /// must be made.

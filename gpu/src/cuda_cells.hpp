@@ -13,10 +13,9 @@ struct ClusterJob {
   std::uint32_t first, count;  ///< spheres
 };
 
-/// False if there is no such job.
-inline __device__ bool clusterJob(const BuildPlan& plan, unsigned number, ClusterJob& job) {
+inline __device__ ClusterJob clusterJob(const BuildPlan& plan, unsigned number) {
   const Jobs& jobs = plan.jobs;
-  if (number >= jobs.all) return false;
+  ClusterJob job;
   int level = plan.grid.levels - 1;
   while (number >= jobs.end[level]) --level;
   const unsigned at = number - (level + 1 < plan.grid.levels ? jobs.end[level + 1] : 0);
@@ -27,7 +26,7 @@ inline __device__ bool clusterJob(const BuildPlan& plan, unsigned number, Cluste
   job.part = at % jobs.of_cluster[level];
   for (job.tier = 0;; ++job.tier) {
     job.parts = jobs.parts[plan.grid.levelsAbove(level, job.tier)];
-    if (job.part < job.parts) return true;
+    if (job.part < job.parts) return job;
     job.part -= job.parts;
   }
 }
@@ -65,6 +64,7 @@ __device__ void forCells(const Tiers& tiers, const ClusterJob& job, const Sphere
                          core::CellsNear (&shared)[kWarp], const F& f) {
   const core::TierCells& tier = tiers.of[job.tier];
   unsigned calls = 0;
+  __syncwarp();
   if (lane < job.count && job.first + lane >= tier.first_place) {
     const core::CellsNear near = tier.near(sphere);
     unsigned cells = 1;

@@ -67,8 +67,7 @@ void CudaGrid::build(const Sphere* spheres, const core::GridPlan& grid, cudaStre
   const std::uint32_t count = grid.view.count;
   const bool first = !header_.data();
   if (!scratch_) scratch_ = std::make_unique<BuildScratch>();
-  scratch_->given.reserve(count);
-  copyAsync(scratch_->given.data(), spheres, count, stream);
+  const Sphere* const given = onDevice(spheres, count, stream);
   header_.reserve(1);
   spheres_.reserve(count);
   ids_.reserve(count);
@@ -77,8 +76,8 @@ void CudaGrid::build(const Sphere* spheres, const core::GridPlan& grid, cudaStre
   groups_.reserve(groupCount(grid.view.cluster_count));
   const BuildPlan plan = makeBuildPlan(grid);
   const bool dense = isDense(plan);
-  launchOrder(plan, arrays(), dense, *scratch_, stream);
-  if (!dense || !fill(plan, stream)) {
+  launchBuild(plan, arrays(), given, {true, dense}, *scratch_, stream);
+  if (!dense || !finish(plan, stream)) {
     const BuildStatus status = sortLists(plan, arrays(), *scratch_, stream);
     makeRoom(status, count, stream);
     launchSorted(plan, arrays(), status, *scratch_, stream);
@@ -87,15 +86,24 @@ void CudaGrid::build(const Sphere* spheres, const core::GridPlan& grid, cudaStre
   if (first) scratch_.reset();
 }
 
+const Sphere* CudaGrid::onDevice(const Sphere* spheres, std::size_t count, cudaStream_t stream) {
+  cudaPointerAttributes attributes{};
+  INNERSPHERE_CUDA(cudaPointerGetAttributes(&attributes, spheres));
+  if (attributes.type == cudaMemoryTypeDevice && attributes.device == device_) return spheres;
+  scratch_->given.reserve(count);
+  copyAsync(scratch_->given.data(), spheres, count, stream);
+  return scratch_->given.data();
+}
+
 /// False if some list is too long for it.
-bool CudaGrid::fill(const BuildPlan& plan, cudaStream_t stream) {
+bool CudaGrid::finish(const BuildPlan& plan, cudaStream_t stream) {
   while (true) {
-    launchFill(plan, arrays(), *scratch_, stream);
     INNERSPHERE_CUDA(cudaStreamSynchronize(stream));
-    const BuildStatus& status = *scratch_->status.data();
+    const BuildStatus status = *scratch_->status.data();
     if (status.longest > kLongestInOrder) return false;
     if (fits(status, arrays())) return true;
     makeRoom(status, plan.grid.view.count, stream);
+    launchBuild(plan, arrays(), nullptr, {false, true}, *scratch_, stream);
   }
 }
 

@@ -12,8 +12,9 @@ class CudaGrid : public DeviceGrid {
  public:
   explicit CudaGrid(int device) : device_(device) {}
 
-  /// Makes it the grid of these spheres, which are in the memory of the host. The device must be current; it
-  /// is done when this returns. Building once more allocates only where more memory is needed than ever.
+  /// Makes it the grid of these spheres, which are in the memory of the host or of the device, which must be
+  /// current; it is done when this returns. Building once more allocates only where more memory is needed
+  /// than ever.
   void build(const Sphere* spheres, const core::GridPlan& plan, cudaStream_t stream);
 
   int device() const override { return device_; }
@@ -23,7 +24,8 @@ class CudaGrid : public DeviceGrid {
 
  private:
   GridArrays arrays() const;
-  bool fill(const BuildPlan& plan, cudaStream_t stream);
+  const Sphere* onDevice(const Sphere* spheres, std::size_t count, cudaStream_t stream);
+  bool finish(const BuildPlan& plan, cudaStream_t stream);
   void makeRoom(const BuildStatus& status, std::uint32_t spheres, cudaStream_t stream);
 
   int device_;

@@ -71,7 +71,8 @@ inline __device__ int hashShift(std::uint64_t cells) {
   return 64 - (63 - __clzll(static_cast<long long>(tableSizeFor(cells))));
 }
 
-/// Puts a cell into the table, by a thread of its own; all lanes call it. With linear probing, a smaller key
+/// Puts a cell into the table, by a thread of its own; all lanes call it. `longest`, a list too long for
+/// kLongestInOrder, may be null. With linear probing, a smaller key
 /// goes first and a larger one moves on: whoever comes when, the table is the same.
 template <typename Cells>
 __device__ void insertCell(const BuildPlan& plan, const GridArrays& arrays, const Cells& cells,
@@ -79,7 +80,7 @@ __device__ void insertCell(const BuildPlan& plan, const GridArrays& arrays, cons
   const BuildStatus status = cells.status(0);
   const std::uint32_t count = cell < cells.cells ? cells.counts[cell] : 0;
   const std::uint32_t most = maximum(count);
-  if (threadIdx.x % kWarp == 0 && most > kLongestInOrder) atomicMax(longest, most);
+  if (longest && threadIdx.x % kWarp == 0 && most > kLongestInOrder) atomicMax(longest, most);
   if (count == 0 || !fits(status, arrays)) return;
   core::GridView view{};
   view.hash_shift = hashShift(status.cells);
@@ -96,7 +97,7 @@ __device__ void insertCell(const BuildPlan& plan, const GridArrays& arrays, cons
 /// What a list holds of a place: its sphere, or something that meets nothing.
 inline __device__ Sphere entryOf(const core::GridPlan& plan, const GridArrays& arrays, std::uint32_t place) {
   const float far = __int_as_float(0x7f800000);
-  return place < plan.view.count ? plan.centred(load(arrays.spheres + place)) : Sphere{far, far, far, -far};
+  return place < plan.view.count ? plan.centred(arrays.spheres[place]) : Sphere{far, far, far, -far};
 }
 
 /// A ball around the balls of a group of clusters; a warp calls it.
@@ -106,7 +107,7 @@ inline __device__ void fillGroup(const GridArrays& arrays, std::uint32_t cluster
   constexpr float kMax = 3.402823466e+38f;
   const std::uint64_t cluster = group * kGroup + lane;
   const bool valid = cluster < clusters;
-  const Sphere s = valid ? load(&arrays.clusters[cluster].ball) : Sphere{};
+  const Sphere s = valid ? arrays.clusters[cluster].ball : Sphere{};
   const auto upper = [&](float x) { return maximum(valid ? x + s.radius : -kMax); };
   const core::Vec3f lo{-upper(-s.x), -upper(-s.y), -upper(-s.z)}, hi{upper(s.x), upper(s.y), upper(s.z)};
   const core::Vec3f middle = core::middleOf(lo, hi);

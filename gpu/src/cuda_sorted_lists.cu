@@ -23,8 +23,9 @@ __global__ void findPairs(const __grid_constant__ BuildPlan plan, const Sphere* 
                           unsigned long long* found, std::uint64_t* keys, std::uint32_t* numbers) {
   __shared__ core::CellsNear shared[kWarps][kWarp];
   const unsigned lane = threadIdx.x % kWarp, warp = threadIdx.x / kWarp;
-  ClusterJob job;
-  if (!clusterJob(plan, blockIdx.x * kWarps + warp, job)) return;
+  const unsigned number = blockIdx.x * kWarps + warp;
+  if (number >= plan.jobs.all) return;
+  const ClusterJob job = clusterJob(plan, number);
   const Sphere s = lane < job.count ? plan.grid.centred(load(spheres + job.first + lane)) : Sphere{};
   forCells<std::uint64_t>(plan.tiers, job, s, lane, shared[warp],
                           [&](const std::uint64_t(&cells)[kTogether], unsigned mask, std::uint32_t place) {
@@ -41,8 +42,8 @@ __global__ void findPairs(const __grid_constant__ BuildPlan plan, const Sphere* 
 
 /// A thread takes a cell.
 __global__ void insertCells(const __grid_constant__ BuildPlan plan, const __grid_constant__ GridArrays arrays,
-                            const SortedCells cells, unsigned* longest) {
-  insertCell(plan, arrays, cells, std::uint64_t{blockIdx.x} * kListThreads + threadIdx.x, longest);
+                            const SortedCells cells) {
+  insertCell(plan, arrays, cells, std::uint64_t{blockIdx.x} * kListThreads + threadIdx.x, nullptr);
 }
 
 /// A warp takes a cell.
@@ -83,7 +84,6 @@ int bitsOf(std::uint32_t number) {
 BuildStatus sortLists(const BuildPlan& plan, const GridArrays& arrays, BuildScratch& scratch,
                       cudaStream_t stream) {
   scratch.found.reserve(1);
-  scratch.longest.reserve(1);
   std::uint64_t pairs = 0;
   const auto find = [&](std::uint64_t* keys, std::uint32_t* numbers) {
     INNERSPHERE_CUDA(cudaMemsetAsync(scratch.found.data(), 0, sizeof(unsigned long long), stream));
@@ -137,8 +137,7 @@ void launchSorted(const BuildPlan& plan, const GridArrays& arrays, const BuildSt
   cells.sums = scratch.sums.data();
   cells.cells = status.cells;
   cells.keys = scratch.keys[1].data();
-  insertCells<<<blocksFor(status.cells), kListThreads, 0, stream>>>(plan, arrays, cells,
-                                                                    scratch.longest.data());
+  insertCells<<<blocksFor(status.cells), kListThreads, 0, stream>>>(plan, arrays, cells);
   writeLists<<<blocksFor(kWarp * status.cells), kListThreads, 0, stream>>>(
       plan, arrays, cells, scratch.starts.data(), scratch.numbers[0].data());
   INNERSPHERE_CUDA(cudaGetLastError());
