@@ -8,47 +8,59 @@ rows(condition) = "< awk -F, '!/^#/ && ".condition."' '".table."'"
 along(condition) = "< awk -F, '!/^#/ && ".condition."' '".table."' | sort -t, -k4,4n -k8,8n"
 have(condition) = system("awk -F, '!/^#/ && ".condition."' '".table."' | wc -l") > 0
 label(n) = n >= 1024 ? sprintf("%dk", int(n / 1024)) : sprintf("%d", n)
-floor_at(x, low) = x > low ? x : low
+within(x) = x < 1.2e-3 ? 1.2e-3 : x > 90 ? 90 : x  # what is out of range is drawn at the edge
 
 packing = "#c0392b"; rigid = "#8e44ad"; penalty = "#e67e22"; gimpact = "#2980b9"; spheres = "#7f8c8d"; convex = "#27ae60"
-set terminal pngcairo noenhanced size 1250,820 font "sans,11" lw 1.5
+set terminal pngcairo noenhanced size 1200,790 font "sans,11" lw 1.5
 set output output
 set logscale xy
 set grid back lc rgb "#dddddd"
 set format "%g"
-set key top right samplen 2 opaque font ",10"
+set key top right samplen 2 opaque Left reverse font ",9"
 set tics font ",10"
 
 if (picture eq "scenes") {
-  names = "chain-hang chain-swing bowls stack"
-  titles = '"Chain of ten rings: its length" "Swinging chain, 1 s: distance from a fine run, % of the length" "Five bowls in each other: worst height" "Stack of ten boxes: height, % of a box"'
-  set multiplot layout 2,2 title "Error over processor time of a step, at 240 steps/s, one core" font ",14"
-  do for [i=1:4] {
+  names = "chain-hang bowls stack"
+  titles = '"Chain of ten rings: its length" "Five bowls in each other: worst height" "Stack of ten boxes: height, % of a box"'
+  set multiplot layout 2,2 title "Error over processor time, one core" font ",14"
+  do for [i=1:3] {
     is = '$1 == "'.word(names, i).'" && ($2 == "worst" || $2 == "trajectory") && $7 == "cpu" && $8 == 240'
     if (!have(is)) { continue }
     set title word(titles, i)
     set ylabel "error, %"
-    set xlabel "processor time of a step, ms"
+    set xlabel "processor time of a step at 240 steps/s, ms"
     if (i == 1) { set key bottom left } else { unset key }
     set yrange [1e-3:100]
-    set autoscale x
-    plot along(is.' && $3 == "packing" && $5 == "compliant"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
-      "" using ($12/1e3):(floor_at($10, 1.2e-3)):(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
-      along(is.' && $3 == "packing" && $5 == "rigid"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 5 lc rgb rigid title "packing, rigid", \
-      along(is.' && $3 == "packing" && $5 == "penalty"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 9 lc rgb penalty title "packing, penalty", \
-      rows(is.' && $3 == "gimpact"') using ($12/1e3):(floor_at($10, 1.2e-3)) with points pt 13 ps 2.2 lc rgb gimpact title "GImpact mesh", \
-      "" using ($12/1e3):(floor_at($10, 1.2e-3)):(sprintf("%d tri", $4)) with labels offset 0,0.9 font ",9" tc rgb gimpact notitle, \
-      along(is.' && $3 == "spheres"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 6 dt 2 lc rgb spheres title "btCompoundShape of spheres", \
-      "" using ($12/1e3):(floor_at($10, 1.2e-3)):(label($4)) with labels offset 0,-0.9 font ",9" tc rgb spheres notitle, \
-      along(is.' && $3 == "convex"') using ($12/1e3):(floor_at($10, 1.2e-3)) with linespoints pt 4 dt 2 lc rgb convex title "btCompoundShape of hulls", \
-      "" using ($12/1e3):(floor_at($10, 1.2e-3)):(label($4)) with labels offset 0,-0.9 font ",9" tc rgb convex notitle
+    set xrange [0.01:100]
+    plot along(is.' && $3 == "packing" && $5 == "compliant"') using ($12/1e3):(within($10)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
+      "" using ($12/1e3):(within($10)):(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      along(is.' && $3 == "packing" && $5 == "rigid"') using ($12/1e3):(within($10)) with linespoints pt 5 lc rgb rigid title "packing, rigid", \
+      along(is.' && $3 == "packing" && $5 == "penalty"') using ($12/1e3):(within($10)) with linespoints pt 9 lc rgb penalty title "packing, penalty", \
+      rows(is.' && $3 == "gimpact"') using ($12/1e3):(within($10)) with points pt 13 ps 2.2 lc rgb gimpact title "GImpact mesh", \
+      "" using ($12/1e3):(within($10)):(sprintf("%d tri", $4)) with labels offset 0,0.9 font ",9" tc rgb gimpact notitle, \
+      along(is.' && $3 == "spheres"') using ($12/1e3):(within($10)) with linespoints pt 6 dt 2 lc rgb spheres title "btCompoundShape of spheres", \
+      "" using ($12/1e3):(within($10)):(label($4)) with labels offset 0,-0.9 font ",9" tc rgb spheres notitle, \
+      along(is.' && $3 == "convex"') using ($12/1e3):(within($10)) with linespoints pt 4 dt 2 lc rgb convex title "btCompoundShape of hulls", \
+      "" using ($12/1e3):(within($10)):(label($4)) with labels offset 0,-0.9 font ",9" tc rgb convex notitle
+  }
+  is = '$1 == "overlap-torus" && $2 == "volume" && $7 == "cpu"'
+  if (have(is)) {
+    set title "Two tori that share 2 %: overlap volume"
+    set xlabel "time of a query, us"
+    set ylabel "mean |error|, %"
+    set xrange [1:1000]
+    set yrange [0.1:100]
+    set key top right
+    plot along(is.' && $6 == "volume-true"') using 12:10 with linespoints pt 7 lw 2 lc rgb packing title "packing, volume-true radii", \
+      "" using 12:10:(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      along(is.' && $6 == "raw"') using 12:10 with linespoints pt 6 dt 2 lc rgb penalty title "packing, as packed (the paper)"
   }
   unset multiplot
 }
 
 if (picture eq "rates") {
-  names = "rest chain-hang chain-swing chain-heavy"
-  titles = '"Five solids at rest" "Chain of ten rings, length" "Swinging chain, distance from a fine run" "The same chain, last ring 100 times as heavy"'
+  names = "chain-hang chain-swing chain-heavy stack"
+  titles = '"Chain of ten rings: its length" "Swinging chain, 1 s: distance from a fine run" "The same chain, last ring 100 times as heavy: its length" "Stack of ten boxes: height, % of a box"'
   set multiplot layout 2,2 title "Error over processor time of a simulated second, by steps per second; 1,024 spheres" font ",14"
   do for [i=1:4] {
     is = '$1 == "'.word(names, i).'" && ($2 == "worst" || $2 == "trajectory") && $7 == "cpu"'
@@ -57,16 +69,16 @@ if (picture eq "rates") {
     set ylabel "error, %"
     set xlabel "processor time of a simulated second, ms"
     if (i == 1) { set key top right } else { unset key }
-    set yrange [1e-3:300]
+    set yrange [1e-3:100]
     x(us, rate) = us * rate / 1e3
-    plot along(is.' && $3 == "packing" && $5 == "compliant" && $4 == 1024') using (x($12, $8)):(floor_at($10, 1.2e-3)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
-      "" using (x($12, $8)):(floor_at($10, 1.2e-3)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
-      along(is.' && $3 == "packing" && $5 == "rigid" && $4 == 1024') using (x($12, $8)):(floor_at($10, 1.2e-3)) with linespoints pt 5 lc rgb rigid title "packing, rigid", \
-      "" using (x($12, $8)):(floor_at($10, 1.2e-3)):(sprintf("%d", $8)) with labels offset 0,-0.9 font ",9" tc rgb rigid notitle, \
-      along(is.' && $3 == "gimpact"') using (x($12, $8)):(floor_at($10, 1.2e-3)) with linespoints pt 13 ps 1.5 lc rgb gimpact title "GImpact mesh", \
-      "" using (x($12, $8)):(floor_at($10, 1.2e-3)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb gimpact notitle, \
-      along(is.' && $3 == "spheres" && $4 == 256') using (x($12, $8)):(floor_at($10, 1.2e-3)) with linespoints pt 6 dt 2 lc rgb spheres title "btCompoundShape of 256 spheres", \
-      "" using (x($12, $8)):(floor_at($10, 1.2e-3)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb spheres notitle
+    plot along(is.' && $3 == "packing" && $5 == "compliant" && $4 == 1024') using (x($12, $8)):(within($10)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
+      "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      along(is.' && $3 == "packing" && $5 == "rigid" && $4 == 1024') using (x($12, $8)):(within($10)) with linespoints pt 5 lc rgb rigid title "packing, rigid", \
+      "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels offset 0,-0.9 font ",9" tc rgb rigid notitle, \
+      along(is.' && $3 == "gimpact"') using (x($12, $8)):(within($10)) with linespoints pt 13 ps 1.5 lc rgb gimpact title "GImpact mesh", \
+      "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb gimpact notitle, \
+      along(is.' && $3 == "spheres" && $4 == 256') using (x($12, $8)):(within($10)) with linespoints pt 6 dt 2 lc rgb spheres title "btCompoundShape of 256 spheres", \
+      "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb spheres notitle
   }
   unset multiplot
 }
@@ -82,13 +94,13 @@ if (picture eq "volume" || picture eq "direction") {
     set ylabel picture eq "volume" ? "mean |error|, %" : "mean angle, degrees"
     if (i == 1) { set key bottom left } else { unset key }
     if (picture eq "volume") {
-      set yrange [0.1:150]
+      set yrange [0.03:150]
       plot along(is.' && $6 == "volume-true"') using 12:10 with linespoints pt 7 lw 2 lc rgb packing title "packing, volume-true radii", \
         "" using 12:10:(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
         along(is.' && $6 == "raw"') using 12:10 with linespoints pt 7 dt 2 lc rgb penalty title "packing, as packed (the paper)", \
         (have(onCuda) ? along(onCuda) : along(is.' && $6 == "none"')) using 12:10 with linespoints pt 7 lc rgb "black" title (have(onCuda) ? "packing, CUDA" : "")
     } else {
-      set yrange [0.2:100]
+      set yrange [0.03:100]
       plot along(is.' && $6 == "volume-true"') using 12:10 with linespoints pt 7 lw 2 lc rgb packing title "packing, gradient of the volume", \
         "" using 12:10:(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
         along(is.' && $6 == "raw"') using 12:10 with linespoints pt 7 dt 2 lc rgb penalty title "packing, force of the paper", \
@@ -112,9 +124,9 @@ if (picture eq "pressure") {
     if (!have(is)) { continue }
     set yrange [0.01:500]
     if (body eq "box") { set key top right } else { unset key }
-    plot along(is.' && $6 == "volume-true"') using 12:(floor_at($10, 0.012)) with linespoints pt 7 lw 2 lc rgb packing title "volume-true radii", \
-      "" using 12:(floor_at($10, 0.012)):(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
-      along(is.' && $6 == "raw"') using 12:(floor_at($10, 0.012)) with linespoints pt 7 dt 2 lc rgb penalty title "as packed (the paper)"
+    plot along(is.' && $6 == "volume-true"') using 12:(($10 > 0.012 ? $10 : 0.012)) with linespoints pt 7 lw 2 lc rgb packing title "volume-true radii", \
+      "" using 12:(($10 > 0.012 ? $10 : 0.012)):(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      along(is.' && $6 == "raw"') using 12:(($10 > 0.012 ? $10 : 0.012)) with linespoints pt 7 dt 2 lc rgb penalty title "as packed (the paper)"
   }
   unset multiplot
 }
