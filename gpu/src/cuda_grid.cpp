@@ -69,6 +69,8 @@ void CudaGrid::build(const Sphere* spheres, const core::GridPlan& grid, cudaStre
   if (!scratch_) scratch_ = std::make_unique<BuildScratch>();
   const Sphere* const given = onDevice(spheres, count, stream);
   header_.reserve(1);
+  if (first)  // kernels copy it as a whole, with its gaps
+    INNERSPHERE_CUDA(cudaMemsetAsync(header_.data(), 0, sizeof(Grid), stream));
   spheres_.reserve(count);
   ids_.reserve(count);
   places_.reserve(count);
