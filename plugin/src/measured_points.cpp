@@ -51,10 +51,11 @@ bool measure(const Gauge& gauge, const btVector3& patch_normal, Measured& m) {
 bool measureAgain(const Gauge& gauge, const Candidates::Line& line, Measured& m) {
   if (line.direction.isZero()) return false;
   m.direction = line.direction;
+  if (gauge.exactB()) gauge.nearest(m.index, m.direction);
   m.gap.triangle_a = line.triangle_a;
   m.gap.triangle_b = line.triangle_b;
   if (!gauge.measure(m.index, m.direction, btVector3(0, 0, 0), m.gap)) return false;
-  align(gauge, m);
+  if (!gauge.exactB()) align(gauge, m);
   return true;
 }
 

@@ -16,11 +16,6 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// In units of the spacing: bodies that have moved less since a query have the same candidates for contacts,
-constexpr btScalar kMeasureAgain = btScalar(0.25);
-/// and less since they were measured, the same contacts. The error is of second order: a hundredth of this.
-constexpr btScalar kCarry = btScalar(0.02);
-
 bool same(const btVector3& a, const btVector3& b) {
   return a.x() == b.x() && a.y() == b.y() && a.z() == b.z();
 }
@@ -40,44 +35,29 @@ struct Bodies {
   PackingBody b;
 };
 
-/// Leaves those of `contacts` in the result of a search that are candidates.
-void keepCandidates(const std::vector<SphereContact>& contacts, std::size_t count_a, SearchResult& search) {
+/// Keeps those of `contacts` that are candidates.
+void keepCandidates(const std::vector<SphereContact>& contacts, std::size_t count_a,
+                    PackingContact& contact) {
   constexpr std::size_t kNone = ~std::size_t(0);
   static thread_local std::vector<std::size_t> place;
+  std::vector<std::size_t>& candidates = contact.memory.candidates.indices;
   place.assign(contacts.size(), kNone);
-  for (std::size_t i : search.candidates.indices) place[i] = 0;
-  search.contacts.clear();
+  for (std::size_t i : candidates) place[i] = 0;
+  contact.contacts.clear();
+  contact.count_a = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (i == count_a) search.count_a = search.contacts.size();
     if (place[i] == kNone) continue;
-    place[i] = search.contacts.size();
-    search.contacts.push_back(contacts[i]);
+    place[i] = contact.contacts.size();
+    contact.contacts.push_back(contacts[i]);
+    if (i < count_a) ++contact.count_a;
   }
-  if (count_a == contacts.size()) search.count_a = search.contacts.size();
-  for (std::size_t& i : search.candidates.indices) i = place[i];
+  for (std::size_t& i : candidates) i = place[i];
 }
 
 /// Whether surfaces are near each other at any of the candidates.
 bool measureOnSurfaces(const Bodies& bodies, PackingContact& contact) {
-  SearchResult& search = contact.search;
-  const PackingGauge gauge(bodies.a, bodies.b, search.contacts, search.count_a);
-  return measurePatches(search.candidates, gauge, *contact.measure, contact.patches);
-}
-
-/// The patches were made for where the bodies are now.
-void finish(PackingContact& contact) {
-  contact.measured = contact.patches;
-  contact.measured_at = {contact.a.transform, contact.b.transform};
-  contact.valid = true;
-}
-
-/// To where the bodies are now.
-void carryOn(PackingContact& contact) {
-  const Placed now{contact.a.transform, contact.b.transform};
-  if (contact.measured_at.a == now.a && contact.measured_at.b == now.b) return;
-  const auto origin = [&](const btTransform& a) { return contact.a.shape->impl().toWorld(a).getOrigin(); };
-  carry(contact.measured, contact.measured_at, origin(contact.measured_at.a), now, origin(now.a),
-        contact.patches);
+  const PackingGauge gauge(bodies.a, bodies.b, contact.contacts, contact.count_a);
+  return measurePatches(contact.memory.candidates, gauge, *contact.measure, contact.memory.patches);
 }
 
 }  // namespace
@@ -150,7 +130,7 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
   contact.a = a;
   contact.b = b;
   if (age == Age::current) {
-    carryOn(contact);
+    contact.memory.carryTo(contact.placed(), *a.shape);
   } else {
     contact.searching = age == Age::stale;
     stale_.assign(1, &contact);
@@ -165,7 +145,7 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
     }
   }
   contact.wanted = true;
-  return contact.patches;
+  return contact.memory.patches;
 }
 
 Overlap OverlapBatch::volumesOf(const PackingContact& contact) {
@@ -219,17 +199,14 @@ BatchCount OverlapBatch::count() const {
 OverlapBatch::Age OverlapBatch::ageOf(const PackingContact& contact, const PackingSide& a,
                                       const PackingSide& b) const {
   if (!contact.valid || !contact.a.isAlike(a) || !contact.b.isAlike(b)) return Age::stale;
-  const Placed now{a.transform, b.transform};
-  const bool at_rest = contact.search.at.a == now.a && contact.search.at.b == now.b;
-  const btScalar size_a = a.shape->getAngularMotionDisc(), size_b = b.shape->getAngularMotionDisc();
-  const Measure& measure = *contact.measure;
-  const btScalar searched = motionBetween(contact.search.at, now, size_a, size_b);
   // Also if the bodies have become faster: contacts are wanted from further away then.
-  if (neededSeparation(contact) + searched > measure.separation) return Age::stale;
-  if (at_rest) return Age::current;
-  if (!measure.on_surfaces || contact.deep || searched > kMeasureAgain * measure.spacing) return Age::stale;
-  const btScalar measured = motionBetween(contact.measured_at, now, size_a, size_b);
-  return measured <= kCarry * measure.spacing ? Age::current : Age::moved;
+  const Measure& measure = *contact.measure;
+  const Age age = contact.memory.ageAt({a.transform, b.transform}, a.shape->getAngularMotionDisc(),
+                                       b.shape->getAngularMotionDisc(), neededSeparation(contact),
+                                       measure.separation, measure.spacing);
+  const bool same = contact.a.transform == a.transform && contact.b.transform == b.transform;
+  const bool keeps = measure.on_surfaces && !contact.deep;
+  return keeps || same ? age : Age::stale;
 }
 
 /// Appends all pairs but `asked`.
@@ -334,7 +311,7 @@ Measure OverlapBatch::measureOf(const PackingContact& contact) const {
   const PackingShape &a = *contact.a.shape, &b = *contact.b.shape;
   const btScalar needed = neededSeparation(contact);
   // Further than that, so that what is found is good for the next steps too.
-  return Measure(options_, a, b, needed + kMeasureAgain * Measure(options_, a, b, 0).spacing);
+  return Measure(options_, a, b, needed + ContactMemory::reserve(Measure(options_, a, b, 0).spacing));
 }
 
 PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) const {
@@ -376,23 +353,24 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
 
   const Measure& measure = *contact.measure;
   const btMatrix3x3& reference = contact.a.transform.getBasis();
-  contact.search.at = {contact.a.transform, contact.b.transform};
+  ContactMemory& memory = contact.memory;
+  memory.searchedAt(contact.placed());
   if (pass == Pass::surfaces) {
     const Bodies bodies(contact);
-    SearchResult& search = contact.search;
     findCandidates(contacts, PackingGauge(bodies.a, bodies.b, contacts, count_a), measure.spacing, reference,
-                   contact.patches, search.candidates);
-    keepCandidates(contacts, count_a, search);
+                   memory.patches, memory.candidates);
+    keepCandidates(contacts, count_a, contact);
     contact.near = !contacts.empty();
     contact.touching = measureOnSurfaces(bodies, contact);
     contact.deep = false;
   } else if (pass == Pass::deep) {
-    gradientPatch(contacts, measure.spacing, reference, contact.patches);
+    gradientPatch(contacts, measure.spacing, reference, memory.patches);
   } else {
-    volumePatches(contacts, measure.spacing, reference, contact.patches);
+    volumePatches(contacts, measure.spacing, reference, memory.patches);
     contact.overlap = result_.overlaps[index];
   }
-  finish(contact);
+  memory.measuredAt(contact.placed());
+  contact.valid = true;
 }
 
 /// Those that moved too little for a query.
@@ -400,10 +378,10 @@ void OverlapBatch::measureAgain() {
   tbb::parallel_for(std::size_t(0), stale_.size(), [&](std::size_t i) {
     PackingContact& contact = *stale_[i];
     if (contact.searching) return;
-    turn(contact.a.transform.getBasis() * contact.measured_at.a.getBasis().transpose(),
-         contact.search.candidates);
+    contact.memory.turnTo(contact.placed());
     contact.touching = measureOnSurfaces(Bodies(contact), contact);
-    finish(contact);
+    contact.memory.measuredAt(contact.placed());
+    contact.valid = true;
   });
 }
 

@@ -9,12 +9,11 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
-#include "candidates.hpp"
+#include "contact_memory.hpp"
 #include "contact_patch.hpp"
 #include "innersphere/contact_options.hpp"
 #include "innersphere/query.hpp"
 #include "measure.hpp"
-#include "motion.hpp"
 #include "packing_body.hpp"
 
 namespace innersphere {
@@ -42,14 +41,6 @@ struct PackingSide {
   std::array<int, kMaxNesting> child_of{};  ///< which child of them, innermost first
 };
 
-/// What a query leaves to be measured, as long as the bodies do not move much against each other.
-struct SearchResult {
-  Placed at;
-  std::vector<SphereContact> contacts;  ///< only the candidates
-  std::size_t count_a = 0;              ///< of A's spheres, which come first
-  Candidates candidates;                ///< directions as when they were measured last
-};
-
 /// The contact of two packings.
 struct PackingContact {
   PackingContact(const PackingSide& first, const PackingSide& second) : a(first), b(second) {}
@@ -59,17 +50,18 @@ struct PackingContact {
   btScalar separation = 0;         ///< asked for; see Measure
   btScalar time_step = 0;          ///< within which contacts may close [s]
   std::optional<Measure> measure;  ///< of the last query
-  SearchResult search;
-  Placed measured_at;
-  std::vector<ContactPatch> measured;  ///< there
-  std::vector<ContactPatch> patches;   ///< for the transforms in a and b
-  Overlap overlap;                     ///< only where depth is not measured on the surfaces
-  bool valid = false;                  ///< all of the above belongs together
-  bool searching = false;              ///< in the present launch
-  bool near = false;                   ///< enlarged spheres overlap
-  bool touching = false;               ///< the surfaces are near each other
-  bool deep = false;                   ///< they are not, and yet the solids overlap
-  bool wanted = false;                 ///< asked for since it was in a batch
+  Placed placed() const { return {a.transform, b.transform}; }
+
+  ContactMemory memory;                 ///< its candidates are indices of contacts
+  std::vector<SphereContact> contacts;  ///< those that are candidates
+  std::size_t count_a = 0;              ///< of A's spheres, which come first
+  Overlap overlap;                      ///< only where depth is not measured on the surfaces
+  bool valid = false;                   ///< all of the above belongs together
+  bool searching = false;               ///< in the present launch
+  bool near = false;                    ///< enlarged spheres overlap
+  bool touching = false;                ///< the surfaces are near each other
+  bool deep = false;                    ///< they are not, and yet the solids overlap
+  bool wanted = false;                  ///< asked for since it was in a batch
 };
 
 /// What a batch has done since it was made.
@@ -81,8 +73,8 @@ struct BatchCount {
 
 /// Bullet asks for one pair at a time. The first one that is out of date makes one query for all pairs that
 /// were asked for lately and need one, so that a step costs one launch, and one more for each pair that is
-/// new. A launch is up to three queries, one after the other: see Pass. Pairs that have moved less than what a
-/// query leaves room for are measured again where it found contact, and those that have hardly moved at all
+/// new. A launch is up to three queries, one after the other: see Pass. Pairs that have moved less than what
+/// a query leaves room for are measured again where it found contact, and those that have hardly moved at all
 /// take their contacts along. Safe to use from several threads at once.
 class OverlapBatch {
  public:
@@ -109,11 +101,7 @@ class OverlapBatch {
 
  private:
   QueryContext& context();
-  enum class Age {
-    current,  ///< as measured, or so nearly that the patches only need to be carried along
-    moved,    ///< the candidates need to be measured again
-    stale,    ///< needs a query
-  };
+  using Age = ContactMemory::Age;
   Age ageOf(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
   void gatherStale(const PackingContact* asked);
   void prepareStale();

@@ -72,36 +72,71 @@ SurfaceContact::SurfaceContact(const PackingShape& packing, const btCollisionSha
 const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& options,
                                                         const btTransform& packing, const btTransform& other,
                                                         btScalar separation) {
-  static thread_local std::vector<Touch> touches;
   static thread_local std::vector<SphereContact> contacts;
-  static thread_local Candidates candidates;
+  std::vector<ContactPatch>& patches = memory_.patches;
   overlap_.reset();
-  if (!surface_) return patches_;
-  const Measure measure(options, packing_, other_, separation);
+  if (!surface_) return patches;
+  const Measure least(options, packing_, other_, separation);
+  const Placed now{packing, other};
+  const Measure measure(options, packing_, other_, separation + ContactMemory::reserve(least.spacing));
   const PackingBody a(packing_, packing, measure.estimator, measure.slack_a, measure.prefix_a);
-  touches.clear();
-  surface_->touch(a, other, touches);
+  if (remember(a, measure, now, separation)) return patches;
+  touches_.clear();
+  surface_->touch(a, other, touches_);
   const auto caps = [&](btScalar slack) {
     contacts.clear();
-    for (const Touch& touch : touches) {
+    for (const Touch& touch : touches_) {
       const btScalar reach = a.radiusOf(touch.sphere) + a.margin + slack;
       if (touch.distance < reach) contacts.push_back(cap(touch, a.centreOf(touch.sphere), reach));
     }
   };
   if (measure.on_surfaces) {
     caps(a.slack);
-    assert(contacts.size() == touches.size());  // the gauge counts on it
-    const SurfaceGauge gauge(a, touches);
-    findCandidates(contacts, gauge, measure.spacing, packing.getBasis(), patches_, candidates);
-    if (measurePatches(candidates, gauge, measure, patches_)) return patches_;
+    assert(contacts.size() == touches_.size());  // the gauge counts on it
+    const SurfaceGauge gauge(a, touches_);
+    findCandidates(contacts, gauge, measure.spacing, packing.getBasis(), patches, memory_.candidates);
+    if (measurePatches(memory_.candidates, gauge, measure, patches)) {
+      memory_.searchedAt(now);
+      memory_.measuredAt(now);
+      measured_ = measure;
+      margin_ = a.margin;
+      scale_ = a.scale();
+      return patches;
+    }
     caps(0);
-    if (contacts.empty()) return patches_;
+    if (contacts.empty()) return patches;
   } else {
     caps(0);
-    if (options.response == Response::penalty) overlap_ = sumOf(a, touches);
+    if (options.response == Response::penalty) overlap_ = sumOf(a, touches_);
   }
-  volumePatches(contacts, measure.spacing, packing.getBasis(), patches_);
-  return patches_;
+  volumePatches(contacts, measure.spacing, packing.getBasis(), patches);
+  return patches;
+}
+
+bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, const Placed& now,
+                              btScalar separation) {
+  // Asked in every step: it remembers what it was asked last.
+  const bool same = surface_->isAsBefore() && measured_ && measure.on_surfaces &&
+                    measure.prefix_a == measured_->prefix_a && measure.spacing == measured_->spacing &&
+                    margin_ == a.margin && scale_ == a.scale();
+  const std::optional<Measure> before = measured_;
+  measured_.reset();
+  if (!same) return false;
+  const btScalar size_b = other_.isInfinite() ? BT_LARGE_FLOAT : other_.getAngularMotionDisc();
+  const ContactMemory::Age age = memory_.ageAt(now, packing_.getAngularMotionDisc(), size_b, separation,
+                                               before->separation, measure.spacing);
+  if (age == ContactMemory::Age::stale) return false;
+  if (age == ContactMemory::Age::current) {
+    memory_.carryTo(now, packing_);
+  } else {
+    if (!surface_->touchAgain(a, now.b, touches_)) return false;
+    memory_.turnTo(now);
+    if (!measurePatches(memory_.candidates, SurfaceGauge(a, touches_), *before, memory_.patches))
+      return false;
+    memory_.measuredAt(now);
+  }
+  measured_ = before;
+  return true;
 }
 
 const Overlap& SurfaceContact::volumesOf(const ContactOptions& options, const btTransform& packing,

@@ -7,6 +7,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
+#include "contact_memory.hpp"
 #include "contact_patch.hpp"
 #include "innersphere/contact_options.hpp"
 #include "innersphere/packing_shape.hpp"
@@ -30,8 +31,15 @@ class SurfaceContact {
  private:
   const PackingShape& packing_;
   const btCollisionShape& other_;
+  /// Contacts on the surfaces from those of earlier steps. False if they need to be searched for.
+  bool remember(const PackingBody& a, const Measure& measure, const Placed& now, btScalar separation);
+
   std::unique_ptr<OtherSurface> surface_;  ///< null for shapes without one
-  std::vector<ContactPatch> patches_;
+  ContactMemory memory_;                   ///< its candidates are indices of touches
+  std::vector<Touch> touches_;             ///< of the last search
+  std::optional<Measure> measured_;        ///< of it, if it found contact of the surfaces
+  btScalar margin_ = 0;                    ///< of the packing, then
+  btScalar scale_ = 0;
   std::optional<Overlap> overlap_;  ///< once it was asked for
 };
 

@@ -10,6 +10,8 @@ class BoxSurface : public DistanceSurface {
  public:
   explicit BoxSurface(const btBoxShape& box) : box_(box) {}
 
+  bool isAsBefore() override { return boxIsAsBefore(box_); }
+
  private:
   bool nearest(const btVector3& p, Nearest& nearest) const override {
     const btVector3 half = box_.getHalfExtentsWithMargin();

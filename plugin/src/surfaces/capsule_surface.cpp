@@ -11,6 +11,8 @@ class CapsuleSurface : public DistanceSurface {
  public:
   explicit CapsuleSurface(const btCapsuleShape& capsule) : capsule_(capsule) {}
 
+  bool isAsBefore() override { return boxIsAsBefore(capsule_); }
+
  private:
   bool nearest(const btVector3& p, Nearest& nearest) const override {
     const int axis = capsule_.getUpAxis();

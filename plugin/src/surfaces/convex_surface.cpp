@@ -13,6 +13,8 @@ class ConvexSurface : public DistanceSurface {
  public:
   explicit ConvexSurface(const btConvexShape& convex) : convex_(convex) {}
 
+  bool isAsBefore() override { return boxIsAsBefore(convex_); }
+
  private:
   bool nearest(const btVector3& p, Nearest& nearest) const override {
     btGjkEpaSolver2::sResults results;

@@ -1,5 +1,7 @@
 #include "surfaces/distance_surface.hpp"
 
+#include <algorithm>
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
@@ -11,13 +13,39 @@ void DistanceSurface::touch(const PackingBody& body, const btTransform& world, s
     return lowerBound(to_shape((min + max) * (btScalar(0.5) * scale))) <= radius + body.largestExcess();
   };
   const auto test = [&](std::size_t i) {
-    Nearest found;
-    if (!nearest(to_shape(centre(body.shape().packing().spheres[i]) * scale), found)) return;
-    if (found.distance >= body.reach(i)) return;
-    touches.push_back(
-        {static_cast<std::uint32_t>(i), found.distance, world.getBasis() * found.normal, found.curvature});
+    Touch found;
+    found.sphere = static_cast<std::uint32_t>(i);
+    if (touchOne(body, world, to_shape, found) && found.distance < body.reach(i)) touches.push_back(found);
   };
   body.sphereTree().forEach(near, test);
+}
+
+bool DistanceSurface::touchAgain(const PackingBody& body, const btTransform& world,
+                                 std::vector<Touch>& touches) {
+  const btTransform to_shape = world.inverseTimes(body.world);
+  return std::all_of(touches.begin(), touches.end(),
+                     [&](Touch& touch) { return touchOne(body, world, to_shape, touch); });
+}
+
+/// Of the sphere that `touch` names.
+bool DistanceSurface::touchOne(const PackingBody& body, const btTransform& world, const btTransform& to_shape,
+                               Touch& touch) const {
+  Nearest found;
+  const Sphere& sphere = body.shape().packing().spheres[touch.sphere];
+  if (!nearest(to_shape(centre(sphere) * body.scale()), found)) return false;
+  touch.distance = found.distance;
+  touch.normal = world.getBasis() * found.normal;
+  touch.curvature = found.curvature;
+  return true;
+}
+
+bool DistanceSurface::boxIsAsBefore(const btCollisionShape& shape) {
+  btVector3 min, max;
+  shape.getAabb(btTransform::getIdentity(), min, max);
+  const bool same = min == box_min_ && max == box_max_;
+  box_min_ = min;
+  box_max_ = max;
+  return same;
 }
 
 btScalar DistanceSurface::lowerBound(const btVector3& p) const {

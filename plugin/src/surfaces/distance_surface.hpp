@@ -9,6 +9,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 class DistanceSurface : public OtherSurface {
  public:
   void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) final;
+  bool touchAgain(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) final;
 
  protected:
   struct Nearest {
@@ -20,8 +21,18 @@ class DistanceSurface : public OtherSurface {
   virtual bool nearest(const btVector3& p, Nearest& nearest) const = 0;
   /// At most the distance of p, and cheaper; only its comparison with a radius matters.
   virtual btScalar lowerBound(const btVector3& p) const;
+  /// Whether the bounding box of a shape is what it was at the last call. What moves less than the box shows
+  /// is not noticed before the bodies move.
+  bool boxIsAsBefore(const btCollisionShape& shape);
   /// Distance of p from the bounding box of a shape.
   static btScalar boxDistance(const btCollisionShape& shape, const btVector3& p);
+
+ private:
+  bool touchOne(const PackingBody& body, const btTransform& world, const btTransform& to_shape,
+                Touch& touch) const;
+
+  btVector3 box_min_{0, 0, 0};
+  btVector3 box_max_{0, 0, 0};
 };
 
 // One maker a kind; each in its own file.

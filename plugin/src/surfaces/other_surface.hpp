@@ -27,6 +27,12 @@ class OtherSurface {
   /// Appends the spheres of `body` whose centre is closer than their reach (body.reach) to this shape placed
   /// at `world`.
   virtual void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) = 0;
+
+  /// Whether the shape is as it was when it was asked last. False if that cannot be told.
+  virtual bool isAsBefore() { return false; }
+  /// Renews touches, of the same spheres, for where the bodies are now; they may be beyond reach by then.
+  /// False if that cannot be done.
+  virtual bool touchAgain(const PackingBody&, const btTransform&, std::vector<Touch>&) { return false; }
 };
 
 /// The surface of `shape`, or null for a shape without one (fluids, invalid types). The shape must outlive

@@ -10,6 +10,13 @@ class PlaneSurface : public DistanceSurface {
  public:
   explicit PlaneSurface(const btStaticPlaneShape& plane) : plane_(plane) {}
 
+  bool isAsBefore() override {
+    const bool same = normal_ == plane_.getPlaneNormal() && constant_ == plane_.getPlaneConstant();
+    normal_ = plane_.getPlaneNormal();
+    constant_ = plane_.getPlaneConstant();
+    return same;
+  }
+
  private:
   bool nearest(const btVector3& p, Nearest& nearest) const override {
     nearest.normal = plane_.getPlaneNormal();
@@ -18,6 +25,8 @@ class PlaneSurface : public DistanceSurface {
   }
 
   const btStaticPlaneShape& plane_;
+  btVector3 normal_{0, 0, 0};
+  btScalar constant_ = 0;
 };
 
 }  // namespace

@@ -11,6 +11,8 @@ class SphereSurface : public DistanceSurface {
  public:
   explicit SphereSurface(const btSphereShape& sphere) : sphere_(sphere) {}
 
+  bool isAsBefore() override { return boxIsAsBefore(sphere_); }
+
  private:
   bool nearest(const btVector3& p, Nearest& nearest) const override {
     nearest.distance = thickenedDistance(p, sphere_.getRadius(), btVector3(0, 1, 0), nearest.normal);

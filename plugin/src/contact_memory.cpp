@@ -1,0 +1,77 @@
+#include "contact_memory.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// In units of the spacing: bodies that have moved less since a search have the same candidates for contacts,
+constexpr btScalar kMeasureAgain = btScalar(0.25);
+/// and less since they were measured, the same contacts. The error is of second order: a hundredth of this.
+constexpr btScalar kCarry = btScalar(0.02);
+
+/// Of a body of this size, as seen from a frame.
+btScalar motionIn(const btTransform& frame_before, const btTransform& before, const btTransform& frame_now,
+                  const btTransform& now, btScalar size) {
+  const btTransform was = frame_before.inverseTimes(before), is = frame_now.inverseTimes(now);
+  btScalar turned2 = 0;  // a turn by t changes the axes by 2 sqrt(2) sin(t / 2)
+  for (int i = 0; i < 3; ++i) turned2 += is.getBasis()[i].distance2(was.getBasis()[i]);
+  return is.getOrigin().distance(was.getOrigin()) + size * btSqrt(turned2 / 2);
+}
+
+/// An upper bound for how far a place on one body moves, as seen from the other, where both reach: that is
+/// within the smaller one.
+btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a, btScalar size_b) {
+  return size_b < size_a ? motionIn(before.a, before.b, now.a, now.b, size_b)
+                         : motionIn(before.b, before.a, now.b, now.a, size_a);
+}
+
+}  // namespace
+
+ContactMemory::Age ContactMemory::ageAt(const Placed& now, btScalar size_a, btScalar size_b, btScalar needed,
+                                        btScalar found, btScalar spacing) const {
+  const btScalar searched = motionBetween(searched_at_, now, size_a, size_b);
+  if (searched > kMeasureAgain * spacing || needed + searched > found) return Age::stale;
+  const btScalar measured = motionBetween(measured_at_, now, size_a, size_b);
+  return measured > kCarry * spacing ? Age::moved : Age::current;
+}
+
+btScalar ContactMemory::reserve(btScalar spacing) {
+  return kMeasureAgain * spacing;
+}
+
+void ContactMemory::searchedAt(const Placed& now) {
+  searched_at_ = now;
+}
+
+void ContactMemory::turnTo(const Placed& now) {
+  turn(now.a.getBasis() * measured_at_.a.getBasis().transpose(), candidates);
+}
+
+void ContactMemory::measuredAt(const Placed& now) {
+  measured_at_ = now;
+  measured_ = patches;
+}
+
+void ContactMemory::carryTo(const Placed& now, const PackingShape& a) {
+  const Placed& then = measured_at_;
+  patches = measured_;
+  if (then == now) return;
+  const btMatrix3x3 turn_a = now.a.getBasis() * then.a.getBasis().transpose();
+  const btMatrix3x3 turn_b = now.b.getBasis() * then.b.getBasis().transpose();
+  const btVector3 to_b_then = then.b.getOrigin() - a.impl().toWorld(then.a).getOrigin();
+  const btVector3 to_b_now = now.b.getOrigin() - a.impl().toWorld(now.a).getOrigin();
+  for (ContactPatch& patch : patches) {
+    patch.normal = turn_a * patch.normal;
+    patch.centre = turn_a * patch.centre;
+    for (int i = 0; i < patch.count; ++i) {
+      ContactPoint& point = patch.points[i];
+      const btVector3 on_a = turn_a * (point.on_b + point.normal * point.depth);
+      point.normal = turn_a * point.normal;
+      point.on_b = turn_b * (point.on_b - to_b_then) + to_b_now;
+      point.depth = (on_a - point.on_b).dot(point.normal);
+    }
+  }
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
