@@ -45,6 +45,8 @@ void climb(const Gauge& gauge, btScalar steepest, int steps, Measured& m) {
   btVector3 shift(0, 0, 0);
   for (int i = 0; i < steps; ++i) {
     Gap gap;
+    gap.triangle_a = m.gap.triangle_a;
+    gap.triangle_b = m.gap.triangle_b;
     const btVector3 step = place.slope / fall;
     if (!gauge.measure(m.index, m.direction, shift + step, gap) || !usable(gap, m.direction)) return;
     const Place next = placeOf(gap, m.direction);
