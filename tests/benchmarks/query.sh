@@ -4,8 +4,8 @@
 #   ./tests/benchmarks/run.sh query FOLDER [MESH=POSES ...]
 #
 # writes query-sweep.md, query-growth.md, query-budget.md, query-peers.md, query-deadline.md and tool-accuracy.md into
-# FOLDER (with a GPU also query-memory.md), and plots. POSES is a CSV table of placements of a copy of MESH with the
-# exact overlaps. Without meshes the project's own solids serve, whose overlaps are sampled.
+# FOLDER (with a GPU also query-memory.md and query-construction.md), and plots. POSES is a CSV table of placements of a
+# copy of MESH with the exact overlaps. Without meshes the project's own solids serve, whose overlaps are sampled.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 run=$here/run.sh
@@ -37,7 +37,10 @@ plot growth
 plot budget
 "$run" query_peers "$@" >"$out/query-peers.md"
 "$run" query_deadline "${@%%=*}" >"$out/query-deadline.md"
-if [ ${#device[@]} -gt 0 ]; then "$run" query_memory "${device[@]}" >"$out/query-memory.md"; fi
+if [ ${#device[@]} -gt 0 ]; then
+  "$run" query_memory "${device[@]}" >"$out/query-memory.md"
+  "$run" query_construction "${device[@]}" >"$out/query-construction.md"
+fi
 
 tables=()
 for item in "$@"; do
