@@ -31,8 +31,8 @@ struct BuildPlan {
   core::GridPlan grid;
   Tiers tiers;
   Jobs jobs;
-  /// Spheres whose keys have the same upper bits come into one bucket first. There are one to two times as many of
-  /// them as spheres.
+  /// Spheres whose keys have the same upper bits come into one bucket first. There are about as many of them
+  /// as spheres.
   int bucket_shift;
   std::uint32_t buckets;
 };

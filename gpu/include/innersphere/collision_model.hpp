@@ -17,8 +17,9 @@ enum class Estimator {
 };
 
 /// A packing with its hierarchical hash grids. Bodies of the same shape share one model. Grids are built on
-/// first use, on the device only when a query runs there, and live as long as the model: one for each prefix
-/// and estimator. All members but update() are safe to call from several threads at once.
+/// first use, by the first query in which the bounds of both bodies meet and where it runs, on the CPU or the
+/// device, and live as long as the model: one for each prefix and estimator. All members but update() are
+/// safe to call from several threads at once.
 class CollisionModel {
  public:
   /// Throws Error if the packing is not valid (see validate()) or has lengths beyond 1e15 m.
