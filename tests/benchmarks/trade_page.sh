@@ -22,7 +22,7 @@ cat <<'HTML'
 <style>
 body { font: 16px/1.5 sans-serif; max-width: 1020px; margin: 2em auto; padding: 0 1em; color: #222 }
 img { max-width: 100%; height: auto } figure { display: inline-block; margin: 0 10px 10px 0 }
-figcaption { font-size: 14px; text-align: center } pre { background: #f4f4f4; padding: .7em; overflow-x: auto }
+figcaption { font-size: 14px; text-align: center } pre { background: #f4f4f4; padding: .7em; white-space: pre-wrap }
 table { border-collapse: collapse; font-size: 13px } td, th { border: 1px solid #ccc; padding: 2px 7px; text-align: right }
 </style></head><body>
 <h1>Speed against accuracy</h1>
@@ -31,8 +31,8 @@ printf '<pre>'
 sed -n 's/^# //p' "$out/trade.csv" | sed 's/&/\&amp;/g; s/</\&lt;/g'
 printf '</pre>\n'
 cat <<'HTML'
-<p>Times are processor times of one core, so that other programs do not add to them, and the least of several runs that take
-turns. All shapes have the same mass properties and start from the same places; the scenes are those of
+<p>Times are processor times of one core, so that other programs do not add to them; short runs and single overlaps are repeated
+in turns, and the least counts. All shapes have the same mass properties and start from the same places; the scenes are those of
 <code>innersphere scene run NAME --shape packing|gimpact|spheres|convex</code>. Errors are against closed forms, but for the
 swinging chain, where the reference is a run with 4,096 spheres at 1,920 steps a second.</p>
 <h2>What collides</h2>
@@ -41,7 +41,7 @@ shape packing "packing: surface, and the spheres that find its contacts"
 shape gimpact "gimpact: the triangles of the surface"
 shape spheres "spheres: btCompoundShape of the packing's 256 largest"
 shape convex "convex: btCompoundShape of hulls of sectors and layers"
-plot trade "Scenes, by number of spheres" "Labels: spheres, triangles or hulls of a body. What is more exact than 0.001 % is drawn there; what is off by 100 % and more, at the upper edge. Without a tuned margin of 0.0001 of the size GImpact is far worse."
+plot trade "Scenes, by number of spheres" "Labels: spheres, triangles or hulls of a body. What is more exact than 0.001 % is drawn there; what is off by 100 % and more, at the upper edge. The margin of GImpact is 0.0001 of the size; with 0.001 its chain is sixteen times as far off."
 plot trade-rates "Scenes, by time step" "Labels: steps a second. Short steps buy what spheres cannot. Where a line leaves the picture, the stack has fallen or a ring is lost."
 plot trade-volume "Volume of single overlaps" "Eight copies of each solid in random places, each with 2 % of its volume inside the solid; volumes are sampled. No other way knows volumes."
 plot trade-direction "Direction of the push" "The same copies. The truth is the gradient of the volume, integrated over the surface; of Bullet's own shapes, contacts are summed by their depth."
