@@ -12,6 +12,7 @@ if [ $# -eq 0 ]; then
   sed -n '2,7p' "$0" | cut -c 3- >&2
   exit 2
 fi
+# shellcheck source=examples/setup.sh
 . "$here/../../examples/setup.sh"
 need_packages gnuplot-nox
 out=$1
@@ -27,8 +28,8 @@ done
 for shape in packing gimpact spheres convex; do
   spheres=1000
   [ $shape = spheres ] && spheres=256
-  "$run" innersphere scene run bowls --shape $shape --spheres $spheres --concavity 0.01 --png "$out/shape-$shape.png" --width 480 \
-    --height 300 --force >/dev/null
+  "$run" innersphere scene run bowls --seconds 2 --shape $shape --spheres $spheres --concavity 0.01 \
+    --png "$out/shape-$shape.png" --width 480 --height 300 --force >/dev/null
 done
 "$here/trade_page.sh" "$out" >"$out/trade.html"
 printf 'wrote %s\n' "$out/trade.html" >&2
