@@ -8,6 +8,8 @@ namespace {
 constexpr btScalar kMeasureAgain = btScalar(0.25);
 /// and less since they were measured, the same contacts. The error is of second order: a hundredth of this.
 constexpr btScalar kCarry = btScalar(0.02);
+/// Surfaces fit together if their curvatures add up to less than this part of themselves.
+constexpr btScalar kUnlike = btScalar(0.3);
 
 /// Of a body of this size, as seen from a frame.
 btScalar motionIn(const btTransform& frame_before, const btTransform& before, const btTransform& frame_now,
@@ -23,6 +25,26 @@ btScalar motionIn(const btTransform& frame_before, const btTransform& before, co
 btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a, btScalar size_b) {
   return size_b < size_a ? motionIn(before.a, before.b, now.a, now.b, size_b)
                          : motionIn(before.b, before.a, now.b, now.a, size_a);
+}
+
+/// From where `point` and its normal have gone with each body to where the surfaces are deepest in each other
+/// now: a contact of curved surfaces moves over both as they roll and slide, to where their normals agree.
+void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector3& on_a,
+            ContactPoint& point) {
+  const btScalar a = point.curvature_a, b = point.curvature_b;
+  const btVector3 apart = on_a - point.on_b;
+  if (a + b > kUnlike * (btFabs(a) + btFabs(b))) {
+    // A's normal at on_b: convex surfaces turn towards the way that one goes on them.
+    const btVector3 aside = apart - normal_b * apart.dot(normal_b);
+    const btVector3 slope = normal_b - (normal_a - aside * a);
+    const btVector3 shift = slope / (a + b);
+    point.normal = (normal_b - shift * b).normalized();
+    point.depth = apart.dot(point.normal) + slope.dot(shift) / 2;
+    point.on_b += shift - point.normal * shift.dot(point.normal);
+  } else {
+    point.normal = (normal_a * point.turn_a + normal_b * (1 - point.turn_a)).normalized();
+    point.depth = apart.dot(point.normal);
+  }
 }
 
 }  // namespace
@@ -66,9 +88,8 @@ void ContactMemory::carryTo(const Placed& now, const PackingShape& a) {
     for (int i = 0; i < patch.count; ++i) {
       ContactPoint& point = patch.points[i];
       const btVector3 on_a = turn_a * (point.on_b + point.normal * point.depth);
-      point.normal = turn_a * point.normal;
       point.on_b = turn_b * (point.on_b - to_b_then) + to_b_now;
-      point.depth = (on_a - point.on_b).dot(point.normal);
+      rollOn(turn_a * point.normal, turn_b * point.normal, on_a, point);
     }
   }
 }

@@ -41,8 +41,8 @@ class ContactMemory {
   void turnTo(const Placed& now);
   /// patches have been measured.
   void measuredAt(const Placed& now);
-  /// Moves the patches along: each contact has a point that moves with A, and one that moves with B. A's is
-  /// the packing that positions are relative to the origin of.
+  /// Moves the patches along: each contact has a point that moves with A and one that moves with B, and rolls
+  /// on where surfaces are curved. A's is the packing that positions are relative to the origin of.
   void carryTo(const Placed& now, const PackingShape& a);
 
   Candidates candidates;

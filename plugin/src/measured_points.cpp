@@ -64,6 +64,12 @@ bool rises(const btVector3& face, btScalar curvature, const btVector3& normal) {
   return curvature == 0 && face.distance2(normal) > kLeans * kLeans;
 }
 
+/// The normal turns with the face that it belongs to.
+btScalar shareOfA(const Gap& gap, const btVector3& normal) {
+  const btScalar from_a = gap.normal_a.distance(normal), from_b = gap.normal_b.distance(normal);
+  return from_a + from_b > SIMD_EPSILON ? from_b / (from_a + from_b) : btScalar(0.5);
+}
+
 }  // namespace
 
 void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, btScalar separation,
@@ -86,15 +92,21 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   climb(gauge, measured);
   const ContactNormal normals(measured, gauge);
   const std::size_t first = found.size();
-  const auto add = [&](const btVector3& on_b, const btVector3& normal, btScalar depth, std::uint64_t id) {
-    if (depth > -separation) found.push_back({{on_b, normal, depth, id}, 0});
+  const auto add = [&](const Measured& m, const btVector3& on_b, const btVector3& normal, btScalar depth,
+                       std::uint64_t id) {
+    if (depth > -separation) found.push_back({{on_b, normal, depth, id, 0, 0, shareOfA(m.gap, normal)}, 0});
   };
   const auto isFound = [&](std::uint64_t id) {
     return std::any_of(found.begin(), found.end(), [&](const MeasuredPoint& f) { return f.point.id == id; });
   };
   for (const Measured& m : measured) {
     const btVector3 normal = normals.at(m);
-    add(m.gap.on_b, normal, (m.gap.on_a - m.gap.on_b).dot(normal), m.id);
+    const btScalar depth = (m.gap.on_a - m.gap.on_b).dot(normal);
+    add(m, m.gap.on_b, normal, depth, m.id);
+    if (depth > -separation) {
+      found.back().point.curvature_a = m.gap.curvature_a;
+      found.back().point.curvature_b = m.gap.curvature_b;
+    }
     const bool edge_a = rises(m.gap.normal_a, m.gap.curvature_a, normal),
                edge_b = rises(m.gap.normal_b, m.gap.curvature_b, normal);
     if (edge_a == edge_b) continue;
@@ -102,9 +114,9 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     gauge.corners(m.index, m.gap, normal, edge_a, corners);
     for (const Gauge::Corner& corner : corners) {
       if (isFound(corner.id)) continue;
-      const btScalar depth =
+      const btScalar corner_depth =
           edge_a ? (corner.at - m.gap.on_b).dot(normal) : (m.gap.on_a - corner.at).dot(normal);
-      add(edge_a ? corner.at - normal * depth : corner.at, normal, depth, corner.id);
+      add(m, edge_a ? corner.at - normal * corner_depth : corner.at, normal, corner_depth, corner.id);
     }
   }
   for (std::size_t i = first; i < found.size(); ++i) {

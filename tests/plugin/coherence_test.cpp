@@ -101,6 +101,29 @@ TEST_F(Coherence, ABallThatRollsSlowlyKeepsItsDepth) {
   }
 }
 
+/// Its contact stays under it, and pushes neither forwards nor back: in each step that is not measured, too.
+TEST_F(Coherence, ABallRollsOnItsLowestPoint) {
+  addUpper(makeShape(singleBall(kRadius)));
+  place(btVector3(0, 0, btScalar(0.5 + kRadius - 0.002)));
+  const auto point = [&]() -> const btManifoldPoint& {
+    return world.dispatcher.getManifoldByIndexInternal(0)->getContactPoint(0);
+  };
+  ASSERT_EQ(world.contactCount(), 1);
+  const btVector3 start = point().getPositionWorldOnB();
+  const BatchCount before = count();
+  for (int i = 1; i <= 9; ++i) {
+    const double way = 0.001 * i * spacing;  // its turn is as large again
+    place(btVector3(btScalar(way), 0, btScalar(0.5 + kRadius - 0.002)),
+          btQuaternion(btVector3(0, 1, 0), btScalar(way / kRadius)));
+    ASSERT_EQ(world.contactCount(), 1);
+    EXPECT_NEAR(std::fabs(point().m_normalWorldOnB.z()), 1, 1e-6);
+    EXPECT_NEAR(point().m_normalWorldOnB.x(), 0, 2e-6);
+    EXPECT_NEAR(point().getPositionWorldOnB().x() - start.x(), way, 0.05 * way + 1e-6);
+  }
+  EXPECT_EQ(count().measured, before.measured);
+  EXPECT_EQ(count().pairs, before.pairs);
+}
+
 TEST_F(Coherence, ABoxThatTiltsSlowlyGoesDownWithItsCorner) {
   addUpper(makeShape(latticeBox({0.6, 0.6, 0.6}, 6)));
   for (int i = 0; i <= 80; ++i) {
