@@ -56,7 +56,6 @@ void buildGears(SceneWorld& world, const SceneOptions& options) {
     const btTransform place(turn(vec(0, 0, 1), phase), vec(x, 0, 0));
     btRigidBody& body = world.addBody(solid, 1000, place, paletteColour(index));
     body.setFriction(0);
-    body.setRollingFriction(0);
     const btVector3 axis = quatRotate(body.getWorldTransform().getRotation().inverse(), vec(0, 0, 1));
     btVector3 axis_in_body = axis;
     auto hinge = std::make_unique<btHingeConstraint>(body, vec(0, 0, 0), axis_in_body);

@@ -75,7 +75,6 @@ void buildMaze(SceneWorld& world, const SceneOptions& options) {
   }
   const std::size_t ball = world.addSolid(*makeBall(kBall), options.spheres, progressOf(options, 3, 4));
   btRigidBody& body = world.addBody(ball, 1000, at(-kHalfWidth + 0.3, 0.3, kBall), paletteColour(0));
-  body.setRollingFriction(0);
   const std::size_t index = world.indexOf(body);
   world.expect({"where the ball ends, along the way down", "m", Truth::Kind::equal, kBottom + kWall + kBall,
                 0.005 * 2 * kBall, "on the last wall, a radius above it; 0.5 % of its size",

@@ -30,7 +30,6 @@ btRigidBody& addNutOnBolt(SceneWorld& world, const SceneOptions& options, double
   btRigidBody& body = world.addBody(nut, 1000, btTransform(turned, vec(0, 0, kStart + kNutHeight / 2 - play)),
                                     {0.95f, 0.70f, 0.27f});
   body.setFriction(btScalar(friction));
-  body.setRollingFriction(0);
   world.film.has_ground = false;
   world.film.viewpoint = {0.4, 0.35, 0.45};
   return body;

@@ -27,11 +27,14 @@ void addTray(SceneWorld& world, const Tray& tray) {
   const double outer = tray.half_width + 2 * kWall;
   const double half_height = tray.height / 2 + kWall;  // down to the underside of the floor
   const double middle = tray.height / 2 - kWall;
-  world.addFixedBox(vec(tray.half_width, tray.half_width, kWall), at(0, 0, -kWall), kTrayColour);
+  const auto addBox = [&world](const btVector3& half_size, const btTransform& place) {
+    world.addFixedBox(half_size, place, kTrayColour).setRollingFriction(kRollingFriction);
+  };
+  addBox(vec(tray.half_width, tray.half_width, kWall), at(0, 0, -kWall));
   for (const double side : {-1.0, 1.0}) {
     const double centre = side * (tray.half_width + kWall);
-    world.addFixedBox(vec(outer, kWall, half_height), at(0, centre, middle), kTrayColour);
-    world.addFixedBox(vec(kWall, tray.half_width, half_height), at(centre, 0, middle), kTrayColour);
+    addBox(vec(outer, kWall, half_height), at(0, centre, middle));
+    addBox(vec(kWall, tray.half_width, half_height), at(centre, 0, middle));
   }
   world.addGround(-2 * kWall);
 }
@@ -53,7 +56,8 @@ void addPile(SceneWorld& world, const SceneOptions& options, std::size_t count,
     const std::size_t kind = kinds[i];
     // With few kinds, colours tell bodies apart; with many, kinds.
     const Colour colour = paletteColour(solids.size() < 4 ? i : kind);
-    world.addBody(solids[kind], kDensity, btTransform(random.rotation(), place), colour);
+    world.addBody(solids[kind], kDensity, btTransform(random.rotation(), place), colour)
+        .setRollingFriction(kRollingFriction);
   }
   world.film.viewpoint = {0.5, 0.68, 0.45};
 }

@@ -20,7 +20,6 @@ void buildRoll(SceneWorld& world, const SceneOptions& options) {
                          const char* source) {
     btRigidBody& body = world.addBody(solid, 1000, place, paletteColour(solid));
     body.setFriction(btScalar(kFriction));
-    body.setRollingFriction(0);
     body.setLinearVelocity(vec(kSpeed, 0, 0));
     const std::size_t index = world.indexOf(body);
     world.expect({std::string("speed of the rolling ") + name, "m/s", Truth::Kind::equal, share * kSpeed,
@@ -49,7 +48,6 @@ void buildTorsion(SceneWorld& world, const SceneOptions& options) {
                          double known_miss) {
     btRigidBody& body = world.addBody(solid, 1000, at(x, 0, 0.05), paletteColour(solid));
     body.setFriction(btScalar(kFriction));
-    body.setRollingFriction(0);
     body.setAngularVelocity(vec(0, 0, kSpin));
     world
         .expect({std::string("angular deceleration of the ") + name, "rad/s^2", Truth::Kind::equal, expected,

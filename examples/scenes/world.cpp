@@ -9,9 +9,8 @@
 namespace innersphere::demo {
 namespace {
 
-constexpr btScalar kGravity = btScalar(9.81);           // [m/s^2]
-constexpr btScalar kFriction = btScalar(0.8);           // of each body; Bullet multiplies the two of a pair
-constexpr btScalar kRollingFriction = btScalar(0.005);  // [m] lever of the resistance against rolling
+constexpr btScalar kGravity = btScalar(9.81);  // [m/s^2]
+constexpr btScalar kFriction = btScalar(0.8);  // of each body; Bullet multiplies the two of a pair
 
 std::array<float, 3> moved(const btTransform& t, float x, float y, float z) {
   const btVector3 p = t * btVector3(btScalar(x), btScalar(y), btScalar(z));
@@ -93,7 +92,6 @@ btRigidBody& SceneWorld::add(std::string name, btCollisionShape& shape, double m
   btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, &shape, inertia);
   info.m_startWorldTransform = place;
   info.m_friction = kFriction;
-  info.m_rollingFriction = kRollingFriction;
   auto body = std::make_unique<btRigidBody>(info);
   if (mass > 0) body->setActivationState(DISABLE_DEACTIVATION);
   world_.addRigidBody(body.get());

@@ -18,6 +18,10 @@
 
 namespace innersphere::demo {
 
+/// Lever of the resistance against rolling [m], for bodies that would roll on for ever. Those that lie still
+/// on a face go without: Bullet's solver lets them creep by 0.1 mm/s with it.
+constexpr btScalar kRollingFriction = btScalar(0.005);
+
 /// A solid that was packed for a scene.
 struct SceneSolid {
   std::shared_ptr<const Packing> packing;
