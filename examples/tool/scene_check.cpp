@@ -42,6 +42,9 @@ int run(Arguments& arguments) {
       all_hold = all_hold && verdict.outcome != demo::Outcome::missed;
       if (!arguments.json) std::printf("  %s\n", describe(verdict).c_str());
     }
+    if (!arguments.json) {
+      std::printf("  energy  %.4g J in increments from step to step\n", play.recording.energyGained());
+    }
     std::fflush(stdout);
   }
   if (arguments.json) std::printf("%s\n", results.dump(2).c_str());
