@@ -40,7 +40,7 @@ void buildPeg(SceneWorld& world, const SceneOptions& options) {
                   return std::hypot(r.last(index).position[0], r.last(index).position[1]);
                 },
                 1.5});
-  world.film.viewpoint = {0.4, 0.4, 0.45};
+  world.film.viewpoint = {0.4, 0.4, 0.45, true};
 }
 
 }  // namespace innersphere::demo

@@ -97,7 +97,7 @@ void expectRest(SceneWorld& world, double seconds) {
 
 void buildPile(SceneWorld& world, const SceneOptions& options) {
   constexpr double kCorner = 0.51;  // [m] from the middle, along each side
-  constexpr Tray kTray{0.88, 0.4};
+  constexpr Tray kTray{0.88, 0.6};
   addTray(world, kTray);
   addPile(world, options, 24,
           {{-kCorner, -kCorner}, {kCorner, kCorner}, {0, 0}, {kCorner, -kCorner}, {-kCorner, kCorner}});

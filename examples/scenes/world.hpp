@@ -20,7 +20,7 @@ namespace innersphere::demo {
 
 /// Lever of the resistance against rolling [m], for bodies that would roll on for ever. Those that lie still
 /// on a face go without: Bullet's solver lets them creep by 0.1 mm/s with it.
-constexpr btScalar kRollingFriction = btScalar(0.005);
+constexpr btScalar kRollingFriction = btScalar(0.01);
 
 /// A solid that was packed for a scene.
 struct SceneSolid {
