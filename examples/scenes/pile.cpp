@@ -59,7 +59,7 @@ void addPile(SceneWorld& world, const SceneOptions& options, std::size_t count,
     world.addBody(solids[kind], kDensity, btTransform(random.rotation(), place), colour)
         .setRollingFriction(kRollingFriction);
   }
-  world.film.viewpoint = {0.5, 0.68, 0.45};
+  world.film.viewpoint = {0.5, 0.95, 0.45};  // over the walls
 }
 
 void expectRest(SceneWorld& world, double seconds) {

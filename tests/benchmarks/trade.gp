@@ -29,7 +29,7 @@ if (picture eq "scenes") {
     set title word(titles, i)
     set ylabel "error, %"
     set xlabel "processor time of a step at 240 steps/s, ms"
-    if (i == 1) { set key bottom left } else { unset key }
+    if (i == 3) { set key bottom right } else { unset key }
     set yrange [1e-3:100]
     set xrange [0.01:100]
     plot along(is.' && $3 == "packing" && $5 == "compliant"') using ($12/1e3):(within($10)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
