@@ -8,6 +8,8 @@ namespace {
 constexpr btScalar kMeasureAgain = btScalar(0.25);
 /// and less since they were measured, the same contacts. The error is of second order: a hundredth of this.
 constexpr btScalar kCarry = btScalar(0.02);
+/// A body that is held from sides more than 107 degrees apart is enclosed.
+constexpr btScalar kEnclosed = btScalar(-0.3);
 /// Surfaces fit together if their curvatures add up to less than this part of themselves.
 constexpr btScalar kUnlike = btScalar(0.3);
 
@@ -28,16 +30,19 @@ btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a,
 }
 
 /// From where `point` and its normal have gone with each body to where the surfaces are deepest in each other
-/// now: a contact of curved surfaces moves over both as they roll and slide, to where their normals agree.
-void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector3& on_a,
+/// now: a contact of curved surfaces moves over both as they roll and slide, to where their normals agree,
+/// but where they are so flat that this is further away than `farthest` [m].
+void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector3& on_a, btScalar farthest,
             ContactPoint& point) {
   const btScalar a = point.curvature_a, b = point.curvature_b;
   const btVector3 apart = on_a - point.on_b;
-  if (a + b > kUnlike * (btFabs(a) + btFabs(b))) {
-    // A's normal at on_b: convex surfaces turn towards the way that one goes on them.
-    const btVector3 aside = apart - normal_b * apart.dot(normal_b);
-    const btVector3 slope = normal_b - (normal_a - aside * a);
-    const btVector3 shift = slope / (a + b);
+  // A's normal at on_b: convex surfaces turn towards the way that one goes on them.
+  const btVector3 aside = apart - normal_b * apart.dot(normal_b);
+  const btVector3 slope = normal_b - (normal_a - aside * a);
+  const btScalar fall = a + b;
+  const bool unlike = fall > kUnlike * (btFabs(a) + btFabs(b));
+  if (unlike && slope.length() < farthest * fall) {
+    const btVector3 shift = slope / fall;
     point.normal = (normal_b - shift * b).normalized();
     point.depth = apart.dot(point.normal) + slope.dot(shift) / 2;
     point.on_b += shift - point.normal * shift.dot(point.normal);
@@ -52,7 +57,8 @@ void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector
 ContactMemory::Age ContactMemory::ageAt(const Placed& now, btScalar size_a, btScalar size_b, btScalar needed,
                                         btScalar found, btScalar spacing) const {
   const btScalar searched = motionBetween(searched_at_, now, size_a, size_b);
-  if (searched > kMeasureAgain * spacing || needed + searched > found) return Age::stale;
+  if (searched > (enclosed_ ? btScalar(0) : kMeasureAgain * spacing) || needed + searched > found)
+    return Age::stale;
   const btScalar measured = motionBetween(measured_at_, now, size_a, size_b);
   return measured > kCarry * spacing ? Age::moved : Age::current;
 }
@@ -63,6 +69,11 @@ btScalar ContactMemory::reserve(btScalar spacing) {
 
 void ContactMemory::searchedAt(const Placed& now) {
   searched_at_ = now;
+  enclosed_ = false;
+  for (const Candidates::OfPatch& patch : candidates.patches) {
+    for (const Candidates::OfPatch& other : candidates.patches)
+      enclosed_ = enclosed_ || patch.normal.dot(other.normal) < kEnclosed;
+  }
 }
 
 void ContactMemory::turnTo(const Placed& now) {
@@ -74,7 +85,7 @@ void ContactMemory::measuredAt(const Placed& now) {
   measured_ = patches;
 }
 
-void ContactMemory::carryTo(const Placed& now, const PackingShape& a) {
+void ContactMemory::carryTo(const Placed& now, const PackingShape& a, btScalar spacing) {
   const Placed& then = measured_at_;
   patches = measured_;
   if (then == now) return;
@@ -89,7 +100,7 @@ void ContactMemory::carryTo(const Placed& now, const PackingShape& a) {
       ContactPoint& point = patch.points[i];
       const btVector3 on_a = turn_a * (point.on_b + point.normal * point.depth);
       point.on_b = turn_b * (point.on_b - to_b_then) + to_b_now;
-      rollOn(turn_a * point.normal, turn_b * point.normal, on_a, point);
+      rollOn(turn_a * point.normal, turn_b * point.normal, on_a, kCarry * spacing, point);
     }
   }
 }

@@ -43,13 +43,16 @@ class ContactMemory {
   void measuredAt(const Placed& now);
   /// Moves the patches along: each contact has a point that moves with A and one that moves with B, and rolls
   /// on where surfaces are curved. A's is the packing that positions are relative to the origin of.
-  void carryTo(const Placed& now, const PackingShape& a);
+  void carryTo(const Placed& now, const PackingShape& a, btScalar spacing);
 
   Candidates candidates;
   std::vector<ContactPatch> patches;
 
  private:
   Placed searched_at_;
+  /// A nut on its thread, a peg, teeth that mesh: bodies that rattle in their clearance touch now here and
+  /// now there, so that contact is searched for whenever they move.
+  bool enclosed_ = false;
   Placed measured_at_;
   std::vector<ContactPatch> measured_;
 };

@@ -130,7 +130,7 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
   contact.a = a;
   contact.b = b;
   if (age == Age::current) {
-    contact.memory.carryTo(contact.placed(), *a.shape);
+    contact.memory.carryTo(contact.placed(), *a.shape, contact.measure->spacing);
   } else {
     contact.searching = age == Age::stale;
     stale_.assign(1, &contact);
@@ -354,7 +354,6 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
   const Measure& measure = *contact.measure;
   const btMatrix3x3& reference = contact.a.transform.getBasis();
   ContactMemory& memory = contact.memory;
-  memory.searchedAt(contact.placed());
   if (pass == Pass::surfaces) {
     const Bodies bodies(contact);
     findCandidates(contacts, PackingGauge(bodies.a, bodies.b, contacts, count_a), measure.spacing, reference,
@@ -369,6 +368,7 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
     volumePatches(contacts, measure.spacing, reference, memory.patches);
     contact.overlap = result_.overlaps[index];
   }
+  memory.searchedAt(contact.placed());
   memory.measuredAt(contact.placed());
   contact.valid = true;
 }

@@ -127,7 +127,7 @@ bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, cons
                                                before->separation, measure.spacing);
   if (age == ContactMemory::Age::stale) return false;
   if (age == ContactMemory::Age::current) {
-    memory_.carryTo(now, packing_);
+    memory_.carryTo(now, packing_, measure.spacing);
   } else {
     if (!surface_->touchAgain(a, now.b, touches_)) return false;
     memory_.turnTo(now);
