@@ -1,5 +1,8 @@
 #include "contact_memory.hpp"
 
+#include "deepest_point.hpp"
+#include "packing_shape_impl.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -10,8 +13,6 @@ constexpr btScalar kMeasureAgain = btScalar(0.25);
 constexpr btScalar kCarry = btScalar(0.02);
 /// A body that is held from sides more than 107 degrees apart is enclosed.
 constexpr btScalar kEnclosed = btScalar(-0.3);
-/// Surfaces fit together if their curvatures add up to less than this part of themselves.
-constexpr btScalar kUnlike = btScalar(0.3);
 
 /// Of a body of this size, as seen from a frame.
 btScalar motionIn(const btTransform& frame_before, const btTransform& before, const btTransform& frame_now,
@@ -40,8 +41,7 @@ void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector
   const btVector3 aside = apart - normal_b * apart.dot(normal_b);
   const btVector3 slope = normal_b - (normal_a - aside * a);
   const btScalar fall = a + b;
-  const bool unlike = fall > kUnlike * (btFabs(a) + btFabs(b));
-  if (unlike && slope.length() < farthest * fall) {
+  if (!fitTogether(a, b) && slope.length() < farthest * fall) {
     const btVector3 shift = slope / fall;
     point.normal = (normal_b - shift * b).normalized();
     point.depth = apart.dot(point.normal) + slope.dot(shift) / 2;

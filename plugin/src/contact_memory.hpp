@@ -7,7 +7,7 @@
 
 #include "candidates.hpp"
 #include "contact_patch.hpp"
-#include "measure.hpp"
+#include "innersphere/packing_shape.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -6,7 +6,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Surfaces fit together if their curvatures add up to less than this part of themselves.
+/// Of the curvatures themselves.
 constexpr btScalar kUnlike = btScalar(0.3);
 constexpr int kSteps = 8;
 constexpr int kStepsBeside = 2;
@@ -39,9 +39,7 @@ void climb(const Gauge& gauge, btScalar steepest, int steps, Measured& m) {
   Place place = placeOf(m.gap, m.direction);
   // How fast the slope falls with distance. Nothing is to be climbed where faces are flat, or fit together.
   btScalar fall = m.gap.curvature_a + m.gap.curvature_b;
-  if (!(fall > kUnlike * (btFabs(m.gap.curvature_a) + btFabs(m.gap.curvature_b))) ||
-      place.slope.length() > steepest)
-    return;
+  if (fitTogether(m.gap.curvature_a, m.gap.curvature_b) || place.slope.length() > steepest) return;
   btVector3 shift(0, 0, 0);
   for (int i = 0; i < steps; ++i) {
     Gap gap;
@@ -61,6 +59,10 @@ void climb(const Gauge& gauge, btScalar steepest, int steps, Measured& m) {
 }
 
 }  // namespace
+
+bool fitTogether(btScalar curvature_a, btScalar curvature_b) {
+  return !(curvature_a + curvature_b > kUnlike * (btFabs(curvature_a) + btFabs(curvature_b)));
+}
 
 void climb(const Gauge& gauge, std::vector<Measured>& measured) {
   const Measured* deepest = nullptr;

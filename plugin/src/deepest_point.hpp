@@ -13,5 +13,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// depth that the normals tell, and appends the deepest once more, with an id of its own.
 void climb(const Gauge& gauge, std::vector<Measured>& measured);
 
+/// Whether surfaces that touch are flat, or curved so that one lies in the other: their curvatures add up to
+/// nothing, or to a small part of themselves. Then there is no deepest point to speak of.
+bool fitTogether(btScalar curvature_a, btScalar curvature_b);
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -2,14 +2,16 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "contact_memory.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 Measure::Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b,
-                 btScalar separated)
+                 btScalar needed)
     : spacing(btMin(a.getContactBreakingThreshold(gContactBreakingThreshold),
                     b.getContactBreakingThreshold(gContactBreakingThreshold))),
-      separation(btMax(spacing, separated)) {
+      separation(btMax(spacing, needed + ContactMemory::reserve(spacing))) {
   const PackingShape* packing_b = PackingShape::from(&b);
   on_surfaces = options.stiffness == 0 && options.response != Response::penalty && a.impl().hasSurface() &&
                 (packing_b == nullptr || packing_b->impl().hasSurface());

@@ -8,10 +8,10 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 struct Measure {
-  /// `separation` [m]: bodies that are not further apart than this still have a contact, if the surfaces are
-  /// measured. At least the distance at which Bullet drops contacts.
-  Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b,
-          btScalar separation);
+  /// `needed` [m]: bodies that are not further apart than this still have a contact, if the surfaces are
+  /// measured. They are looked for from a little further away, so that they are good for the next steps too,
+  /// and at least from the distance at which Bullet drops contacts: see separation.
+  Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b, btScalar needed);
 
   btScalar slack() const { return slack_a + slack_b; }
 

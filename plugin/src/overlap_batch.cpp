@@ -308,10 +308,7 @@ btScalar OverlapBatch::neededSeparation(const PackingContact& contact) const {
 }
 
 Measure OverlapBatch::measureOf(const PackingContact& contact) const {
-  const PackingShape &a = *contact.a.shape, &b = *contact.b.shape;
-  const btScalar needed = neededSeparation(contact);
-  // Further than that, so that what is found is good for the next steps too.
-  return Measure(options_, a, b, needed + ContactMemory::reserve(Measure(options_, a, b, 0).spacing));
+  return Measure(options_, *contact.a.shape, *contact.b.shape, neededSeparation(contact));
 }
 
 PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) const {

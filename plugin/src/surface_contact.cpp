@@ -76,9 +76,8 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
   std::vector<ContactPatch>& patches = memory_.patches;
   overlap_.reset();
   if (!surface_) return patches;
-  const Measure least(options, packing_, other_, separation);
   const Placed now{packing, other};
-  const Measure measure(options, packing_, other_, separation + ContactMemory::reserve(least.spacing));
+  const Measure measure(options, packing_, other_, separation);
   const PackingBody a(packing_, packing, measure.estimator, measure.slack_a, measure.prefix_a);
   if (remember(a, measure, now, separation)) return patches;
   touches_.clear();
