@@ -108,6 +108,7 @@ void Part::gather(const std::vector<PreparedQuery>& queries, Workers& workers) {
 void Part::launch() {
   const std::size_t count = range_.size();
   const bool single = count == 1;
+  batch_.count = static_cast<unsigned>(count);
   if (most_clusters_ == 0) {
     std::fill_n(results_.data(), count, core::Totals{});
     found_ = 0;
@@ -128,7 +129,6 @@ void Part::launch() {
     copyAsync(device_queries_.data(), queries_.data(), count, device_.stream);
   }
   batch_.queries = single ? nullptr : device_queries_.data();
-  batch_.count = static_cast<unsigned>(count);
   batch_.sums = sums_.data();
   batch_.counters = counters_.data();
   batch_.items = items_.data();

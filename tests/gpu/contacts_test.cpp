@@ -66,6 +66,33 @@ TEST_P(ContactsConformance, RangesFollowTheBatch) {
   EXPECT_EQ(result.contacts_b.items[2].sphere, 0u);
 }
 
+TEST_P(ContactsConformance, BatchesWithoutOverlapHaveNoneWhateverWasAskedBefore) {
+  QueryContext context = makeContext();
+  const auto model = makeModel({{0, 0, 0, 1}, {3, 0, 0, 0.5}});
+  const auto batchAt = [&](std::size_t count, double distance) {
+    std::vector<PairQuery> queries(count);
+    for (PairQuery& query : queries) {
+      query.a = query.b = model.get();
+      query.placement_b = at({distance, 0, 0});
+    }
+    return queries;
+  };
+  for (const Want want : {Want::contacts, Want::pairs}) {
+    QueryResult result;
+    for (const auto& queries : {batchAt(200, 0.1), batchAt(1, 0.1), batchAt(100, 1000)})
+      context.run(queries.data(), queries.size(), {want, Estimator::raw}, result);
+    const std::vector<std::size_t> none(101, 0);
+    if (want == Want::pairs) {
+      EXPECT_EQ(result.pairs.first, none);
+      EXPECT_TRUE(result.pairs.items.empty());
+    } else {
+      EXPECT_EQ(result.contacts_a.first, none);
+      EXPECT_EQ(result.contacts_b.first, none);
+      EXPECT_TRUE(result.contacts_a.items.empty() && result.contacts_b.items.empty());
+    }
+  }
+}
+
 INNERSPHERE_FOR_EACH_BACKEND(ContactsConformance);
 
 }  // namespace

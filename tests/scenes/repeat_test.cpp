@@ -1,6 +1,7 @@
 // Runs repeat to the last bit.
 #include <gtest/gtest.h>
 
+#include "same_motion.hpp"
 #include "scenes/scene.hpp"
 #include "scenes/world.hpp"
 
@@ -13,16 +14,8 @@ TEST_P(Repeat, GivesTheSameBits) {
   demo::SceneOptions options;
   options.spheres = 100;
   options.seconds = 0.4;
-  const auto once = demo::play(demo::sceneNamed(GetParam()), options);
-  const auto again = demo::play(demo::sceneNamed(GetParam()), options);
-  ASSERT_EQ(once.recording.states.size(), again.recording.states.size());
-  for (std::size_t i = 0; i < once.recording.states.size(); ++i) {
-    const demo::BodyState &a = once.recording.states[i], &b = again.recording.states[i];
-    ASSERT_EQ(a.position, b.position) << "state " << i;
-    ASSERT_EQ(a.rotation, b.rotation) << "state " << i;
-    ASSERT_EQ(a.velocity, b.velocity) << "state " << i;
-    ASSERT_EQ(a.spin, b.spin) << "state " << i;
-  }
+  const demo::Scene& scene = demo::sceneNamed(GetParam());
+  expectSameMotion(demo::play(scene, options).recording, demo::play(scene, options).recording);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Repeat, testing::Values("slide", "chazelle", "gears"),

@@ -1,0 +1,34 @@
+// Scenes in variants that take seconds, for each backend.
+#pragma once
+
+#include <cstddef>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "innersphere/query.hpp"
+
+namespace innersphere::test {
+
+struct Variant {
+  const char* scene;
+  std::size_t spheres = 500;
+  double seconds = 0;  // 0: the scene's own
+  double dt = 0;       // 0: the scene's own
+  const char* name = "";
+
+  friend void PrintTo(const Variant& v, std::ostream* out) { *out << v.scene << v.name; }
+};
+
+/// At least one of each scene.
+const std::vector<Variant>& variants();
+
+/// As a name for a test.
+std::string nameOf(const testing::TestParamInfo<Variant>& info);
+
+/// Plays it, and expects that it shows its truths. What a scene is known to miss must not get worse.
+void expectTruths(const Variant& variant, Backend backend);
+
+}  // namespace innersphere::test
