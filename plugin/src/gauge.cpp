@@ -94,11 +94,17 @@ bool faceAt(const PackingBody& body, const btVector3& at, const btVector3& norma
          nearest.distance < 0 && (axes * nearest.normal).dot(normal) > kSameFace;
 }
 
-/// Corners uphill from a triangle, relative to the body's origin, for which over(at) holds.
-template <typename Over>
-void appendCorners(const PackingBody& body, std::size_t triangle, const btVector3& direction,
-                   const btVector3& start, btScalar reach, std::uint64_t first_id, const Over& over,
-                   std::vector<Gauge::Corner>& corners) {
+/// The face with about this normal that a place is over or under, if there is one.
+bool faceUnder(const PackingBody& body, const btVector3& at, const btVector3& normal, btScalar size,
+               SurfacePoint& point) {
+  const btVector3 inside = at - normal * (kSunk * size + body.margin);
+  return faceAt(body, at, normal, size) && leave(body, inside, normal, size, Gap::kNone, point);
+}
+
+/// Corners uphill from a triangle, relative to the body's origin: visit(corner, id).
+template <typename Visit>
+void forEachCorner(const PackingBody& body, std::size_t triangle, const btVector3& direction,
+                   const btVector3& start, btScalar reach, std::uint64_t first_id, const Visit& visit) {
   static thread_local std::vector<std::uint32_t> vertices;
   const btMatrix3x3& axes = body.world.getBasis();
   vertices.clear();
@@ -106,8 +112,7 @@ void appendCorners(const PackingBody& body, std::size_t triangle, const btVector
                                   reach / body.scale(), vertices);
   for (std::uint32_t v : vertices) {
     const btVector3 vertex = axes * (toBullet(body.shape().packing().surface.vertices[v]) * body.scale());
-    const Gauge::Corner corner{vertex + direction * body.margin, first_id + 2 * std::uint64_t(v)};
-    if (over(corner.at)) corners.push_back(corner);
+    visit(vertex + direction * body.margin, first_id + 2 * std::uint64_t(v));
   }
 }
 
@@ -141,14 +146,25 @@ void SurfaceGauge::corners(std::size_t index, const Gap& gap, const btVector3& n
                            std::vector<Corner>& corners) const {
   if (!of_a) return;
   const auto reachOf = [&](const Touch& touch) { return a_.ownRadius(touch.sphere) + a_.slack; };
-  // The face is known where spheres are near it.
-  const auto over = [&](const btVector3& at) {
-    return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
-      const btScalar reach = reachOf(touch);
-      return a_.centreOf(touch.sphere).distance2(at) < reach * reach && touch.normal.dot(-normal) > kSameFace;
-    });
-  };
-  appendCorners(a_, gap.triangle_a, normal, gap.on_a, reachOf(touches_[index]), kCornerId, over, corners);
+  forEachCorner(a_, gap.triangle_a, normal, gap.on_a, reachOf(touches_[index]), kCornerId,
+                [&](const btVector3& at, std::uint64_t id) {
+                  // The face is known where spheres are near it.
+                  Corner corner{gap, id};
+                  btScalar nearest = BT_LARGE_FLOAT;
+                  for (const Touch& touch : touches_) {
+                    const btScalar reach = reachOf(touch);
+                    const btVector3 centre = a_.centreOf(touch.sphere);
+                    const btScalar distance2 = centre.distance2(at);
+                    if (!(distance2 < reach * reach) || !(touch.normal.dot(-normal) > kSameFace)) continue;
+                    if (!(distance2 < nearest)) continue;
+                    nearest = distance2;
+                    corner.gap.normal_b = -touch.normal;
+                    const btScalar height = (at - centre).dot(touch.normal) + touch.distance;
+                    corner.gap.on_b = at - touch.normal * height;
+                  }
+                  corner.gap.on_a = at;
+                  if (nearest < BT_LARGE_FLOAT) corners.push_back(corner);
+                });
 }
 
 Gauge::Forward SurfaceGauge::forward(std::size_t index, const btVector3&) const {
@@ -224,22 +240,24 @@ Gauge::Beyond PackingGauge::beyond(std::size_t index, const Gap& gap, const btVe
 void PackingGauge::corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                            std::vector<Corner>& corners) const {
   const btScalar reach = reachOf(index);
-  if (of_a) {
-    const btVector3 face = gap.on_b - apart();
-    const auto over = [&](const btVector3& at) {
-      const btVector3 place = at - apart();
-      return faceAt(b_, place - normal * (place - face).dot(normal), -normal, reach);
-    };
-    appendCorners(a_, gap.triangle_a, normal, gap.on_a, reach, kCornerId, over, corners);
-  } else {
-    const std::size_t first = corners.size();
-    const auto over = [&](const btVector3& at) {
-      const btVector3 place = at + apart();
-      return faceAt(a_, place - normal * (place - gap.on_a).dot(normal), normal, reach);
-    };
-    appendCorners(b_, gap.triangle_b, -normal, gap.on_b - apart(), reach, kCornerId + 1, over, corners);
-    for (std::size_t i = first; i < corners.size(); ++i) corners[i].at += apart();
-  }
+  const PackingBody& own = of_a ? a_ : b_;
+  const PackingBody& other = of_a ? b_ : a_;
+  // All of this relative to the solid whose corners are looked for; `way` leads out of it.
+  const btVector3 offset = of_a ? btVector3(0, 0, 0) : apart();
+  const btVector3 to_other = of_a ? apart() : -apart();
+  const btVector3 way = of_a ? normal : -normal;
+  const btVector3 face = (of_a ? gap.on_b : gap.on_a) - offset;
+  forEachCorner(own, of_a ? gap.triangle_a : gap.triangle_b, way, (of_a ? gap.on_a : gap.on_b) - offset,
+                reach, kCornerId + (of_a ? 0 : 1), [&](const btVector3& at, std::uint64_t id) {
+                  SurfacePoint under;
+                  const btVector3 place = at - way * (at - face).dot(way) - to_other;
+                  if (!faceUnder(other, place, -way, reach, under)) return;
+                  Corner corner{gap, id};
+                  (of_a ? corner.gap.on_a : corner.gap.on_b) = at + offset;
+                  (of_a ? corner.gap.on_b : corner.gap.on_a) = under.at + to_other + offset;
+                  (of_a ? corner.gap.normal_b : corner.gap.normal_a) = under.normal * btScalar(of_a ? -1 : 1);
+                  corners.push_back(corner);
+                });
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

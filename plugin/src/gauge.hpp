@@ -47,9 +47,10 @@ class Gauge {
   };
   virtual Beyond beyond(std::size_t index, const Gap& gap, const btVector3& towards) const = 0;
   /// Appends the corners near a gap where A (or else B) reaches furthest along `normal` (from A to B) and
-  /// that are over the face of the other solid; also the far end of an edge that is level.
+  /// that are over the face of the other solid; also the far end of an edge that is level. Each with the
+  /// point of the face that it is over.
   struct Corner {
-    btVector3 at{0, 0, 0};
+    Gap gap;
     std::uint64_t id = 0;  ///< no sphere has it
   };
   virtual void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,

@@ -92,18 +92,18 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   climb(gauge, measured);
   const ContactNormal normals(measured, gauge);
   const std::size_t first = found.size();
-  const auto add = [&](const Measured& m, const btVector3& on_b, const btVector3& normal, btScalar depth,
-                       std::uint64_t id) {
-    if (depth > -separation) found.push_back({{on_b, normal, depth, id, 0, 0, shareOfA(m.gap, normal)}, 0});
+  const auto add = [&](const Gap& gap, const btVector3& normal, std::uint64_t id) {
+    const btScalar depth = (gap.on_a - gap.on_b).dot(normal);
+    const bool near = depth > -separation;
+    if (near) found.push_back({{gap.on_b, normal, depth, id, 0, 0, shareOfA(gap, normal)}, 0});
+    return near;
   };
   const auto isFound = [&](std::uint64_t id) {
     return std::any_of(found.begin(), found.end(), [&](const MeasuredPoint& f) { return f.point.id == id; });
   };
   for (const Measured& m : measured) {
     const btVector3 normal = normals.at(m);
-    const btScalar depth = (m.gap.on_a - m.gap.on_b).dot(normal);
-    add(m, m.gap.on_b, normal, depth, m.id);
-    if (depth > -separation) {
+    if (add(m.gap, normal, m.id)) {
       found.back().point.curvature_a = m.gap.curvature_a;
       found.back().point.curvature_b = m.gap.curvature_b;
     }
@@ -113,10 +113,7 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     corners.clear();
     gauge.corners(m.index, m.gap, normal, edge_a, corners);
     for (const Gauge::Corner& corner : corners) {
-      if (isFound(corner.id)) continue;
-      const btScalar corner_depth =
-          edge_a ? (corner.at - m.gap.on_b).dot(normal) : (m.gap.on_a - corner.at).dot(normal);
-      add(m, edge_a ? corner.at - normal * corner_depth : corner.at, normal, corner_depth, corner.id);
+      if (!isFound(corner.id)) add(corner.gap, edge_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id);
     }
   }
   for (std::size_t i = first; i < found.size(); ++i) {
