@@ -1,5 +1,7 @@
 #include "contact_normal.hpp"
 
+#include <optional>
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -9,6 +11,8 @@ constexpr btScalar kOpposed = btScalar(0.94);
 /// Else an edge or a corner lies on a face; if both bend, on one within 30 degrees of the direction of the
 /// overlap.
 constexpr btScalar kFace = btScalar(0.866);
+/// A face that ends this much sooner than the other has its edge there.
+constexpr btScalar kEdge = btScalar(0.25);
 /// Normals that deviate less than this are those of one face [rad].
 constexpr btScalar kFlat = btScalar(1e-3);
 
@@ -46,17 +50,26 @@ const Measured* deepestTilted(const std::vector<Measured>& measured) {
   return deepest;
 }
 
+/// Of two faces that meet at an angle, whether A's bears the other one, which ends in an edge where the
+/// contact would get deeper. Nothing if two edges cross.
+std::optional<bool> isFaceOfA(const Gap& gap, const Gauge& gauge) {
+  if (gauge.exactB()) return false;
+  const Gauge::Reach reach = gauge.reach(gap, (gap.normal_b - gap.normal_a).normalized());
+  if (reach.a < kEdge * reach.b) return false;
+  if (reach.b < kEdge * reach.a) return true;
+  return std::nullopt;
+}
+
 }  // namespace
 
 ContactNormal::ContactNormal(const std::vector<Measured>& measured, const Gauge& gauge)
-    : flat_a_(bend(measured, &Gap::normal_a) < kFlat), flat_b_(bend(measured, &Gap::normal_b) < kFlat) {
+    : gauge_(&gauge),
+      flat_a_(bend(measured, &Gap::normal_a) < kFlat),
+      flat_b_(bend(measured, &Gap::normal_b) < kFlat) {
   if (flat_a_ != flat_b_) {
     face_a_ = flat_a_ ? btScalar(1) : btScalar(0);
   } else if (const Measured* m = deepestTilted(measured)) {
-    // One face ends where the contact would get deeper.
-    const btVector3 downhill = (m->gap.normal_b - m->gap.normal_a).normalized();
-    const Gauge::Beyond beyond = gauge.beyond(m->index, m->gap, downhill);
-    if (beyond.a != beyond.b) face_a_ = beyond.a ? btScalar(1) : btScalar(0);
+    if (const std::optional<bool> a = isFaceOfA(m->gap, gauge)) face_a_ = *a ? btScalar(1) : btScalar(0);
   }
 }
 
@@ -64,6 +77,7 @@ btVector3 ContactNormal::at(const Measured& m) const {
   const btVector3 &a = m.gap.normal_a, &b = m.gap.normal_b;
   if (opposed(m.gap)) return mean(m.gap, face_a_);
   if (flat_a_ != flat_b_) return flat_a_ ? a : b;
+  if (const std::optional<bool> on_a = isFaceOfA(m.gap, *gauge_)) return *on_a ? a : b;
   const btVector3& nearest = a.dot(m.direction) > b.dot(m.direction) ? a : b;
   const bool edges = !flat_a_ && nearest.dot(m.direction) < kFace;
   return edges ? m.direction : nearest;

@@ -32,6 +32,7 @@ class ContactNormal {
   btVector3 at(const Measured& measured) const;
 
  private:
+  const Gauge* gauge_;
   bool flat_a_;  ///< all of the patch is one face of A
   bool flat_b_;
   btScalar face_a_ = btScalar(0.5);  ///< weight of A's normal where two faces meet

@@ -74,7 +74,11 @@ bool enter(const PackingBody& body, const btVector3& from, const btVector3& dire
     if (!tree.cast(ray.from, ray.direction, ray.reach, hit)) return false;
     point = pointOf(body, hit, from, direction);
     if (point.facing > 0) {
-      if (!tree.cast(ray.from, -ray.direction, ray.reach, hit)) return false;
+      // A line along a face may miss the edge where it enters.
+      NearestTriangle::Result nearest;
+      const bool inside =
+          body.shape().nearestTriangle().find(ray.from, ray.reach, nearest) && nearest.distance < 0;
+      if (!inside || !tree.cast(ray.from, -ray.direction, ray.reach, hit)) return false;
       point = pointOf(body, hit, from, -direction);
       point.facing = -point.facing;
     }
@@ -228,13 +232,13 @@ bool PackingGauge::nearest(std::size_t index, btVector3& direction) const {
   return true;
 }
 
-Gauge::Beyond PackingGauge::beyond(std::size_t index, const Gap& gap, const btVector3& towards) const {
-  const btScalar step = reachOf(index);
-  const auto goesOn = [&](const PackingBody& body, const btVector3& at, const btVector3& normal) {
-    const btVector3 along = (towards - normal * towards.dot(normal)).normalized();
-    return faceAt(body, at + along * step, normal, step);
+Gauge::Reach PackingGauge::reach(const Gap& gap, const btVector3& towards) const {
+  const auto until = [&](const PackingBody& body, std::size_t triangle, const btVector3& at) {
+    const btMatrix3x3& axes = body.world.getBasis();
+    return body.scale() * body.shape().surfaceTree().untilSharpEdge(triangle, (at * axes) / body.scale(),
+                                                                    towards * axes, BT_LARGE_FLOAT);
   };
-  return {goesOn(a_, gap.on_a, gap.normal_a), goesOn(b_, gap.on_b - apart(), -gap.normal_b)};
+  return {until(a_, gap.triangle_a, gap.on_a), until(b_, gap.triangle_b, gap.on_b - apart())};
 }
 
 void PackingGauge::corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,

@@ -40,12 +40,12 @@ class Gauge {
   /// The direction from A to B in which the sphere of a contact is nearest to the other solid's surface.
   /// False if it is too far away to tell.
   virtual bool nearest(std::size_t index, btVector3& direction) const = 0;
-  /// Whether the faces at a gap go on beyond the sphere in direction `towards` (unit).
-  struct Beyond {
-    bool a;
-    bool b;
+  /// How far the faces at a gap go on in direction `towards` (unit), until they end in a sharp edge [m].
+  struct Reach {
+    btScalar a;
+    btScalar b;
   };
-  virtual Beyond beyond(std::size_t index, const Gap& gap, const btVector3& towards) const = 0;
+  virtual Reach reach(const Gap& gap, const btVector3& towards) const = 0;
   /// Appends the corners near a gap where A (or else B) reaches furthest along `normal` (from A to B) and
   /// that are over the face of the other solid; also the far end of an edge that is level. Each with the
   /// point of the face that it is over.
@@ -76,7 +76,7 @@ class SurfaceGauge : public Gauge {
                Gap& gap) const override;
   bool nearest(std::size_t index, btVector3& direction) const override;
   /// Of the other shape only its distance is known: it is taken as large.
-  Beyond beyond(std::size_t, const Gap&, const btVector3&) const override { return {false, true}; }
+  Reach reach(const Gap&, const btVector3&) const override { return {0, BT_LARGE_FLOAT}; }
   void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;
   Forward forward(std::size_t index, const btVector3& normal) const override;
@@ -97,7 +97,7 @@ class PackingGauge : public Gauge {
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                Gap& gap) const override;
   bool nearest(std::size_t index, btVector3& direction) const override;
-  Beyond beyond(std::size_t index, const Gap& gap, const btVector3& towards) const override;
+  Reach reach(const Gap& gap, const btVector3& towards) const override;
   void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;
   Forward forward(std::size_t index, const btVector3& normal) const override;

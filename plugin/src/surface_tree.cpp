@@ -81,14 +81,28 @@ bool SurfaceTree::castAt(std::size_t triangle, const btVector3& from, const btVe
   return true;
 }
 
+btScalar SurfaceTree::untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
+                                     btScalar farthest) const {
+  return normals().untilSharpEdge(triangle, point, towards, farthest);
+}
+
+const SmoothNormals& SurfaceTree::normals() const {
+  return normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
+}
+
 /// What the curved surface is like where its triangle is hit.
 void SurfaceTree::complete(const btVector3& from, const btVector3& direction, Hit& hit) const {
-  const SmoothNormals& normals = normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
+  const SmoothNormals& normals = this->normals();
   hit.curvature = normals.curvature(hit.triangle);
-  const SmoothNormals::Place place = normals.at(hit.triangle, from + direction * hit.distance);
+  const btVector3 at = from + direction * hit.distance;
+  const SmoothNormals::Place place = normals.at(hit.triangle, at);
   hit.normal = place.normal;
   const btScalar facing = hit.face.dot(direction);
-  if (btFabs(facing) > kGrazing) hit.distance += place.bulge / facing;
+  if (!(btFabs(facing) > kGrazing)) return;
+  // Past an edge it is another face that ends the solid, and sooner.
+  const btScalar further = place.bulge / facing;
+  if (place.bulge > 0 && normals.isPastSharpEdge(hit.triangle, at + direction * further)) return;
+  hit.distance += further;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -39,8 +39,12 @@ class SurfaceTree {
   /// The same for one triangle and the line on both sides of `from`: the distance is negative behind it.
   bool castAt(std::size_t triangle, const btVector3& from, const btVector3& direction, btScalar length,
               Hit& hit) const;
+  /// See SmoothNormals.
+  btScalar untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
+                          btScalar farthest) const;
 
  private:
+  const SmoothNormals& normals() const;
   void complete(const btVector3& from, const btVector3& direction, Hit& hit) const;
 
   const Surface& surface_;
