@@ -6,13 +6,19 @@
 
 namespace innersphere::device {
 
-/// A sphere of the cluster that has a list to go through, as all lanes read it.
-struct alignas(16) Walking {
-  float4 ball;         ///< centre and reach
-  float smallest;      ///< see core::Lookup
-  unsigned self;       ///< place, with flags
-  unsigned shift;      ///< from kListStep times the step of the warp to the place in the list, modulo 2^32
-  std::uint32_t cell;  ///< the number of the cell, if kSeveral
+/// The list that a sphere of the cluster goes through. A step tests kListStep of its spheres that are `steps`
+/// apart, so that lanes with neighbouring steps read neighbouring spheres.
+struct alignas(16) Walk {
+  float smallest;  ///< see core::Lookup
+  unsigned self;   ///< place, with flags
+  unsigned shift;  ///< from the step of the warp to the first place in the list, modulo 2^32
+  unsigned steps;
+};
+
+/// The spheres of the cluster that have a list to go through, as all lanes read them.
+struct Walking {
+  float4 balls[kWarp];  ///< centre and reach
+  Walk walks[kWarp];
 };
 
 /// Flags of a walker's place.
@@ -91,12 +97,11 @@ inline __device__ List listOf(const core::GridView& grid, const core::Lookup& lo
 }
 
 /// Of a walker that looks into several cells: whether a partner counts in this one.
-inline __device__ bool countsHere(const core::GridView& grid, const Walking& walking, const Sphere& partner) {
-  const core::Lookup lookup{
-      {walking.ball.x, walking.ball.y, walking.ball.z}, walking.ball.w, walking.smallest};
+inline __device__ bool countsHere(const core::GridView& grid, const core::Lookup& lookup,
+                                  std::uint32_t number, const Sphere& partner) {
   const core::Cells cells = core::cellsOf(grid, lookup);
   std::uint32_t at[3];
-  cells.coordinates(walking.cell, at);
+  cells.coordinates(number, at);
   return core::countsIn(grid, cells, at, partner);
 }
 
@@ -117,44 +122,53 @@ struct Lists {
 };
 
 /// Puts the lists of all lanes into a row, with their walkers, those that have one, in `walking`.
-inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, unsigned self,
-                               std::uint32_t number, unsigned lane, Walking (&walking)[kWarp]) {
+inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, unsigned self, unsigned lane,
+                               Walking& walking) {
   const unsigned scanned = scan(list.steps, lane);
   const unsigned owners = __ballot_sync(kAll, list.steps != 0);
   const Lists lists{scanned - list.steps, list.steps != 0, __shfl_sync(kAll, scanned, kWarp - 1)};
   __syncwarp();
   if (lists.any) {
-    Walking& to = walking[__popc(owners & ((1u << lane) - 1))];
-    to.ball = {lookup.p.x, lookup.p.y, lookup.p.z, lookup.reach};
-    to.smallest = lookup.smallest;
-    to.self = self | list.flags;
-    to.shift = list.first - lists.begin * core::kListStep;
-    to.cell = number;
+    const unsigned to = __popc(owners & ((1u << lane) - 1));
+    walking.balls[to] = {lookup.p.x, lookup.p.y, lookup.p.z, lookup.reach};
+    walking.walks[to] = {lookup.smallest, self | list.flags, list.first - lists.begin, list.steps};
   }
   __syncwarp();
   return lists;
 }
 
-/// The candidates of a warp that wait until there is one for each lane, and what one round may add.
-using Queue = Candidate[kWarp + kWarp * core::kListStep];
+/// The candidates of a warp that wait to be decided. Most clusters have fewer.
+constexpr unsigned kQueue = 288;
+using Queue = Candidate[kQueue];
 
-/// One round: each lane tests a step. All lanes call it.
-inline __device__ void testStep(const Grid& grid, const Lists& lists, unsigned first, unsigned lane,
-                                const Walking (&walking)[kWarp], Queue& queue, unsigned& queued) {
+/// Whether there is room for what one round may add.
+inline __device__ bool isFull(unsigned queued) {
+  return queued + kWarp * core::kListStep > kQueue;
+}
+
+/// One round, for which there is room in the queue: each lane tests a step. `number` is that of the cell of
+/// walkers that look into several. All lanes call it.
+inline __device__ void testStep(const Grid& grid, const Lists& lists, std::uint32_t number, unsigned first,
+                                unsigned lane, const Walking& walking, Queue& queue, unsigned& queued) {
   const unsigned owner = lists.ownerOf(first, lane);
-  unsigned met = 0, at = 0, self = 0;
+  unsigned met = 0, at = 0, self = 0, steps = 0;
   if (first + lane < lists.total) {
-    const Walking& walker = walking[owner];
-    self = walker.self;
-    at = walker.shift + (first + lane) * core::kListStep;
-    const core::Lookup lookup{{walker.ball.x, walker.ball.y, walker.ball.z}, walker.ball.w, walker.smallest};
+    const float4 ball = walking.balls[owner];
+    const Walk walk = walking.walks[owner];
+    self = walk.self;
+    steps = walk.steps;
+    at = walk.shift + first + lane;
+    const core::Lookup lookup{{ball.x, ball.y, ball.z}, ball.w, walk.smallest};
+    const Sphere* entry = grid.entries + at;
+    const std::size_t apart = steps;
 #pragma unroll
-    for (unsigned k = 0; k < core::kListStep; ++k) {
-      if (core::meets(lookup, load(grid.entries + at + k))) met |= 1u << k;
+    for (unsigned k = 0; k < core::kListStep; ++k, entry += apart) {
+      if (core::meets(lookup, load(entry))) met |= 1u << k;
     }
     if (met != 0 && self & kSeveral) {
       for (unsigned k = 0; k < core::kListStep; ++k) {
-        if ((met >> k & 1) != 0 && !countsHere(grid.view, walker, load(grid.entries + at + k)))
+        if ((met >> k & 1) != 0 &&
+            !countsHere(grid.view, lookup, number, load(grid.entries + at + k * steps)))
           met ^= 1u << k;
       }
     }
@@ -164,7 +178,7 @@ inline __device__ void testStep(const Grid& grid, const Lists& lists, unsigned f
     if (finders == 0) break;
     if (met != 0) {
       const unsigned k = static_cast<unsigned>(__ffs(static_cast<int>(met)) - 1);
-      queue[queued + __popc(finders & ((1u << lane) - 1))] = {self, at + k};
+      queue[queued + __popc(finders & ((1u << lane) - 1))] = {self, at + k * steps};
       met &= met - 1;
     }
     queued += __popc(finders);

@@ -8,25 +8,27 @@ namespace innersphere::device {
 constexpr int kPass = 4;                          ///< terms that the lanes exchange at once
 constexpr unsigned kShare = kWarp / (2 * kPass);  ///< lanes that sum one column
 
-/// Coarse and fine parts of some terms, a row for each lane, with gaps so that lanes use different banks.
+/// Coarse and fine parts of some terms, a row for each lane. Lanes that sum columns use different banks.
 struct Columns {
-  static constexpr unsigned kRows = kWarp / kShare;  ///< that a lane sums
-  static constexpr unsigned kGap = 2;
-  static constexpr int kPasses = (core::kTerms + kPass - 1) / kPass;
-  alignas(16) double of[2 * kPass][kWarp + kShare * kGap];
-  unsigned long long sums[kPasses][kWarp];  ///< of every pass, each lane's
-  unsigned pairs;
+  static constexpr unsigned kTwos = kWarp / kShare / 2;  ///< pairs of rows that a lane sums
+  static constexpr unsigned kGap = 2 * kShare;
+  alignas(16) double of[2 * kPass][kWarp + kGap];
 
-  __device__ double& at(unsigned column, unsigned lane) { return of[column][lane + lane / kRows * kGap]; }
-
-  /// Of a share of the rows, as integers; see core::Parts.
-  __device__ unsigned long long sum(unsigned column, unsigned share) const {
-    const auto* rows = reinterpret_cast<const ulonglong2*>(&of[column][share * (kRows + kGap)]);
-    unsigned long long sum = -kRows * static_cast<unsigned long long>(core::kMagicBits);
+  /// Of the rows of one lane, as integers; see core::Parts.
+  __device__ unsigned long long sum(unsigned lane) const {
+    const auto* rows = reinterpret_cast<const ulonglong2*>(of[lane / kShare]) + lane % kShare;
+    unsigned long long sum = 0ull - 2 * kTwos * core::kMagicBits;
 #pragma unroll
-    for (unsigned k = 0; k < kRows / 2; ++k) sum += rows[k].x + rows[k].y;
+    for (unsigned k = 0; k < kTwos; ++k) sum += rows[k * kShare].x + rows[k * kShare].y;
     return sum;
   }
+};
+
+/// Of a warp: of every pass, each lane's.
+struct Sums {
+  static constexpr int kPasses = (core::kTerms + kPass - 1) / kPass;
+  unsigned long long of[kPasses][kWarp];
+  unsigned pairs;
 };
 
 constexpr unsigned kMostWarps = 8;  ///< in a block
@@ -54,11 +56,11 @@ inline __device__ void addTerm(Limbs& limbs, int bits, bool coarse, unsigned lon
 template <Goal goal>
 class Summer {
  public:
-  __device__ Summer(unsigned lane, Columns& columns) { clear(lane, columns); }
+  __device__ Summer(unsigned lane, Sums& sums) { clear(lane, sums); }
 
   /// All lanes call it. True if anything overlaps.
   __device__ bool add(const Batch& batch, const Scene& scene, unsigned query, const Candidate& candidate,
-                      bool valid, unsigned lane, Columns& columns) {
+                      bool valid, unsigned lane, Columns& columns, Sums& sums) {
     const bool from_a = candidate.x & kFromA;
     const std::uint32_t own = candidate.x & kPlace;
     const core::GridView& grid = scene.grids[from_a ? 1 : 0].view;
@@ -75,7 +77,7 @@ class Summer {
       if (batch.hits) write(batch, scene, query, place_a, place_b, hits, lane);
       const double sum = pair.ra + pair.rb;
       if (!hit) pair.distance2 = sum * sum;  // two balls that touch from outside add nothing
-      exchange(pair, scene.query.units, lane, columns);
+      exchange(pair, scene.query.units, lane, columns, sums);
       ++rounds_;
     }
     return hits != 0;
@@ -85,28 +87,28 @@ class Summer {
   __device__ bool full() const { return rounds_ + 1 > (1u << core::kShortSumBits) / (kWarp * kMostWarps); }
 
   /// Moves the sums to those of the query.
-  __device__ void flush(DeviceSums& total, const core::Units& units, unsigned lane, Columns& columns) {
+  __device__ void flush(DeviceSums& total, const core::Units& units, unsigned lane, Sums& sums) {
     if (pairs_ == 0) return;
     if (lane == 0) atomicAdd(&total.pairs, static_cast<unsigned long long>(pairs_));
 #pragma unroll
-    for (int pass = 0; pass < kPasses; ++pass) addPass(total, units, pass, columns.sums[pass][lane], lane);
-    clear(lane, columns);
+    for (int pass = 0; pass < kPasses; ++pass) addPass(total, units, pass, sums.of[pass][lane], lane);
+    clear(lane, sums);
   }
 
   /// The same for all warps of a block together: its first warps take a pass each. All threads call it.
-  template <typename MemoryOf>
+  template <typename SumsOf>
   __device__ void flushBlock(DeviceSums& total, const core::Units& units, unsigned warps, unsigned lane,
-                             const MemoryOf& columnsOf) {
+                             const SumsOf& sumsOf) {
     const unsigned warp = threadIdx.x / kWarp;
-    if (lane == 0) columnsOf(warp).pairs = pairs_;
+    if (lane == 0) sumsOf(warp).pairs = pairs_;
     __syncthreads();
     unsigned pairs = 0;
-    for (unsigned w = 0; w < warps; ++w) pairs += columnsOf(w).pairs;
+    for (unsigned w = 0; w < warps; ++w) pairs += sumsOf(w).pairs;
     if (pairs == 0) return;
     if (threadIdx.x == 0) atomicAdd(&total.pairs, static_cast<unsigned long long>(pairs));
     for (int pass = static_cast<int>(warp); pass < kPasses; pass += static_cast<int>(warps)) {
       unsigned long long sum = 0;
-      for (unsigned w = 0; w < warps; ++w) sum += columnsOf(w).sums[pass][lane];
+      for (unsigned w = 0; w < warps; ++w) sum += sumsOf(w).of[pass][lane];
       addPass(total, units, pass, sum, lane);
     }
   }
@@ -115,8 +117,8 @@ class Summer {
   static constexpr int kTerms = kTermCount<goal>;
   static constexpr int kPasses = (kTerms + kPass - 1) / kPass;
 
-  __device__ void clear(unsigned lane, Columns& columns) {
-    for (int pass = 0; pass < kPasses; ++pass) columns.sums[pass][lane] = 0;
+  __device__ void clear(unsigned lane, Sums& sums) {
+    for (int pass = 0; pass < kPasses; ++pass) sums.of[pass][lane] = 0;
     pairs_ = rounds_ = 0;
   }
 
@@ -131,8 +133,8 @@ class Summer {
       addTerm(total.terms[term], unitOf(units, term).fine_bits, column % 2 == 0, sum, other);
   }
 
-  __device__ void exchange(const core::Pair& pair, const core::Units& units, unsigned lane,
-                           Columns& columns) {
+  __device__ void exchange(const core::Pair& pair, const core::Units& units, unsigned lane, Columns& columns,
+                           Sums& sums) {
     core::Contact contact = core::makeContact(pair);
     core::Terms terms;
     core::setTerms<goal == Goal::wrench>(pair, contact, terms);
@@ -146,11 +148,11 @@ class Summer {
       for (int i = 0; i < kPass && pass * kPass + i < kTerms; ++i) {
         const int term = pass * kPass + i;
         const core::Parts parts = core::split(terms.terms[term], unitOf(units, term));
-        columns.at(2 * i, lane) = parts.coarse;
-        columns.at(2 * i + 1, lane) = parts.fine;
+        columns.of[2 * i][lane] = parts.coarse;
+        columns.of[2 * i + 1][lane] = parts.fine;
       }
       __syncwarp();
-      columns.sums[pass][lane] += columns.sum(lane / kShare, lane % kShare);
+      sums.of[pass][lane] += columns.sum(lane);
       __syncwarp();
     }
   }

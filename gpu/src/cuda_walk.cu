@@ -11,19 +11,22 @@ namespace {
 constexpr unsigned kSingleWarps = 8;   ///< in a block
 constexpr unsigned kSingleBlocks = 2;  ///< on each multiprocessor, as many as registers allow
 constexpr unsigned kBatchWarps = 4;
-constexpr unsigned kBatchBlocks = 5;
+constexpr unsigned kBatchBlocks = 7;
 static_assert(kSingleWarps <= kMostWarps && kBatchWarps <= kMostWarps);
 
 struct WarpMemory {
-  Walking walking[kWarp];
+  union {
+    Walking walking;  ///< while candidates are found
+    Columns columns;  ///< while they are decided
+  };
+  Sums sums;
   Queue queue;
-  Columns columns;
 };
 
 /// What a warp holds while it works on one query.
 template <Goal goal>
 struct Warp {
-  __device__ Warp(WarpMemory& m, unsigned l) : memory(m), lane(l), summer(l, m.columns) {}
+  __device__ Warp(WarpMemory& m, unsigned l) : memory(m), lane(l), summer(l, m.sums) {}
 
   WarpMemory& memory;
   unsigned lane;
@@ -32,7 +35,7 @@ struct Warp {
   Summer<goal> summer;
 
   __device__ void flush(DeviceSums& sums, const core::Units& units) {
-    summer.flush(sums, units, lane, memory.columns);
+    summer.flush(sums, units, lane, memory.sums);
     queued = 0;
     touched = false;
   }
@@ -41,52 +44,63 @@ struct Warp {
 /// A cluster to walk, or a share of it: the rounds `part`, part + parts, ...
 struct Job {
   unsigned side, cluster, part, parts;
-  bool drain;  ///< no cluster: only decide what waits
 };
 
-/// All lanes call it.
+/// How far a job has come.
+struct Progress {
+  std::uint32_t number = 0;  ///< of the walkers' cells
+  unsigned round = 0;        ///< of the job in these cells
+};
+
+/// Queues a cluster's candidates. True at its end; false if the queue is full first. All lanes call it.
 template <Goal goal>
-__device__ __forceinline__ void walkCluster(const Batch& batch, const Scene& scene, unsigned query,
-                                            const Job& job, DeviceSums& sums, Warp<goal>& warp) {
-  WarpMemory& memory = warp.memory;
+__device__ __forceinline__ bool findCandidates(const Scene& scene, const Job& job, Progress& progress,
+                                               Warp<goal>& warp) {
   const unsigned lane = warp.lane;
-  const Grid& grid = scene.grids[1 - job.side];
-  bool more = false;
-  std::uint32_t number = 0;
-  do {
+  const Grid &own = scene.grids[job.side], &grid = scene.grids[1 - job.side];
+  const uint2 run = __ldg(reinterpret_cast<const uint2*>(&own.view.clusters[job.cluster].first));
+  bool more = true;
+  for (; more; ++progress.number, progress.round = 0) {
     core::Lookup lookup{};
     List list{};
-    unsigned self = 0;
-    if (!job.drain) {
-      const Grid& own = scene.grids[job.side];
-      const uint2 run = __ldg(reinterpret_cast<const uint2*>(&own.view.clusters[job.cluster].first));
-      self = (run.x + lane) | (job.side == 0 ? kFromA : 0);
-      const core::Walker walker{own.view, grid.view, scene.query.searches[job.side]};
-      std::uint32_t count = 0;
-      if (lane < run.y && core::makeLookup(walker, load(own.view.spheres + run.x + lane), lookup))
-        list = listOf(grid.view, lookup, number, count);
-      more = __any_sync(kAll, ++number < count);
+    const core::Walker walker{own.view, grid.view, scene.query.searches[job.side]};
+    std::uint32_t count = 0;
+    if (lane < run.y && core::makeLookup(walker, load(own.view.spheres + run.x + lane), lookup))
+      list = listOf(grid.view, lookup, progress.number, count);
+    more = __any_sync(kAll, progress.number + 1 < count);
+    const unsigned self = (run.x + lane) | (job.side == 0 ? kFromA : 0);
+    const Lists lists = lineUp(lookup, list, self, lane, warp.memory.walking);
+    while (true) {
+      const unsigned first = (progress.round * job.parts + job.part) * kWarp;
+      if (first >= lists.total) break;
+      if (isFull(warp.queued)) return false;
+      testStep(grid, lists, progress.number, first, lane, warp.memory.walking, warp.memory.queue,
+               warp.queued);
+      ++progress.round;
     }
-    const Lists lists = lineUp(lookup, list, self, number - 1, lane, memory.walking);
-    unsigned first = job.part * kWarp;
-    do {
-      testStep(grid, lists, first, lane, memory.walking, memory.queue, warp.queued);
-      while (warp.queued >= kWarp || (job.drain && warp.queued > 0)) {
-        const unsigned count = min(warp.queued, kWarp);
-        warp.queued -= count;
-        const bool any =
-            warp.summer.add(batch, scene, query, memory.queue[warp.queued + min(lane, count - 1)],
-                            lane < count, lane, memory.columns);
-        if (goal == Goal::touch && any) {
-          warp.touched = true;
-          return;
-        }
-        if (warp.summer.full()) warp.summer.flush(sums, scene.query.units, lane, memory.columns);
-      }
-      __syncwarp();
-      first += job.parts * kWarp;
-    } while (first < lists.total);
-  } while (more);
+  }
+  progress = {};
+  return true;
+}
+
+/// Decides all candidates that wait, or only as many as fill the warp. All lanes call it.
+template <Goal goal>
+__device__ __forceinline__ void decide(const Batch& batch, const Scene& scene, unsigned query, bool all,
+                                       DeviceSums& sums, Warp<goal>& warp) {
+  WarpMemory& memory = warp.memory;
+  __syncwarp();
+  while (warp.queued >= kWarp || (all && warp.queued > 0)) {
+    const unsigned count = min(warp.queued, kWarp);
+    warp.queued -= count;
+    const bool any =
+        warp.summer.add(batch, scene, query, memory.queue[warp.queued + min(warp.lane, count - 1)],
+                        warp.lane < count, warp.lane, memory.columns, memory.sums);
+    if (goal == Goal::touch && any) {
+      warp.touched = true;
+      return;
+    }
+    if (warp.summer.full()) warp.summer.flush(sums, scene.query.units, warp.lane, memory.sums);
+  }
 }
 
 __device__ bool isTouched(const DeviceSums& sums) {
@@ -153,22 +167,28 @@ __global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
     const unsigned parts = partsOf(active_count), jobs = parts * active_count;
     for (unsigned number = threadIdx.x / kWarp; number < jobs || (last && warp.queued > 0);
          number += kSingleWarps) {
-      Job job{0, 0, number % parts, parts, number >= jobs};
-      if (!job.drain) {
+      const bool drain = number >= jobs;
+      Job job{0, 0, number % parts, parts};
+      if (!drain) {
         job.cluster = active[number / parts];
         job.side = job.cluster < clusters_a ? 0 : 1;
         if (job.side != 0) job.cluster -= clusters_a;
       }
-      walkCluster(batch, scene, 0, job, *batch.sums, warp);
+      Progress progress;
+      bool done = drain;
+      do {
+        if (!drain) done = findCandidates(scene, job, progress, warp);
+        decide(batch, scene, 0, drain, *batch.sums, warp);
+      } while (!done && !warp.touched);
       if (goal == Goal::touch && warp.touched) warp.flush(*batch.sums, scene.query.units);  // for all to see
-      if (job.drain || (goal == Goal::touch && isTouched(*batch.sums))) break;
+      if (drain || (goal == Goal::touch && isTouched(*batch.sums))) break;
     }
     __syncthreads();
     if (threadIdx.x == 0) active_count = 0;
     __syncthreads();
   }
   warp.summer.flushBlock(*batch.sums, scene.query.units, kSingleWarps, warp.lane,
-                         [&](unsigned w) -> Columns& { return memory[w].columns; });
+                         [&](unsigned w) -> Sums& { return memory[w].sums; });
   if (!isLastBlock(batch)) return;
   if (threadIdx.x <= kResultWords) {
     const unsigned long long word = threadIdx.x < kResultWords
@@ -206,6 +226,7 @@ __global__ void __launch_bounds__(kBatchWarps* kWarp, kBatchBlocks)
   const auto take = [&] { return lane == 0 ? atomicAdd(&batch.counters->taken, chunk) : 0; };
   unsigned taken = take(), at = 0, query = kNone;
   unsigned long long bits = 0;  // of the item
+  Progress progress;            // in its first cluster
   bool left = true;
   while (left) {
     while (left && unpackItem(bits).mask == 0) {
@@ -219,14 +240,17 @@ __global__ void __launch_bounds__(kBatchWarps* kWarp, kBatchBlocks)
     }
     const Item item = unpackItem(bits);
     const bool drain = !left || item.query != query;
-    if (!drain || query != kNone) {
-      const unsigned cluster =
-          item.first + (drain ? 0 : static_cast<unsigned>(__ffs(static_cast<int>(item.mask)) - 1));
-      walkCluster(batch, scene, query, {item.side, cluster, 0, 1, drain}, batch.sums[query], warp);
-    }
+    bool done = true;
     if (!drain) {
-      bits = warp.touched ? 0 : bits ^ (item.mask & -item.mask);
+      const auto cluster = item.first + static_cast<unsigned>(__ffs(static_cast<int>(item.mask)) - 1);
+      done = findCandidates(scene, {item.side, cluster, 0, 1}, progress, warp);
+    }
+    if (query != kNone) decide(batch, scene, query, drain, batch.sums[query], warp);
+    if (!drain) {
+      if (done) bits ^= item.mask & -item.mask;
       if (!warp.touched) continue;
+      bits = 0;
+      progress = {};
     }
     if (query != kNone) warp.flush(batch.sums[query], scene.query.units);
     if (!drain || !left) continue;
