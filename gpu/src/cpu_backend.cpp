@@ -159,14 +159,15 @@ void walkClusters(const PreparedQuery& query, std::size_t begin, std::size_t end
   for (const bool from_a : {true, false}) {
     sink.setFromA(from_a);
     const core::Walker walker = core::walkerOf(setup, from_a);
+    const HashGrid& grid = (from_a ? query.grid_b : query.grid_a)->onCpu();
+    const SphereColumns listed = grid.listedSpheres();
     std::size_t count = 0;
     const auto walk = [&] {
       const std::size_t n = std::exchange(count, 0);
-      return kernels.walk(walker, clusters.data(), n, candidates, sink) && sink.take(candidates);
+      return kernels.walk(walker, listed, clusters.data(), n, candidates, sink) && sink.take(candidates);
     };
-    const Occupancy& occupancy = (from_a ? query.grid_b : query.grid_a)->onCpu().occupancy();
     const auto meeting = [&](const Sphere* balls, std::uint32_t n) {
-      return kernels.ballsMeeting(walker, occupancy, balls, n);
+      return kernels.ballsMeeting(walker, grid.occupancy(), balls, n);
     };
     const std::size_t before = from_a ? 0 : setup.a.clusters;
     const std::size_t all = from_a ? setup.a.clusters : setup.b.clusters;

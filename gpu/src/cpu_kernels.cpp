@@ -32,9 +32,9 @@ struct SpherePairs {
   template <typename Lanes>
   void loadLanes(const core::Setup& setup, const std::uint32_t* places_a, const std::uint32_t* places_b,
                  std::size_t k) {
-    Lanes::load(setup.a.grid.spheres, places_a, kLanes,
+    Lanes::load(setup.a.grid.spheres, places_a,
                 {columns[0] + k, columns[1] + k, columns[2] + k, columns[3] + k});
-    Lanes::load(setup.b.grid.spheres, places_b, kLanes,
+    Lanes::load(setup.b.grid.spheres, places_b,
                 {columns[4] + k, columns[5] + k, columns[6] + k, columns[7] + k});
   }
 
@@ -68,8 +68,8 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
   for (int i = 0; i < kTerms; ++i) {
     const core::Unit unit = core::unitOf(setup.units, i);
     core::ShortSum sum{0, 0};
-    for (std::size_t k = 0; k < n; ++k) core::add(sum, terms[i][k], unit);
-    tally.terms[static_cast<std::size_t>(i)] = sum;
+    for (std::size_t k = 0; k < n; ++k) core::addBits(sum, terms[i][k], unit);
+    tally.terms[static_cast<std::size_t>(i)] = core::withoutMagic(sum, n);
   }
 }
 
@@ -100,9 +100,10 @@ inline void evaluateImpl(const core::Setup& setup, std::size_t count, PairValues
                                                  const Sphere* balls, std::uint32_t count) {               \
       return innersphere::ballsMeeting(walker, occupancy, balls, count);                                   \
     }                                                                                                      \
-    attributes static bool walk(const core::Walker& walker, const std::uint32_t* clusters,                 \
-                                std::size_t count, Candidates& candidates, CandidateSink& sink) {          \
-      return walkClusters<Lanes>(walker, clusters, count, candidates, sink);                               \
+    attributes static bool walk(const core::Walker& walker, const SphereColumns& listed,                   \
+                                const std::uint32_t* clusters, std::size_t count, Candidates& candidates,  \
+                                CandidateSink& sink) {                                                     \
+      return walkClusters<Lanes>(walker, listed, clusters, count, candidates, sink);                       \
     }                                                                                                      \
     attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
                                   Tally& tally) {                                                          \

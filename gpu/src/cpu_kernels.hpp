@@ -49,9 +49,9 @@ struct CpuKernels {
   std::uint32_t (*ballsMeeting)(const core::Walker& walker, const Occupancy& occupancy, const Sphere* balls,
                                 std::uint32_t count);
   /// Finds the candidates of some clusters, and hands them on where the room ends; the last of them stay in
-  /// `candidates`. Returns false if it was stopped.
-  bool (*walk)(const core::Walker& walker, const std::uint32_t* clusters, std::size_t count,
-               Candidates& candidates, CandidateSink& sink);
+  /// `candidates`. `listed` is of the grid that is walked through. Returns false if it was stopped.
+  bool (*walk)(const core::Walker& walker, const SphereColumns& listed, const std::uint32_t* clusters,
+               std::size_t count, Candidates& candidates, CandidateSink& sink);
   /// Decides candidates and sums those that count: all terms, or only volumes.
   void (*sumAll)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
   void (*sumVolumes)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);

@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 
 #include "core/walk.hpp"
 #include "cpu_kernels.hpp"
+#include "listed_spheres.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define INNERSPHERE_X86
@@ -19,29 +19,36 @@
 
 namespace innersphere {
 
-constexpr std::size_t kLanes = 16;  ///< spheres that are worked on together
+constexpr std::size_t kLanes = 16;         ///< spheres that are worked on together
+constexpr std::uint32_t kMostCells = 128;  ///< that are found together
 
-/// kLanes spheres: where their coordinates are.
+/// kLanes spheres: where their coordinates go.
 struct Columns {
   float *x, *y, *z, *radius;
+
+  operator SphereColumns() const { return {x, y, z, radius}; }
+};
+
+/// A run of GridView::listed.
+struct ListRange {
+  std::uint32_t first, count;
 };
 
 /// Any processor.
 struct LanesAny {
-  /// Loads kLanes spheres; those from number `count` on meet nothing.
-  static void load(const Sphere* spheres, const std::uint32_t* places, std::uint32_t count,
-                   const Columns& to) {
+  /// Loads kLanes spheres.
+  static void load(const Sphere* spheres, const std::uint32_t* places, const Columns& to) {
     for (std::uint32_t k = 0; k < kLanes; ++k) {
       const Sphere& s = spheres[places[k]];
       to.x[k] = s.x;
       to.y[k] = s.y;
       to.z[k] = s.z;
-      to.radius[k] = k < count ? s.radius : -std::numeric_limits<float>::infinity();
+      to.radius[k] = s.radius;
     }
   }
 
   /// A bit for each sphere that the walker meets.
-  static std::uint32_t meeting(const core::Lookup& lookup, const Columns& spheres) {
+  static std::uint32_t meeting(const core::Lookup& lookup, const SphereColumns& spheres) {
     std::uint32_t bits[kLanes];
     for (std::uint32_t k = 0; k < kLanes; ++k) {
       const float dx = spheres.x[k] - lookup.p.x, dy = spheres.y[k] - lookup.p.y,
@@ -65,6 +72,38 @@ struct LanesAny {
     }
     return c;
   }
+
+  /// A bit for each number that is not zero.
+  static std::uint32_t bitsOf(const std::uint32_t* flags) {
+    std::uint32_t bits = 0;
+    for (std::uint32_t k = 0; k < kLanes; ++k) bits |= (flags[k] != 0 ? 1u : 0u) << k;
+    return bits;
+  }
+
+  /// Which of kLanes items are kept.
+  struct Kept {
+    explicit Kept(std::uint32_t bits) : count(0) {
+      for (std::uint32_t k = 0; k < kLanes; ++k) {
+        number[count] = k;
+        count += bits >> k & 1u;
+      }
+    }
+    template <typename T>
+    void copy(const T* from, T* to) const {
+      for (std::uint32_t k = 0; k < count; ++k) to[k] = from[number[k]];
+    }
+    std::uint32_t number[kLanes], count;
+  };
+
+  /// Where the lists of some cells are; empty where there is no such cell.
+  static void findCells(const core::GridView& grid, const std::uint64_t* keys, std::uint32_t count,
+                        ListRange* lists) {
+    for (std::uint32_t k = 0; k < count; ++k) __builtin_prefetch(grid.cells + core::hashCell(grid, keys[k]));
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const core::Cell cell = core::findCell(grid, keys[k]);
+      lists[k] = {cell.first, cell.count};
+    }
+  }
 };
 
 #ifdef INNERSPHERE_X86
@@ -73,8 +112,7 @@ struct LanesAny {
 #define INNERSPHERE_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl")))
 
 struct LanesAvx2 : LanesAny {
-  INNERSPHERE_AVX2 static void load(const Sphere* spheres, const std::uint32_t* places, std::uint32_t count,
-                                    const Columns& to) {
+  INNERSPHERE_AVX2 static void load(const Sphere* spheres, const std::uint32_t* places, const Columns& to) {
     for (std::size_t k = 0; k < kLanes; k += 8) {
       const auto rows = [&](std::size_t i) INNERSPHERE_AVX2 {
         const __m128 low = _mm_loadu_ps(&spheres[places[k + i]].x);
@@ -87,16 +125,11 @@ struct LanesAvx2 : LanesAny {
       _mm256_storeu_ps(to.x + k, _mm256_shuffle_ps(xy01, xy23, 0x44));
       _mm256_storeu_ps(to.y + k, _mm256_shuffle_ps(xy01, xy23, 0xee));
       _mm256_storeu_ps(to.z + k, _mm256_shuffle_ps(zr01, zr23, 0x44));
-      const __m256i left =
-          _mm256_set1_epi32(static_cast<int>(count < kLanes ? count : kLanes) - static_cast<int>(k));
-      const __m256i there = _mm256_cmpgt_epi32(left, _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-      const __m256 none = _mm256_set1_ps(-std::numeric_limits<float>::infinity());
-      _mm256_storeu_ps(to.radius + k, _mm256_blendv_ps(none, _mm256_shuffle_ps(zr01, zr23, 0xee),
-                                                       _mm256_castsi256_ps(there)));
+      _mm256_storeu_ps(to.radius + k, _mm256_shuffle_ps(zr01, zr23, 0xee));
     }
   }
 
-  INNERSPHERE_AVX2 static std::uint32_t meeting(const core::Lookup& lookup, const Columns& spheres) {
+  INNERSPHERE_AVX2 static std::uint32_t meeting(const core::Lookup& lookup, const SphereColumns& spheres) {
     std::uint32_t met = 0;
     for (std::size_t k = 0; k < kLanes; k += 8) {
       const __m256 r = _mm256_loadu_ps(spheres.radius + k);
@@ -112,9 +145,8 @@ struct LanesAvx2 : LanesAny {
   }
 };
 
-struct LanesAvx512 {
-  INNERSPHERE_AVX512 static void load(const Sphere* spheres, const std::uint32_t* places, std::uint32_t count,
-                                      const Columns& to) {
+struct LanesAvx512 : LanesAny {
+  INNERSPHERE_AVX512 static void load(const Sphere* spheres, const std::uint32_t* places, const Columns& to) {
     constexpr __mmask16 kEvery = 0xffff;  // forms with a mask, because GCC 12 warns of the others
     const auto rows = [&](std::size_t i) INNERSPHERE_AVX512 {
       __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(&spheres[places[i]].x));
@@ -132,12 +164,10 @@ struct LanesAvx512 {
     _mm512_storeu_ps(to.x, _mm512_maskz_shuffle_f32x4(kEvery, xy01, xy23, 0x88));
     _mm512_storeu_ps(to.y, _mm512_maskz_shuffle_f32x4(kEvery, xy01, xy23, 0xdd));
     _mm512_storeu_ps(to.z, _mm512_maskz_shuffle_f32x4(kEvery, zr01, zr23, 0x88));
-    const __m512 none = _mm512_set1_ps(-std::numeric_limits<float>::infinity());
-    const auto there = static_cast<__mmask16>(count >= kLanes ? kEvery : (1u << count) - 1);
-    _mm512_storeu_ps(to.radius, _mm512_mask_shuffle_f32x4(none, there, zr01, zr23, 0xdd));
+    _mm512_storeu_ps(to.radius, _mm512_maskz_shuffle_f32x4(kEvery, zr01, zr23, 0xdd));
   }
 
-  INNERSPHERE_AVX512 static std::uint32_t meeting(const core::Lookup& lookup, const Columns& spheres) {
+  INNERSPHERE_AVX512 static std::uint32_t meeting(const core::Lookup& lookup, const SphereColumns& spheres) {
     const __m512 r = _mm512_loadu_ps(spheres.radius);
     const __m512 dx = _mm512_loadu_ps(spheres.x) - _mm512_set1_ps(lookup.p.x);
     const __m512 dy = _mm512_loadu_ps(spheres.y) - _mm512_set1_ps(lookup.p.y);
@@ -161,6 +191,51 @@ struct LanesAvx512 {
       std::memcpy(partners, &met, 64);
     }
     return c + static_cast<std::size_t>(count);
+  }
+
+  INNERSPHERE_AVX512 static std::uint32_t bitsOf(const std::uint32_t* flags) {
+    const __m512i all = _mm512_loadu_si512(flags);
+    return _mm512_test_epi32_mask(all, all);
+  }
+
+  struct Kept {
+    explicit Kept(std::uint32_t bits) : kept(static_cast<__mmask16>(bits)) {}
+    /// There must be room for kLanes.
+    template <typename T>
+    INNERSPHERE_AVX512 void copy(const T* from, T* to) const {
+      _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(kept, _mm512_loadu_si512(from)));
+    }
+    __mmask16 kept;
+  };
+
+  INNERSPHERE_AVX512 static void findCells(const core::GridView& grid, const std::uint64_t* keys,
+                                           std::uint32_t count, ListRange* lists) {
+    constexpr __mmask8 kEvery = 0xff;
+    const auto* const words = reinterpret_cast<const long long*>(grid.cells);
+    const __m512i none = _mm512_setzero_si512(), one = _mm512_set1_epi64(1);
+    const __m512i factor = _mm512_set1_epi64(static_cast<long long>(core::kHashFactor));
+    const __m512i last = _mm512_set1_epi64((1ll << (64 - grid.hash_shift)) - 1);
+    const __m128i shift = _mm_cvtsi32_si128(grid.hash_shift);
+    alignas(64) std::uint64_t slots[kMostCells];
+    for (std::uint32_t k = 0; k < count; k += 8) {
+      const __m512i hash = _mm512_mullo_epi64(_mm512_loadu_si512(keys + k), factor);
+      _mm512_store_si512(slots + k, _mm512_maskz_srl_epi64(kEvery, hash, shift));
+    }
+    for (std::uint32_t k = 0; k < count; ++k) __builtin_prefetch(grid.cells + slots[k]);
+    for (std::uint32_t k = 0; k < count; k += 8) {
+      const __m512i key = _mm512_loadu_si512(keys + k);
+      __m512i at = _mm512_load_si512(slots + k), lists_here = none;
+      for (__mmask8 left = kEvery; left != 0;) {
+        const __m512i slot = _mm512_maskz_slli_epi64(kEvery, at, 1);  // of two words: a key, a list
+        const __m512i there = _mm512_mask_i64gather_epi64(none, left, slot, words, 8);
+        const __m512i list = _mm512_mask_i64gather_epi64(none, left, slot, words + 1, 8);
+        const __mmask8 found = _mm512_mask_cmpeq_epi64_mask(left, there, key);
+        lists_here = _mm512_mask_mov_epi64(lists_here, found, list);
+        left = _mm512_mask_test_epi64_mask(static_cast<__mmask8>(left & ~found), list, list);
+        at = _mm512_and_si512(_mm512_add_epi64(at, one), last);
+      }
+      _mm512_storeu_si512(lists + k, lists_here);
+    }
   }
 };
 

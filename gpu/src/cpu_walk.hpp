@@ -1,6 +1,5 @@
 // The walk on the CPU. Many walkers go together, so that each step is done for all of them side by side:
-// where they are, where their cells are, and the tests. Cells that were loaded are kept, as neighbours share
-// them.
+// where they are, where their cells are, and the tests.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +12,12 @@
 namespace innersphere {
 
 static_assert(kLanes <= CellLists::kPastEnd, "lists are read in groups");
+
+/// What a walk goes through: a grid, and the spheres that its cells list.
+struct WalkedGrid {
+  const core::GridView& grid;
+  SphereColumns listed;
+};
 
 /// A bit for each of up to 32 balls of the walking body that can meet the grid.
 inline std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy, const Sphere* balls,
@@ -40,19 +45,23 @@ inline std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& o
 
 /// Walkers that can meet the grid.
 struct Walkers {
-  static constexpr std::uint32_t kSize = 128;
-  alignas(64) float x[kSize], y[kSize], z[kSize], reach[kSize], smallest[kSize];
-  std::uint32_t self[kSize];  ///< place
+  static constexpr std::uint32_t kSize = kMostCells;
+  static constexpr std::uint32_t kRoom = kSize + kLanes;  ///< whole groups are written
+  alignas(64) float x[kRoom], y[kRoom], z[kRoom], reach[kRoom], smallest[kRoom];
+  alignas(64) std::uint32_t self[kRoom];  ///< place
   std::uint32_t count = 0;
 
   bool hasRoom() const { return count + core::kClusterSize <= kSize; }
   core::Lookup lookup(std::uint32_t k) const { return {{x[k], y[k], z[k]}, reach[k], smallest[k]}; }
 
   /// What core::makeLookup does, for the spheres of a cluster.
+  template <typename Lanes>
   void add(const core::Walker& walker, const core::Cluster& cluster) {
     constexpr std::uint32_t kAll = core::kClusterSize;
-    alignas(64) float px[kAll], py[kAll], pz[kAll], r[kAll];
-    alignas(64) std::int32_t active[kAll];
+    static_assert(kAll % kLanes == 0);
+    alignas(64) float px[kAll], py[kAll], pz[kAll], all[kAll], least[kAll];
+    alignas(64) std::uint32_t place[kAll];
+    alignas(64) std::uint32_t active[kAll] = {};
     const core::Search search = walker.search;
     const core::GridView grid = walker.grid;
     const Sphere* spheres = walker.own.spheres + cluster.first;
@@ -61,46 +70,41 @@ struct Walkers {
       px[k] = probe.p.x;
       py[k] = probe.p.y;
       pz[k] = probe.p.z;
-      r[k] = probe.radius;
+      all[k] = probe.radius + search.grid_margin + search.tolerance;
+      least[k] = core::smallestPartner(search, probe.radius);
     }
     for (std::uint32_t k = 0; k < cluster.count; ++k) {
-      const float all = r[k] + search.grid_margin + search.tolerance;
-      const std::int32_t meets = core::meetsBounds(grid, {px[k], py[k], pz[k]}, all) ? 1 : 0;
-      active[k] = core::smallestPartner(search, r[k]) > grid.largest ? 0 : meets;
+      const std::uint32_t meets = core::meetsBounds(grid, {px[k], py[k], pz[k]}, all[k]) ? 1 : 0;
+      active[k] = least[k] > grid.largest ? 0 : meets;
     }
-    std::uint32_t numbers[kAll], n = 0;
-    for (std::uint32_t k = 0; k < cluster.count; ++k) {
-      numbers[n] = k;
-      n += static_cast<std::uint32_t>(active[k]);
+    for (std::uint32_t k = 0; k < kAll; ++k) place[k] = cluster.first + k;
+    for (std::uint32_t k = 0; k < cluster.count; k += kLanes) {
+      const std::uint32_t bits = Lanes::bitsOf(active + k);
+      const typename Lanes::Kept kept(bits);
+      kept.copy(px + k, x + count);
+      kept.copy(py + k, y + count);
+      kept.copy(pz + k, z + count);
+      kept.copy(all + k, reach + count);
+      kept.copy(least + k, smallest + count);
+      kept.copy(place + k, self + count);
+      count += static_cast<std::uint32_t>(std::popcount(bits));
     }
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const std::uint32_t k = numbers[i], at = count + i;
-      x[at] = px[k];
-      y[at] = py[k];
-      z[at] = pz[k];
-      reach[at] = r[k] + search.grid_margin + search.tolerance;
-      smallest[at] = core::smallestPartner(search, r[k]);
-      self[at] = cluster.first + k;
-    }
-    count += n;
   }
 };
 
-/// The cells where they look: what core::cellsOf does where that is one.
-struct WalkerCells {
+/// The lists where they look: what core::cellsOf does where that is one.
+struct WalkerLists {
   static constexpr std::uint32_t kSize = Walkers::kSize;
-  alignas(64) std::int32_t tier[kSize], x[kSize], y[kSize], z[kSize];
   alignas(64) std::int32_t one[kSize];  ///< they look into one cell
-  core::Cell cells[kSize];
+  alignas(64) ListRange lists[kSize];
 
-  std::uint64_t key(std::uint32_t k) const {
-    return core::cellKey(tier[k], static_cast<std::uint32_t>(x[k]), static_cast<std::uint32_t>(y[k]),
-                         static_cast<std::uint32_t>(z[k]));
-  }
-
+  template <typename Lanes>
   void find(const core::GridView& view, const Walkers& walkers) {
+    alignas(64) std::int32_t tier[kSize], x[kSize], y[kSize], z[kSize];
+    alignas(64) std::uint64_t keys[kSize + kLanes];
     const core::GridView grid = view;
-    for (std::uint32_t k = 0; k < walkers.count; ++k) {
+    const std::uint32_t count = walkers.count;
+    for (std::uint32_t k = 0; k < count; ++k) {
       constexpr float kEnd = 1 << core::kAxisBits;
       const int t = core::tierOf(grid, core::levelOf(walkers.smallest[k]));
       const float inverse = core::powerOfTwo(-(grid.finest + t));
@@ -116,67 +120,95 @@ struct WalkerCells {
       y[k] = static_cast<std::int32_t>(std::min(std::max(cy, 0.0f), kEnd));
       z[k] = static_cast<std::int32_t>(std::min(std::max(cz, 0.0f), kEnd));
     }
-    for (std::uint32_t k = 0; k < walkers.count; ++k)
-      __builtin_prefetch(grid.cells + core::hashCell(grid, key(k)));
-    for (std::uint32_t k = 0; k < walkers.count; ++k) {
-      cells[k] = core::findCell(grid, key(k));
-      __builtin_prefetch(grid.listed + cells[k].first);
-    }
+    for (std::uint32_t k = 0; k < count; ++k)
+      keys[k] = core::cellKey(tier[k], static_cast<std::uint32_t>(x[k]), static_cast<std::uint32_t>(y[k]),
+                              static_cast<std::uint32_t>(z[k]));
+    for (std::uint32_t k = count; k % kLanes != 0; ++k) keys[k] = 0;
+    Lanes::findCells(grid, keys, count, lists);
   }
 };
 
-/// Spheres of the grid as columns, cell by cell: the last cells that were looked into, those that are small.
-class LoadedCells {
- public:
-  static constexpr std::uint32_t kLargest = 512;  ///< spheres of a cell
+/// Walkers whose lists are tested, a group of up to kLanes spheres of each at a time: no branch hangs on how
+/// long the list of a walker is.
+struct Testing {
+  static constexpr std::uint32_t kRoom = Walkers::kRoom;
+  alignas(64) std::uint32_t walker[kRoom], first[kRoom], left[kRoom];  ///< number; what is left of its list
+  std::uint32_t count = 0;
 
-  LoadedCells() { clear(); }
-
-  /// A cell's spheres, in groups of kLanes.
   template <typename Lanes>
-  Columns load(const core::GridView& grid, const core::Cell& cell) {
-    Kept& kept = kept_[cell.first / core::kListStep % kKept];
-    if (kept.first != cell.first) {
-      if (used_ + cell.count + kLanes > kRoom) clear();
-      kept = {cell.first, used_};
-      for (std::uint32_t k = 0; k < cell.count; k += kLanes, used_ += kLanes)
-        Lanes::load(grid.centred, grid.listed + cell.first + k, cell.count - k, columns(used_));
+  void begin(const Walkers& walkers, const WalkerLists& where) {
+    alignas(64) std::uint32_t number[kRoom], from[kRoom], length[kRoom] = {};
+    for (std::uint32_t k = 0; k < walkers.count; ++k) {
+      number[k] = k;
+      from[k] = where.lists[k].first;
+      length[k] = where.one[k] ? where.lists[k].count : 0;
     }
-    return columns(kept.at);
+    keep<Lanes>(number, from, length, walkers.count);
+  }
+
+  /// Goes to the next group of each.
+  template <typename Lanes>
+  void next() {
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::uint32_t tested = std::min<std::uint32_t>(left[k], kLanes);
+      first[k] += tested;
+      left[k] -= tested;
+    }
+    for (std::uint32_t k = count; k % kLanes != 0; ++k) left[k] = 0;
+    keep<Lanes>(walker, first, left, count);
   }
 
  private:
-  static constexpr std::uint32_t kRoom = 2048;  ///< spheres
-  static constexpr std::uint32_t kKept = 128;   ///< cells
-  struct Kept {
-    std::uint32_t first;  ///< of the cell's list
-    std::uint32_t at;     ///< of its spheres
-  };
-
-  Columns columns(std::uint32_t k) { return {x_ + k, y_ + k, z_ + k, radius_ + k}; }
-
-  void clear() {
-    used_ = 0;
-    for (Kept& kept : kept_) kept = {0xffffffffu, 0};
+  /// Those with something left; `lefts` is zero beyond the last one.
+  template <typename Lanes>
+  void keep(const std::uint32_t* numbers, const std::uint32_t* firsts, const std::uint32_t* lefts,
+            std::uint32_t all) {
+    count = 0;
+    for (std::uint32_t k = 0; k < all; k += kLanes) {
+      const std::uint32_t bits = Lanes::bitsOf(lefts + k);
+      const typename Lanes::Kept kept(bits);
+      kept.copy(numbers + k, walker + count);
+      kept.copy(firsts + k, first + count);
+      kept.copy(lefts + k, left + count);
+      count += static_cast<std::uint32_t>(std::popcount(bits));
+    }
   }
-
-  std::uint32_t used_;
-  Kept kept_[kKept];
-  alignas(64) float x_[kRoom], y_[kRoom], z_[kRoom], radius_[kRoom];
 };
 
-/// Tests a walker against listed[0 .. count); `counts` has the last word on those that it meets.
+/// Tests a group of each walker.
+template <typename Lanes>
+inline bool testGroups(const WalkedGrid& walked, const Walkers& walkers, const Testing& testing,
+                       Candidates& candidates, CandidateSink& sink) {
+  alignas(64) std::uint32_t there[Testing::kRoom];  // a bit for each sphere
+  for (std::uint32_t k = 0; k < testing.count; ++k)
+    there[k] = (1u << std::min<std::uint32_t>(testing.left[k], kLanes)) - 1;
+  std::size_t count = candidates.count;
+  for (std::uint32_t k = 0; k < testing.count; ++k) {
+    if (count + kLanes > Candidates::kSize) {
+      candidates.count = count;
+      if (!sink.take(candidates)) return false;
+      count = 0;
+    }
+    const std::uint32_t w = testing.walker[k], first = testing.first[k];
+    const std::uint32_t met = Lanes::meeting(walkers.lookup(w), walked.listed.from(first)) & there[k];
+    count = Lanes::append(walkers.self[w], walked.grid.listed + first, met, candidates, count);
+  }
+  candidates.count = count;
+  return true;
+}
+
+/// Tests a walker against some spheres in columns and adds their places; `counts` has the last word on those
+/// that it meets.
 template <typename Lanes, typename Counts>
 inline bool testList(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t self,
-                     const std::uint32_t* listed, std::uint32_t count, const Counts& counts,
-                     Candidates& candidates, CandidateSink& sink) {
-  alignas(64) float x[kLanes], y[kLanes], z[kLanes], radius[kLanes];
-  const Columns columns{x, y, z, radius};
+                     const SphereColumns& spheres, const std::uint32_t* places, std::uint32_t count,
+                     const Counts& counts, Candidates& candidates, CandidateSink& sink) {
   for (std::uint32_t k = 0; k < count; k += kLanes) {
     if (candidates.count + kLanes > Candidates::kSize && !sink.take(candidates)) return false;
-    Lanes::load(grid.centred, listed + k, count - k, columns);
-    for (std::uint32_t met = Lanes::meeting(lookup, columns); met != 0; met &= met - 1) {
-      const std::uint32_t place = listed[k + static_cast<std::uint32_t>(std::countr_zero(met))];
+    std::uint32_t met = Lanes::meeting(lookup, spheres.from(k));
+    if (count - k < kLanes) met &= (1u << (count - k)) - 1;
+    for (; met != 0; met &= met - 1) {
+      const std::uint32_t place = places[k + static_cast<std::uint32_t>(std::countr_zero(met))];
       candidates.walker[candidates.count] = self;
       candidates.partner[candidates.count] = place;
       candidates.count += counts(grid.centred[place]) ? 1 : 0;
@@ -185,29 +217,36 @@ inline bool testList(const core::GridView& grid, const core::Lookup& lookup, std
   return true;
 }
 
-inline bool always(const Sphere&) {
+/// Tests a walker against all spheres of the grid.
+template <typename Lanes>
+inline bool testAll(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t self,
+                    Candidates& candidates, CandidateSink& sink) {
+  alignas(64) float x[kLanes], y[kLanes], z[kLanes], radius[kLanes];
+  const Columns columns{x, y, z, radius};
+  for (std::uint32_t begin = 0; begin < grid.count; begin += kLanes) {
+    std::uint32_t places[kLanes];
+    for (std::uint32_t k = 0; k < kLanes; ++k) places[k] = std::min(begin + k, grid.count);
+    Lanes::load(grid.centred, places, columns);
+    const auto always = [](const Sphere&) { return true; };
+    if (!testList<Lanes>(grid, lookup, self, columns, places, kLanes, always, candidates, sink)) return false;
+  }
   return true;
 }
 
 /// Tests a walker against the spheres in all cells where it looks.
 template <typename Lanes>
-inline bool walkCells(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t self,
+inline bool walkCells(const WalkedGrid& walked, const core::Lookup& lookup, std::uint32_t self,
                       Candidates& candidates, CandidateSink& sink) {
+  const core::GridView& grid = walked.grid;
   const core::Cells cells = core::cellsOf(grid, lookup);
-  if (cells.all) {
-    for (std::uint32_t begin = 0; begin < grid.count; begin += kLanes) {
-      std::uint32_t places[kLanes];
-      for (std::uint32_t k = 0; k < kLanes; ++k) places[k] = std::min(begin + k, grid.count);
-      if (!testList<Lanes>(grid, lookup, self, places, kLanes, always, candidates, sink)) return false;
-    }
-    return true;
-  }
+  if (cells.all) return testAll<Lanes>(grid, lookup, self, candidates, sink);
   for (std::uint32_t number = 0; number < cells.count; ++number) {
     std::uint32_t at[3];
     cells.coordinates(number, at);
     const core::Cell cell = core::findCell(grid, core::cellKey(cells.tier, at[0], at[1], at[2]));
     const auto here = [&](const Sphere& s) { return core::countsIn(grid, cells, at, s); };
-    if (!testList<Lanes>(grid, lookup, self, grid.listed + cell.first, cell.count, here, candidates, sink))
+    if (!testList<Lanes>(grid, lookup, self, walked.listed.from(cell.first), grid.listed + cell.first,
+                         cell.count, here, candidates, sink))
       return false;
   }
   return true;
@@ -215,34 +254,17 @@ inline bool walkCells(const core::GridView& grid, const core::Lookup& lookup, st
 
 /// Takes all walkers through the grid.
 template <typename Lanes>
-inline bool walkTogether(const core::GridView& grid, Walkers& walkers, LoadedCells& loaded,
-                         Candidates& candidates, CandidateSink& sink) {
-  WalkerCells where;
-  where.find(grid, walkers);
+inline bool walkTogether(const WalkedGrid& walked, Walkers& walkers, Candidates& candidates,
+                         CandidateSink& sink) {
+  WalkerLists where;
+  where.find<Lanes>(walked.grid, walkers);
+  Testing testing;
+  for (testing.begin<Lanes>(walkers, where); testing.count > 0; testing.next<Lanes>()) {
+    if (!testGroups<Lanes>(walked, walkers, testing, candidates, sink)) return false;
+  }
   for (std::uint32_t w = 0; w < walkers.count; ++w) {
-    const core::Cell cell = where.cells[w];
-    const core::Lookup lookup = walkers.lookup(w);
-    const std::uint32_t self = walkers.self[w];
-    const std::uint32_t* const listed = grid.listed + cell.first;
-    if (!where.one[w]) {
-      if (!walkCells<Lanes>(grid, lookup, self, candidates, sink)) return false;
-    } else if (cell.count > LoadedCells::kLargest) {
-      if (!testList<Lanes>(grid, lookup, self, listed, cell.count, always, candidates, sink)) return false;
-    } else if (cell.count > 0) {
-      const Columns spheres = loaded.load<Lanes>(grid, cell);
-      std::size_t count = candidates.count;
-      for (std::uint32_t k = 0; k < cell.count; k += kLanes) {
-        if (count + kLanes > Candidates::kSize) {
-          candidates.count = count;
-          if (!sink.take(candidates)) return false;
-          count = 0;
-        }
-        const std::uint32_t met =
-            Lanes::meeting(lookup, {spheres.x + k, spheres.y + k, spheres.z + k, spheres.radius + k});
-        count = Lanes::append(self, listed + k, met, candidates, count);
-      }
-      candidates.count = count;
-    }
+    if (!where.one[w] && !walkCells<Lanes>(walked, walkers.lookup(w), walkers.self[w], candidates, sink))
+      return false;
   }
   walkers.count = 0;
   return true;
@@ -250,16 +272,16 @@ inline bool walkTogether(const core::GridView& grid, Walkers& walkers, LoadedCel
 
 /// Takes some clusters through the grid.
 template <typename Lanes>
-inline bool walkClusters(const core::Walker& walker, const std::uint32_t* clusters, std::size_t count,
-                         Candidates& candidates, CandidateSink& sink) {
+inline bool walkClusters(const core::Walker& walker, const SphereColumns& listed,
+                         const std::uint32_t* clusters, std::size_t count, Candidates& candidates,
+                         CandidateSink& sink) {
+  const WalkedGrid walked{walker.grid, listed};
   Walkers walkers;
-  LoadedCells loaded;
   for (std::size_t c = 0; c < count; ++c) {
-    if (!walkers.hasRoom() && !walkTogether<Lanes>(walker.grid, walkers, loaded, candidates, sink))
-      return false;
-    walkers.add(walker, walker.own.clusters[clusters[c]]);
+    if (!walkers.hasRoom() && !walkTogether<Lanes>(walked, walkers, candidates, sink)) return false;
+    walkers.add<Lanes>(walker, walker.own.clusters[clusters[c]]);
   }
-  return walkTogether<Lanes>(walker.grid, walkers, loaded, candidates, sink);
+  return walkTogether<Lanes>(walked, walkers, candidates, sink);
 }
 
 }  // namespace innersphere

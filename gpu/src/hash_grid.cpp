@@ -37,6 +37,7 @@ void HashGrid::build(const Sphere* spheres, const core::GridPlan& plan, GridScra
   orderSpheres(spheres, plan, scratch);
   makeClusters(plan);
   scratch.lister.list(plan, centred_.data(), lists_);
+  listed_spheres_.build(centred_.data(), lists_.listed);
   view_.cells = lists_.table.data();
   view_.listed = lists_.listed.data();
   view_.listed_count = static_cast<std::uint32_t>(lists_.listed.size()) - CellLists::kPastEnd;

@@ -7,6 +7,7 @@
 #include "cell_lists.hpp"
 #include "cluster_tree.hpp"
 #include "grid_plan.hpp"
+#include "listed_spheres.hpp"
 #include "occupancy.hpp"
 
 namespace innersphere {
@@ -53,6 +54,9 @@ class HashGrid {
   const ClusterTree& clusterTree() const { return cluster_tree_; }
   const Occupancy& occupancy() const { return occupancy_; }
 
+  /// Of GridView::listed.
+  SphereColumns listedSpheres() const { return listed_spheres_.columns(); }
+
  private:
   void orderSpheres(const Sphere* spheres, const core::GridPlan& plan, GridScratch& scratch);
   void makeClusters(const core::GridPlan& plan);
@@ -66,6 +70,7 @@ class HashGrid {
   ClusterTree cluster_tree_;
   Occupancy occupancy_;
   CellLists lists_;
+  ListedSpheres listed_spheres_;
   core::GridView view_{};
 };
 

@@ -47,7 +47,7 @@ Recorder record(const CpuKernels& kernels, const PreparedQuery& query) {
     recorder.balls.push_back(
         kernels.ballsMeeting(walker, query.grid_b->onCpu().occupancy(), &walker.own.clusters[c].ball, 1));
   for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
-    EXPECT_TRUE(kernels.walk(walker, &c, 1, candidates, recorder));
+    EXPECT_TRUE(kernels.walk(walker, query.grid_b->onCpu().listedSpheres(), &c, 1, candidates, recorder));
   recorder.take(candidates);
   return recorder;
 }

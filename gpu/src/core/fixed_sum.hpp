@@ -77,13 +77,24 @@ INNERSPHERE_HD inline Parts split(double x, const Unit& unit) {
   return {coarse, (scaled - (coarse - kMagic)) * unit.fine + kMagic};
 }
 
-INNERSPHERE_HD inline void add(ShortSum& sum, double x, const Unit& unit) {
+/// Adds the bits of a term's parts as they are: withoutMagic() makes it the sum.
+INNERSPHERE_HD inline void addBits(ShortSum& sum, double x, const Unit& unit) {
   const Parts parts = split(x, unit);
   std::uint64_t bits;
   memcpy(&bits, &parts.coarse, sizeof bits);
-  sum.coarse += bits - kMagicBits;
+  sum.coarse += bits;
   memcpy(&bits, &parts.fine, sizeof bits);
-  sum.fine += bits - kMagicBits;
+  sum.fine += bits;
+}
+
+/// A sum of the bits of `terms` terms.
+INNERSPHERE_HD inline ShortSum withoutMagic(const ShortSum& sum, std::uint64_t terms) {
+  return {sum.coarse - terms * kMagicBits, sum.fine - terms * kMagicBits};
+}
+
+INNERSPHERE_HD inline void add(ShortSum& sum, double x, const Unit& unit) {
+  addBits(sum, x, unit);
+  sum = withoutMagic(sum, 1);
 }
 
 /// In units of the quantum.

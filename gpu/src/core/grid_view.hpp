@@ -106,8 +106,10 @@ INNERSPHERE_HD inline float reachOf(const GridView& grid, int tier) {
   return powerOfTwo(grid.finest + tier - 2);
 }
 
+constexpr std::uint64_t kHashFactor = 0x9e3779b97f4a7c15u;
+
 INNERSPHERE_HD inline std::uint32_t hashCell(const GridView& grid, std::uint64_t key) {
-  return static_cast<std::uint32_t>(key * 0x9e3779b97f4a7c15u >> grid.hash_shift);
+  return static_cast<std::uint32_t>(key * kHashFactor >> grid.hash_shift);
 }
 
 /// The cell with this key; an empty slot if there is none. The table is never full, so probing ends.
