@@ -29,8 +29,12 @@ class QueryBackend {
   virtual double kernelTime() const { return 0; }
 };
 
+inline bool wantsContacts(Want want) {
+  return want == Want::contacts_of_a || want == Want::contacts;
+}
+
 inline bool wantsHits(Want want) {
-  return want == Want::contacts || want == Want::pairs;
+  return wantsContacts(want) || want == Want::pairs;
 }
 
 }  // namespace innersphere

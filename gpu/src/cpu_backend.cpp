@@ -7,32 +7,6 @@
 
 namespace innersphere {
 
-/// Collects hits and hands them on in blocks, so that threads seldom meet at the cursor. What does not fit is
-/// counted.
-class CpuBackend::HitWriter {
- public:
-  HitWriter(Hits& hits, std::atomic<std::size_t>& cursor) : hits_(hits), cursor_(cursor) {}
-  ~HitWriter() { flush(); }
-
-  void add(const Hit& hit) {
-    if (size_ == block_.size()) flush();
-    block_[size_++] = hit;
-  }
-
- private:
-  void flush() {
-    const std::size_t at = cursor_.fetch_add(size_, std::memory_order_relaxed);
-    if (at + size_ <= hits_.items.size())
-      std::copy_n(block_.begin(), size_, hits_.items.begin() + static_cast<std::ptrdiff_t>(at));
-    size_ = 0;
-  }
-
-  Hits& hits_;
-  std::atomic<std::size_t>& cursor_;
-  std::size_t size_ = 0;
-  std::array<Hit, 128> block_;
-};
-
 void CpuBackend::run(const std::vector<PreparedQuery>& queries, Want want, std::vector<core::Sums>& sums,
                      Hits& hits) {
   constexpr std::size_t kGrain = 16;  // clusters: some 512 spheres
@@ -47,31 +21,31 @@ void CpuBackend::run(const std::vector<PreparedQuery>& queries, Want want, std::
       walkRange(queries, begin, end, want, sums, hits);
     });
     hits.count = cursor_;
-    if (hits.count <= hits.items.size()) return;
-    hits.items.resize(hits.count);  // now the room that is needed is known: walk again
+    if (hits.count <= hits.room(wantsContacts(want))) return;
+    hits.reserve(hits.count, wantsContacts(want));  // now the room that is needed is known: walk again
   }
 }
 
 void CpuBackend::walkRange(const std::vector<PreparedQuery>& queries, std::size_t begin, std::size_t end,
                            Want want, std::vector<core::Sums>& sums, Hits& hits) {
-  HitWriter writer(hits, cursor_);
   auto next = std::upper_bound(first_.begin(), first_.end(), begin);
   while (begin < end) {
     const std::size_t q = static_cast<std::size_t>(next - first_.begin()) - 1;
     const std::size_t stop = std::min(end, *next);
     if (begin < stop)
       walkQuery(queries[q], static_cast<std::uint32_t>(q), begin - first_[q], stop - first_[q], want, sums[q],
-                writer);
+                hits);
     begin = stop;
     ++next;
   }
 }
 
-/// Decides the candidates of one query, and sums what counts.
+/// Decides the candidates of one query, and sums what counts. Hits that find no room are only counted.
 class CpuBackend::Summer : public CandidateSink {
  public:
-  Summer(const PreparedQuery& query, std::uint32_t index, Want want, HitWriter& writer)
-      : setup_(query.setup), index_(index), want_(want), writer_(writer) {
+  Summer(const PreparedQuery& query, std::uint32_t index, Want want, Hits& hits,
+         std::atomic<std::size_t>& cursor)
+      : setup_(query.setup), index_(index), want_(want), hits_(hits), cursor_(cursor) {
     sums_.clear();
   }
 
@@ -82,8 +56,10 @@ class CpuBackend::Summer : public CandidateSink {
     const CpuKernels& kernels = cpuKernels();
     const bool all = want_ != Want::volume;
     (all ? kernels.sumAll : kernels.sumVolumes)(setup_, from_a_, candidates, tally_);
-    if (tally_.pairs > 0) add(all ? core::kTerms : core::kVolumeTerms);
-    if (wantsHits(want_)) write(candidates);
+    if (tally_.pairs > 0) {
+      add(all ? core::kTerms : core::kVolumeTerms);
+      if (wantsHits(want_)) write(candidates);
+    }
     candidates.count = 0;
     return true;
   }
@@ -93,25 +69,30 @@ class CpuBackend::Summer : public CandidateSink {
  private:
   void add(int terms) {
     sums_.pairs += tally_.pairs;
-    tally_.pairs = 0;
     for (int i = 0; i < terms; ++i) {
-      const core::FixedSum sum = toFixed(tally_.terms[static_cast<std::size_t>(i)], unitOf(setup_.units, i));
+      const core::FixedSum sum = toFixed(tally_.sums[static_cast<std::size_t>(i)], unitOf(setup_.units, i));
       sums_.terms[i] = sums_.terms[i] + sum;
     }
   }
 
   void write(const Candidates& candidates) {
+    const bool with_values = wantsContacts(want_);
+    const std::size_t at = cursor_.fetch_add(tally_.pairs, std::memory_order_relaxed);
+    if (at + tally_.pairs > hits_.room(with_values)) return;
     const auto& as = from_a_ ? candidates.walker : candidates.partner;
     const auto& bs = from_a_ ? candidates.partner : candidates.walker;
+    Hit* hit = hits_.items.data() + at;
     for (std::size_t k = 0; k < candidates.count; ++k) {
-      if (tally_.hit[k]) writer_.add({index_, setup_.a.grid.ids[as[k]], setup_.b.grid.ids[bs[k]]});
+      if (tally_.hit[k]) *hit++ = {index_, setup_.a.grid.ids[as[k]], setup_.b.grid.ids[bs[k]]};
     }
+    if (with_values) cpuKernels().writeValues(tally_, candidates.count, hits_.values.data() + at);
   }
 
   const core::Setup& setup_;
   std::uint32_t index_;
   Want want_;
-  HitWriter& writer_;
+  Hits& hits_;
+  std::atomic<std::size_t>& cursor_;
   bool from_a_ = true;
   Tally tally_;
   core::Sums sums_;
@@ -185,13 +166,13 @@ void walkClusters(const PreparedQuery& query, std::size_t begin, std::size_t end
 }  // namespace
 
 void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin,
-                           std::size_t end, Want want, core::Sums& total, HitWriter& writer) {
+                           std::size_t end, Want want, core::Sums& total, Hits& hits) {
   if (want == Want::touch) {
     Toucher toucher(query.setup, total);
     if (!toucher.done()) walkClusters(query, begin, end, 1, toucher);
     return;
   }
-  Summer summer(query, index, want, writer);
+  Summer summer(query, index, want, hits, cursor_);
   walkClusters(query, begin, end, kTogether, summer);
   if (summer.sums().pairs == 0) return;
   const tbb::spin_mutex::scoped_lock lock(locks_[index % locks_.size()]);

@@ -23,13 +23,12 @@ class CpuBackend {
            Hits& hits);
 
  private:
-  class HitWriter;
   class Summer;
   class Toucher;
   void walkRange(const std::vector<PreparedQuery>& queries, std::size_t begin, std::size_t end, Want want,
                  std::vector<core::Sums>& sums, Hits& hits);
   void walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin, std::size_t end,
-                 Want want, core::Sums& total, HitWriter& writer);
+                 Want want, core::Sums& total, Hits& hits);
 
   Workers& workers_;
   std::vector<std::size_t> first_;         ///< clusters of all queries before each

@@ -1,6 +1,7 @@
 #include "cpu_kernels.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "cpu_walk.hpp"
 
@@ -50,7 +51,7 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
   const std::size_t n = spheres.template load<Lanes>(
       setup, (from_a ? candidates.walker : candidates.partner).data(),
       (from_a ? candidates.partner : candidates.walker).data(), candidates.count);
-  alignas(64) double terms[kTerms][kSize];
+  double(*const terms)[kSize] = tally.terms;
   alignas(64) std::int64_t hits[kSize];
   const core::Frame frame = setup.frame;
   const std::int64_t last = static_cast<std::int64_t>(candidates.count);
@@ -63,60 +64,104 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
     const core::Terms added = core::makeTerms<kWrench>(pair);
     for (int i = 0; i < kTerms; ++i) terms[i][k] = added.terms[i];
   }
+  tally.pairs = 0;
   for (std::size_t k = 0; k < n; ++k) tally.pairs += static_cast<std::size_t>(hits[k]);
   for (std::size_t k = 0; k < n; ++k) tally.hit[k] = static_cast<std::uint8_t>(hits[k]);
   for (int i = 0; i < kTerms; ++i) {
     const core::Unit unit = core::unitOf(setup.units, i);
     core::ShortSum sum{0, 0};
     for (std::size_t k = 0; k < n; ++k) core::addBits(sum, terms[i][k], unit);
-    tally.terms[static_cast<std::size_t>(i)] = core::withoutMagic(sum, n);
+    tally.sums[static_cast<std::size_t>(i)] = core::withoutMagic(sum, n);
   }
 }
 
 template <typename Lanes>
-inline void evaluateImpl(const core::Setup& setup, std::size_t count, PairValues& pairs) {
-  SpherePairs<PairValues::kSize> spheres;
-  const std::size_t n = spheres.template load<Lanes>(setup, pairs.a.data(), pairs.b.data(), count);
-  const core::Frame frame = setup.frame;
-  for (std::size_t k = 0; k < n; ++k) {
-    const core::Pair pair = core::makePair(frame, spheres.a(k), spheres.b(k));
-    const core::Contact contact = core::makeContact(pair);
-    const core::Vec3r moment = core::lensMoment(pair, contact);
-    const core::Vec3r area = contact.lens.rim_area * contact.n;
-    pairs.of[PairValues::volume][k] = contact.lens.volume;
-    pairs.of[PairValues::moment][k] = moment.x;
-    pairs.of[PairValues::moment + 1][k] = moment.y;
-    pairs.of[PairValues::moment + 2][k] = moment.z;
-    pairs.of[PairValues::area][k] = area.x;
-    pairs.of[PairValues::area + 1][k] = area.y;
-    pairs.of[PairValues::area + 2][k] = area.z;
+inline void writeValuesImpl(const Tally& tally, std::size_t count, HitValues* values) {
+  constexpr std::size_t kRows = Lanes::kRows;
+  static_assert(HitValues::kVolume == 1 && HitValues::kMoment == 2 && HitValues::kArea == 5);
+  const auto& terms = tally.terms;
+  const double* const columns[] = {terms[core::kVolume],     terms[core::kMoment], terms[core::kMoment + 1],
+                                   terms[core::kMoment + 2], terms[core::kArea],   terms[core::kArea + 1],
+                                   terms[core::kArea + 2]};
+  for (std::size_t k = 0; k < count; k += kRows) {
+    std::size_t here = 0, hits = 0;
+    for (; here < kRows && k + here < count; ++here) hits += tally.hit[k + here];
+    if (hits == kRows) {
+      Lanes::writeRows(columns, k, values);
+      values += kRows;
+      continue;
+    }
+    HitValues rows[kRows];
+    Lanes::writeRows(columns, k, rows);
+    for (std::size_t row = 0; row < here; ++row) {
+      if (tally.hit[k + row]) *values++ = rows[row];
+    }
+  }
+}
+
+inline void addValues(const double* values, double (&sums)[HitValues::kCount]) {
+  for (std::size_t i = 0; i < HitValues::kCount; ++i) sums[i] += values[i];
+}
+
+/// Those of a sphere with many partners are summed in kContactShares shares, every so many of them, then
+/// these sums: so a device can sum them side by side, to the same bits.
+inline void sumContactsImpl(const HitValues* values, const std::uint32_t* order, const std::size_t* heads,
+                            std::size_t begin, std::size_t end, SphereContact* contacts) {
+  constexpr std::size_t kCount = HitValues::kCount, kMoment = HitValues::kMoment;
+  for (std::size_t c = begin; c < end; ++c) {
+    const std::uint32_t* const hits = order + heads[c];
+    const std::size_t count = heads[c + 1] - heads[c];
+    double sums[kCount] = {};
+    if (count <= kContactShares) {
+      for (std::size_t k = 0; k < count; ++k) addValues(values[hits[k]].of, sums);
+    } else {
+      for (std::size_t share = 0; share < kContactShares; ++share) {
+        double of_share[kCount] = {};
+        for (std::size_t k = share; k < count; k += kContactShares) addValues(values[hits[k]].of, of_share);
+        addValues(of_share, sums);
+      }
+    }
+    const double volume = sums[HitValues::kVolume], inverse = volume > 0 ? 1 / volume : 0;
+    for (std::size_t i = 0; i < 3; ++i) sums[kMoment + i] *= inverse;
+    float numbers[kCount];
+    for (std::size_t i = 0; i < kCount; ++i) numbers[i] = static_cast<float>(sums[i]);
+    SphereContact& contact = contacts[c];
+    static_assert(sizeof contact == sizeof numbers);
+    const std::uint32_t sphere = contact.sphere;
+    std::memcpy(&contact, numbers, sizeof contact);
+    contact.sphere = sphere;
   }
 }
 
 // Each variant is the same code, inlined into a function for its instructions.
-#define INNERSPHERE_KERNELS(name, Lanes, attributes)                                                       \
-  struct name {                                                                                            \
-    attributes static std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy,   \
-                                                 const Sphere* balls, std::uint32_t count) {               \
-      return innersphere::ballsMeeting(walker, occupancy, balls, count);                                   \
-    }                                                                                                      \
-    attributes static bool walk(const core::Walker& walker, const SphereColumns& listed,                   \
-                                const std::uint32_t* clusters, std::size_t count, Candidates& candidates,  \
-                                CandidateSink& sink) {                                                     \
-      return walkClusters<Lanes>(walker, listed, clusters, count, candidates, sink);                       \
-    }                                                                                                      \
-    attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
-                                  Tally& tally) {                                                          \
-      sumImpl<Lanes, true>(setup, from_a, candidates, tally);                                              \
-    }                                                                                                      \
-    attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates, \
-                                      Tally& tally) {                                                      \
-      sumImpl<Lanes, false>(setup, from_a, candidates, tally);                                             \
-    }                                                                                                      \
-    attributes static void evaluate(const core::Setup& setup, std::size_t count, PairValues& pairs) {      \
-      evaluateImpl<Lanes>(setup, count, pairs);                                                            \
-    }                                                                                                      \
-    static constexpr CpuKernels kKernels{ballsMeeting, walk, sumAll, sumVolumes, evaluate};                \
+#define INNERSPHERE_KERNELS(name, Lanes, attributes)                                                        \
+  struct name {                                                                                             \
+    attributes static std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy,    \
+                                                 const Sphere* balls, std::uint32_t count) {                \
+      return innersphere::ballsMeeting(walker, occupancy, balls, count);                                    \
+    }                                                                                                       \
+    attributes static bool walk(const core::Walker& walker, const SphereColumns& listed,                    \
+                                const std::uint32_t* clusters, std::size_t count, Candidates& candidates,   \
+                                CandidateSink& sink) {                                                      \
+      return walkClusters<Lanes>(walker, listed, clusters, count, candidates, sink);                        \
+    }                                                                                                       \
+    attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,      \
+                                  Tally& tally) {                                                           \
+      sumImpl<Lanes, true>(setup, from_a, candidates, tally);                                               \
+    }                                                                                                       \
+    attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates,  \
+                                      Tally& tally) {                                                       \
+      sumImpl<Lanes, false>(setup, from_a, candidates, tally);                                              \
+    }                                                                                                       \
+    attributes static void writeValues(const Tally& tally, std::size_t count, HitValues* values) {          \
+      writeValuesImpl<Lanes>(tally, count, values);                                                         \
+    }                                                                                                       \
+    attributes static void sumContacts(const HitValues* values, const std::uint32_t* order,                 \
+                                       const std::size_t* heads, std::size_t begin, std::size_t end,        \
+                                       SphereContact* contacts) {                                           \
+      sumContactsImpl(values, order, heads, begin, end, contacts);                                          \
+    }                                                                                                       \
+    static constexpr CpuKernels kKernels{ballsMeeting, walk, sumAll, sumVolumes, writeValues, sumContacts}; \
   }
 
 INNERSPHERE_KERNELS(Baseline, LanesAny, __attribute__((flatten)));

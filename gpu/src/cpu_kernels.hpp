@@ -10,6 +10,8 @@
 #include "core/sums.hpp"
 #include "core/walk.hpp"
 #include "hash_grid.hpp"
+#include "hits.hpp"
+#include "innersphere/overlap.hpp"
 
 namespace innersphere {
 
@@ -29,19 +31,12 @@ class CandidateSink {
   virtual bool take(Candidates& candidates) = 0;
 };
 
-/// Sums over some candidates.
+/// What some candidates add up to.
 struct Tally {
-  std::array<core::ShortSum, core::kTerms> terms{};
+  std::array<core::ShortSum, core::kTerms> sums{};
   std::size_t pairs = 0;
-  std::array<std::uint8_t, Candidates::kSize> hit;  ///< for each candidate: does it count?
-};
-
-/// What a contact of a sphere sums over its partners, for some pairs.
-struct PairValues {
-  static constexpr std::size_t kSize = 256;
-  enum Value { volume = 0, moment = 1, area = 4, values = 7 };
-  std::array<std::uint32_t, kSize> a, b;  ///< given: places in the grids
-  alignas(64) std::array<std::array<double, kSize>, values> of;
+  std::array<std::uint8_t, Candidates::kSize> hit;            ///< for each candidate: does it count?
+  alignas(64) double terms[core::kTerms][Candidates::kSize];  ///< of each; zeros of those that do not count
 };
 
 struct CpuKernels {
@@ -55,8 +50,11 @@ struct CpuKernels {
   /// Decides candidates and sums those that count: all terms, or only volumes.
   void (*sumAll)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
   void (*sumVolumes)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
-  /// Evaluates the first `count` pairs, which overlap.
-  void (*evaluate)(const core::Setup& setup, std::size_t count, PairValues& pairs);
+  /// Writes the values of those of the first `count` candidates that count, after sumAll().
+  void (*writeValues)(const Tally& tally, std::size_t count, HitValues* values);
+  /// Sums hits order[heads[c]] to order[heads[c + 1]] into the contact number c, from `begin` to `end`.
+  void (*sumContacts)(const HitValues* values, const std::uint32_t* order, const std::size_t* heads,
+                      std::size_t begin, std::size_t end, SphereContact* contacts);
 };
 
 /// Those that this processor knows, the best one first.

@@ -95,6 +95,16 @@ struct LanesAny {
     std::uint32_t number[kLanes], count;
   };
 
+  static constexpr std::size_t kRows = 8;
+
+  /// A zero and seven columns, of kRows items from number k on, to rows.
+  static void writeRows(const double* const (&columns)[7], std::size_t k, HitValues* rows) {
+    for (std::size_t row = 0; row < kRows; ++row) {
+      rows[row].of[0] = 0;
+      for (std::size_t i = 0; i < 7; ++i) rows[row].of[i + 1] = columns[i][k + row];
+    }
+  }
+
   /// Where the lists of some cells are; empty where there is no such cell.
   static void findCells(const core::GridView& grid, const std::uint64_t* keys, std::uint32_t count,
                         ListRange* lists) {
@@ -207,6 +217,29 @@ struct LanesAvx512 : LanesAny {
     }
     __mmask16 kept;
   };
+
+  INNERSPHERE_AVX512 static void writeRows(const double* const (&columns)[7], std::size_t k,
+                                           HitValues* rows) {
+    constexpr __mmask8 kEvery = 0xff;
+    __m512d even[4] = {_mm512_setzero_pd()}, odd[4];  // columns of the rows
+    for (std::size_t i = 0; i < 4; ++i) odd[i] = _mm512_load_pd(columns[2 * i] + k);
+    for (std::size_t i = 1; i < 4; ++i) even[i] = _mm512_load_pd(columns[2 * i - 1] + k);
+    for (std::size_t parity = 0; parity < 2; ++parity) {
+      __m512d pairs[4];  // of columns; rows 0, 2, 4, 6 or 1, 3, 5, 7
+      for (std::size_t i = 0; i < 4; ++i)
+        pairs[i] = parity == 0 ? _mm512_maskz_unpacklo_pd(kEvery, even[i], odd[i])
+                               : _mm512_maskz_unpackhi_pd(kEvery, even[i], odd[i]);
+      const __m512d left04 = _mm512_maskz_shuffle_f64x2(kEvery, pairs[0], pairs[1], 0x88);
+      const __m512d left26 = _mm512_maskz_shuffle_f64x2(kEvery, pairs[0], pairs[1], 0xdd);
+      const __m512d right04 = _mm512_maskz_shuffle_f64x2(kEvery, pairs[2], pairs[3], 0x88);
+      const __m512d right26 = _mm512_maskz_shuffle_f64x2(kEvery, pairs[2], pairs[3], 0xdd);
+      HitValues* const to = rows + parity;
+      _mm512_store_pd(to[0].of, _mm512_maskz_shuffle_f64x2(kEvery, left04, right04, 0x88));
+      _mm512_store_pd(to[2].of, _mm512_maskz_shuffle_f64x2(kEvery, left26, right26, 0x88));
+      _mm512_store_pd(to[4].of, _mm512_maskz_shuffle_f64x2(kEvery, left04, right04, 0xdd));
+      _mm512_store_pd(to[6].of, _mm512_maskz_shuffle_f64x2(kEvery, left26, right26, 0xdd));
+    }
+  }
 
   INNERSPHERE_AVX512 static void findCells(const core::GridView& grid, const std::uint64_t* keys,
                                            std::uint32_t count, ListRange* lists) {

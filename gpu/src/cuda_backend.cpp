@@ -35,9 +35,9 @@ class CudaBackend : public QueryBackend {
     next_ = first_ = 0;
     kernel_time_ = 0;
     staged_.overlaps.resize(queries.size());
-    begin(staged_.pairs, Want::pairs);
-    begin(staged_.contacts_a, Want::contacts);
-    begin(staged_.contacts_b, Want::contacts);
+    begin(staged_.pairs, want == Want::pairs);
+    begin(staged_.contacts_a, wantsContacts(want));
+    begin(staged_.contacts_b, want == Want::contacts);
     while (startPart()) continue;
   }
 
@@ -74,8 +74,8 @@ class CudaBackend : public QueryBackend {
 
   /// What is wanted is overwritten, and then cut to its length: nothing is filled twice.
   template <typename T>
-  void begin(QueryResult::Ranges<T>& ranges, Want want) {
-    if (want_ != want || queries_->empty()) ranges.items.clear();
+  void begin(QueryResult::Ranges<T>& ranges, bool wanted) {
+    if (!wanted || queries_->empty()) ranges.items.clear();
     ranges.first.assign(queries_->size() + 1, 0);
   }
 
@@ -98,10 +98,8 @@ class CudaBackend : public QueryBackend {
     for (std::size_t q = range.begin; q < range.end; ++q)
       staged_.overlaps[q] = toOverlap(part.results()[q - range.begin]);
     if (want_ == Want::pairs) append(part.lists().pairs, range, staged_.pairs);
-    if (want_ == Want::contacts) {
-      append(part.lists().contacts[0], range, staged_.contacts_a);
-      append(part.lists().contacts[1], range, staged_.contacts_b);
-    }
+    if (wantsContacts(want_)) append(part.lists().contacts[0], range, staged_.contacts_a);
+    if (want_ == Want::contacts) append(part.lists().contacts[1], range, staged_.contacts_b);
     kernel_time_ += part.kernelTime();
     ++first_;
     --under_way_;

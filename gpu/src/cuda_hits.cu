@@ -204,6 +204,7 @@ void CudaHits::start(const Batch& batch, const Query& single, std::size_t hits, 
                                                           values_.data(), keys_.data(), order_.data());
   INNERSPHERE_CUDA(cudaGetLastError());
   sumContacts(batch.count, count, bits.b, bits.a, nullptr, lists_.contacts[0], stream);
+  if (want == Want::contacts_of_a) return;
   withScratch(scratch_, [&](void* p, std::size_t& size) {
     return cub::DeviceRadixSort::SortPairs(p, size, keys_.data(), sorted_.data(), order_.data(),
                                            sorted_order_.data(), static_cast<int>(count), 0,

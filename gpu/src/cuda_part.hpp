@@ -41,7 +41,7 @@ class Part {
 
   Range range() const { return range_; }
   const core::Totals* results() const { return results_.data(); }
-  /// With Want::pairs and Want::contacts.
+  /// Where contacts or pairs are wanted.
   const HitLists& lists() const { return hits_.lists(); }
   double kernelTime() const { return kernel_time_; }
 

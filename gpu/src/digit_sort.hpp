@@ -1,7 +1,9 @@
 // Sorting by integer keys, a digit at a time.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -22,6 +24,27 @@ void sortByBits(T*& items, T*& spare, std::size_t count, const Key& key, int fro
     for (std::size_t& count_or_place : at) sum += std::exchange(count_or_place, sum);
     for (std::size_t k = 0; k < count; ++k) spare[at[digit(items[k])]++] = items[k];
     std::swap(items, spare);
+  }
+}
+
+/// The same for few items: sorts what key(item) < limit gives in as few steps as their digits allow.
+template <typename Key>
+void sortByNumber(std::uint32_t*& items, std::uint32_t*& spare, std::size_t count, std::uint32_t limit,
+                  const Key& key) {
+  constexpr int kMostBits = 12;
+  const int bits = std::bit_width(limit - 1), digits = (bits + kMostBits - 1) / kMostBits;
+  for (int digit = 0, from = 0; digit < digits; ++digit) {
+    const int end = bits * (digit + 1) / digits;
+    const std::uint32_t values = 1u << (end - from);
+    std::array<std::uint32_t, 1 << kMostBits> at;
+    std::fill_n(at.begin(), values, 0u);
+    const auto of = [&](std::uint32_t item) { return key(item) >> from & (values - 1); };
+    for (std::size_t k = 0; k < count; ++k) ++at[of(items[k])];
+    std::uint32_t sum = 0;
+    for (std::uint32_t d = 0; d < values; ++d) sum += std::exchange(at[d], sum);
+    for (std::size_t k = 0; k < count; ++k) spare[at[of(items[k])]++] = items[k];
+    std::swap(items, spare);
+    from = end;
   }
 }
 

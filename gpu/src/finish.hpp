@@ -24,28 +24,21 @@ class HitSorter {
            Want want, Workers& workers, QueryResult& result);
 
  private:
-  /// What one pair adds to the contacts of both of its spheres.
-  struct Values {
-    double volume;
-    core::Vec3r moment, area;
-  };
+  /// Whose number a sphere is, in a hit.
+  using Sphere = std::uint32_t Hit::*;
 
   void groupByQuery(const std::vector<core::Sums>& sums, const Hits& hits);
-  void sortGroups(const std::vector<PreparedQuery>& queries, Workers& workers);
-  void writePairs(QueryResult::Ranges<SpherePair>& pairs) const;
-  void evaluate(const std::vector<PreparedQuery>& queries, Workers& workers);
-  void regroupByB(const std::vector<PreparedQuery>& queries, Workers& workers);
-  void writeContacts(bool of_b, Workers& workers, QueryResult::Ranges<SphereContact>& contacts);
-  SphereContact sumContact(std::size_t query, std::size_t begin, std::size_t end, bool of_b) const;
+  /// By the first of these spheres and, of equal ones, by the second or else by what they come in.
+  void sortGroups(const std::vector<PreparedQuery>& queries, const Hits& hits, Sphere first, Sphere second,
+                  Workers& workers);
+  void writePairs(const Hits& hits, QueryResult::Ranges<SpherePair>& pairs) const;
+  void writeContacts(const Hits& hits, Sphere sphere, Workers& workers,
+                     QueryResult::Ranges<SphereContact>& contacts);
 
   std::vector<std::size_t> first_;  ///< hits of all queries before each
   std::vector<std::size_t> cursor_;
-  /// Hits by query, sorted: sphere of A above that of B; once regrouped, sphere of B above the hit's number
-  /// in its query.
-  std::vector<std::uint64_t> keys_;
-  std::vector<std::uint64_t> spare_;
-  std::vector<Values> values_;      ///< of the hits as they were sorted first
-  std::vector<std::size_t> heads_;  ///< where a new sphere begins in keys_
+  std::vector<std::uint32_t> order_, spare_;  ///< numbers of the hits, by query, then sorted
+  std::vector<std::size_t> heads_;            ///< where a new sphere begins in order_
 };
 
 }  // namespace innersphere

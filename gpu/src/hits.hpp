@@ -1,6 +1,7 @@
 // Overlapping pairs of spheres.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,10 +18,26 @@ struct Hit {
   std::uint32_t b;
 };
 
-/// Hits in no particular order; `count` of `items` are valid, the rest is room for the next run.
+/// What a pair adds to the contacts of both of its spheres, laid out as a SphereContact is, with zero in the
+/// place of the sphere.
+struct alignas(64) HitValues {
+  static constexpr std::size_t kVolume = 1, kMoment = 2, kArea = 5, kCount = 8;
+  double of[kCount];
+};
+
+/// Hits in no particular order; the first `count` are valid, the rest is room for the next run.
 struct Hits {
   std::vector<Hit> items;
+  std::vector<HitValues> values;  ///< as many, where contacts are wanted
   std::size_t count = 0;
+
+  std::size_t room(bool with_values) const {
+    return with_values ? std::min(items.size(), values.size()) : items.size();
+  }
+  void reserve(std::size_t hits, bool with_values) {
+    items.resize(std::max(items.size(), hits));
+    if (with_values) values.resize(std::max(values.size(), hits));
+  }
 };
 
 }  // namespace innersphere

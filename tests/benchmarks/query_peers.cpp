@@ -39,7 +39,7 @@ class Ours {
   /// Volume, wrench and patches.
   std::size_t patches(const Placement& copy) {
     const PairQuery pair = query(copy);
-    context_.run(&pair, 1, {Want::contacts, Estimator::volume_true}, result_);
+    context_.run(&pair, 1, {Want::contacts_of_a, Estimator::volume_true}, result_);
     buildPatches(result_.contacts_a.items.data(), result_.contacts_a.items.size(), {}, patches_);
     return patches_.size();
   }

@@ -20,7 +20,8 @@ TEST_P(Allocation, NoneAfterWarmUp) {
     query.margin = 0.001;
   }
   QueryResult result;
-  for (Want want : {Want::touch, Want::volume, Want::wrench, Want::contacts, Want::pairs}) {
+  for (Want want :
+       {Want::touch, Want::volume, Want::wrench, Want::contacts_of_a, Want::contacts, Want::pairs}) {
     const auto run = [&] {
       context.run(queries.data(), queries.size(), {want, Estimator::volume_true}, result);
     };

@@ -39,7 +39,8 @@ TEST_P(AsynchronousConformance, SameBitsAsAtOnce) {
   QueryContext at_once = makeContext(), in_halves = makeContext();
   for (std::size_t count : {0u, 1u, 60u}) {
     const std::vector<PairQuery> queries = batch(count, 11);
-    for (Want want : {Want::touch, Want::volume, Want::wrench, Want::contacts, Want::pairs}) {
+    for (Want want :
+         {Want::touch, Want::volume, Want::wrench, Want::contacts_of_a, Want::contacts, Want::pairs}) {
       const QueryOptions options{want, Estimator::volume_true};
       QueryResult x, y, z;
       at_once.run(queries.data(), count, options, x);

@@ -45,6 +45,11 @@ TEST_P(ContactsConformance, EqualBruteForce) {
     expectContacts(oracle.contacts_a, result.contacts_a);
     expectContacts(oracle.contacts_b, result.contacts_b);
     EXPECT_TRUE(result.pairs.items.empty());
+    QueryResult of_a;
+    context.run(&scene.query, 1, {Want::contacts_of_a, Estimator::volume_true}, of_a);
+    expectSameRanges(of_a.contacts_a, result.contacts_a);
+    EXPECT_TRUE(of_a.contacts_b.items.empty());
+    EXPECT_EQ(of_a.contacts_b.first, (std::vector<std::size_t>{0, 0}));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,7 @@ class Recorder : public CandidateSink {
       pairs.push_back({candidates.walker[k], candidates.partner[k]});
     tallies.emplace_back();
     kernels_.sumAll(setup_, true, candidates, tallies.back());
+    recordContacts(tallies.back(), candidates.count);
     tallies.emplace_back();
     kernels_.sumVolumes(setup_, true, candidates, tallies.back());
     candidates.count = 0;
@@ -33,8 +35,30 @@ class Recorder : public CandidateSink {
   std::vector<std::uint32_t> balls;  ///< of the clusters: do they meet?
   Pairs pairs;
   std::vector<Tally> tallies;
+  std::vector<double> values;   ///< of all that count
+  std::vector<float> contacts;  ///< of three of them each, and a last one of the rest, of many
 
  private:
+  void recordContacts(const Tally& tally, std::size_t count) {
+    std::vector<HitValues> hits(tally.pairs);
+    kernels_.writeValues(tally, count, hits.data());
+    for (const HitValues& hit : hits) values.insert(values.end(), std::begin(hit.of), std::end(hit.of));
+    std::vector<std::uint32_t> order;
+    for (int turn = 0; turn < 3; ++turn) {
+      for (std::uint32_t k = 0; k < hits.size(); ++k) order.push_back(k);
+    }
+    std::vector<std::size_t> heads;
+    for (std::size_t k = 0; k + 3 < hits.size(); k += 3) heads.push_back(k);
+    heads.push_back(order.size());
+    std::vector<SphereContact> sums(heads.size() - 1);
+    kernels_.sumContacts(hits.data(), order.data(), heads.data(), 0, sums.size(), sums.data());
+    for (const SphereContact& sum : sums) {
+      contacts.push_back(sum.volume);
+      contacts.insert(contacts.end(), sum.centroid.begin(), sum.centroid.end());
+      contacts.insert(contacts.end(), sum.area.begin(), sum.area.end());
+    }
+  }
+
   const CpuKernels& kernels_;
   const core::Setup& setup_;
 };
@@ -73,19 +97,10 @@ TEST(CpuKernels, AllGiveTheSameBits) {
     for (std::size_t i = 0; i < first.tallies.size(); ++i) {
       const Tally &x = first.tallies[i], &y = other.tallies[i];
       EXPECT_EQ(x.pairs, y.pairs);
-      EXPECT_EQ(std::memcmp(x.terms.data(), y.terms.data(), sizeof x.terms), 0);
+      EXPECT_EQ(std::memcmp(x.sums.data(), y.sums.data(), sizeof x.sums), 0);
     }
-
-    PairValues ours, theirs;
-    const std::size_t count = 203;  // not a multiple of any vector's length
-    for (std::size_t k = 0; k < count; ++k) {
-      ours.a[k] = theirs.a[k] = first.pairs[k].first;
-      ours.b[k] = theirs.b[k] = first.pairs[k].second;
-    }
-    supportedKernels().front()->evaluate(prepared.setup, count, ours);
-    kernels->evaluate(prepared.setup, count, theirs);
-    for (std::size_t i = 0; i < PairValues::values; ++i)
-      EXPECT_EQ(std::memcmp(ours.of[i].data(), theirs.of[i].data(), count * sizeof(double)), 0);
+    EXPECT_EQ(first.values, other.values);
+    EXPECT_EQ(first.contacts, other.contacts);
   }
 }
 

@@ -32,7 +32,8 @@ class DeterminismConformance : public Conformance {
 
 TEST_P(DeterminismConformance, AnyThreadsAndRuns) {
   const std::vector<PairQuery> queries = batch(60);
-  for (Want want : {Want::touch, Want::volume, Want::wrench, Want::contacts, Want::pairs}) {
+  for (Want want :
+       {Want::touch, Want::volume, Want::wrench, Want::contacts_of_a, Want::contacts, Want::pairs}) {
     QueryResult first;
     makeContext(1).run(queries.data(), queries.size(), {want, Estimator::volume_true}, first);
     for (int threads : {1, 2, 3, 8}) {

@@ -20,14 +20,15 @@ enum class Backend {
   cuda  ///< Error no_device if there is none: never a silent fallback
 };
 
-/// What is computed. Each value includes those before it, except that contacts and pairs are independent of
-/// each other; asking for less costs less.
+/// What is computed. Each value includes those before it, except that pairs come without contacts; asking for
+/// less costs less.
 enum class Want {
-  touch,     ///< only whether anything overlaps: pair_count is 0 or 1
-  volume,    ///< volume, centroid, pair_count
-  wrench,    ///< all of Overlap
-  contacts,  ///< also the contacts of each sphere, of both bodies
-  pairs      ///< also the overlapping pairs, sorted by (a, b)
+  touch,          ///< only whether anything overlaps: pair_count is 0 or 1
+  volume,         ///< volume, centroid, pair_count
+  wrench,         ///< all of Overlap
+  contacts_of_a,  ///< also the contacts of each sphere of A: enough for buildPatches()
+  contacts,       ///< also those of B
+  pairs           ///< also the overlapping pairs, sorted by (a, b)
 };
 
 /// Two bodies to collide.
@@ -62,8 +63,8 @@ struct QueryResult {
     std::vector<std::size_t> first;
   };
   Ranges<SpherePair> pairs;          ///< Want::pairs
-  Ranges<SphereContact> contacts_a;  ///< Want::contacts: spheres of A that touch, by rising index
-  Ranges<SphereContact> contacts_b;  ///< the same for B
+  Ranges<SphereContact> contacts_a;  ///< Want::contacts_of_a: spheres of A that touch, by rising index
+  Ranges<SphereContact> contacts_b;  ///< Want::contacts: the same for B
 };
 
 struct QueryContextOptions {
@@ -91,7 +92,7 @@ class QueryContext {
   /// context stays usable and `result` as it was.
   void run(const PairQuery* queries, std::size_t count, const QueryOptions& options, QueryResult& result);
 
-  /// One pair, only its sums: Want::contacts and Want::pairs give no more than Want::wrench here.
+  /// One pair, only its sums: contacts and pairs, where they are wanted, are left out.
   Overlap overlap(const PairQuery& query, const QueryOptions& options = {});
 
   /// The same two calls in halves, so that the caller can do other things while a device works: start()
@@ -105,7 +106,7 @@ class QueryContext {
   void startOverlap(const PairQuery& query, const QueryOptions& options = {});
   Overlap waitOverlap();
 
-  /// True if wait() will return at once. With Want::contacts and Want::pairs the device works in two steps,
+  /// True if wait() will return at once. With contacts or pairs the device works in two steps,
   /// the second of which begins when this is called after the first.
   bool ready();
 
