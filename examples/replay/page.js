@@ -303,16 +303,27 @@
     element('play').textContent = on ? '\u275A\u275A' : '\u25B6';
   }
 
+  // What is left between the texts above and the controls below, which must not cover the picture.
+  function freeRows() {
+    const height = window.innerHeight;
+    const below = [element('films-list'), element('player')].filter((part) => !part.hidden);
+    const bottom = Math.min(height, ...below.map((part) => part.getBoundingClientRect().top));
+    const header = document.querySelector('header').getBoundingClientRect();
+    const top = header.width > 0.6 * window.innerWidth ? header.bottom : 0;
+    return bottom - top > 0.3 * height ? [top, bottom] : [0, height];
+  }
+
   function resize() {
     const width = window.innerWidth;
     const height = window.innerHeight;
+    const [top, bottom] = freeRows();
     renderer.setSize(width, height, false);
-    camera.aspect = width / height;
+    camera.aspect = width / (bottom - top);
     // A narrow window must not cut off the sides.
     const {field_of_view, aspect} = shown.film.camera;
     const half = Math.tan(field_of_view * Math.PI / 360) * Math.max(1, aspect / camera.aspect);
     camera.fov = Math.atan(half) * 360 / Math.PI;
-    camera.updateProjectionMatrix();
+    camera.setViewOffset(width, bottom - top, 0, -top, width, height);
   }
 
   function show(index) {
@@ -328,6 +339,7 @@
       return line;
     }));
     Array.from(element('films-list').children).forEach((button, n) => button.classList.toggle('on', n === index));
+    if (element('films-list').children[index]) element('films-list').children[index].scrollIntoView({inline: 'center'});
     camera.near = shown.reach / 100;
     camera.far = 20 * shown.reach;
     camera.position.copy(vector(film.camera.eye));
