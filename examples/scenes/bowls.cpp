@@ -63,7 +63,7 @@ void buildBowls(SceneWorld& world, const SceneOptions& options) {
                   "outer sphere in the torus of the rim: sqrt((R + r)^2 - (R - r)^2) each; 0.5 %",
                   [i](const Recording& r) { return r.last(i).position[2] - r.last(0).position[2]; }, 4});
   }
-  world.expect(energyGainBelow(0.2, energy, "the fall to where they rest"));
+  world.expect(energyGainBelow(0.13, energy, "the fall to where they rest"));
   world.film.viewpoint = {0.4, 0.15, 0.45};
 }
 

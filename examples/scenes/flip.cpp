@@ -65,10 +65,10 @@ void buildFlip(SceneWorld& world, const SceneOptions& options) {
                   const Vec3d &l = r.steps.back().angular_momentum, &l0 = r.steps.front().angular_momentum;
                   return std::hypot(l[0] - l0[0], l[1] - l0[1], l[2] - l0[2]) / momentum;
                 }});
-  world
-      .expect({"change of the energy", "", Truth::Kind::equal, 0, 0.01, "it is kept",
-               [](const Recording& r) { return r.steps.back().energy() / r.steps.front().energy() - 1; }})
-      .known_miss = 0.005;
+  // Bullet turns free bodies by one step of an implicit Euler method, which takes energy in proportion to the
+  // step: 2.8 % in 5 s at 1,000 steps/s, 1.4 % at 2,000, 0.7 % at 4,000.
+  world.expect({"change of the energy", "", Truth::Kind::equal, 0, 0.01, "it is kept",
+                [](const Recording& r) { return r.steps.back().energy() / r.steps.front().energy() - 1; }});
   world.film.has_ground = false;
   world.film.viewpoint = {0.4, 0.3, 0.45, true};
 }

@@ -44,7 +44,7 @@ Truth energyGainBelow(double limit, double reference, const std::string& what_re
           Truth::Kind::at_most,
           limit,
           0,
-          "increments of the total energy over " + what_reference + "; the limit is what GImpact gains",
+          "increments of the total energy over " + what_reference + "; the limit is what GImpact gains here",
           [reference](const Recording& r) { return r.energyGained() / reference; }};
 }
 

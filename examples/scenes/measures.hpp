@@ -25,7 +25,8 @@ Measure largestTurn(std::size_t first_body, std::size_t count, double from = 0);
 /// The angle that a body turned about the z axis between two times, by its spin [rad].
 double turnedAboutZ(const Recording& r, std::size_t body, double from, double to);
 
-/// Energy that came from nowhere, over a reference [J].
+/// Energy that came from nowhere, over a reference [J]. `limit` is what GImpact's triangle meshes gain in the
+/// same scene: `innersphere scene check NAME --shape gimpact`.
 Truth energyGainBelow(double limit, double reference, const std::string& what_reference);
 
 }  // namespace innersphere::demo

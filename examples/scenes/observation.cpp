@@ -29,7 +29,7 @@ void addMotion(const btRigidBody& body, const btVector3& gravity, StepRecord& re
   record.fastest_turn = std::max<double>(record.fastest_turn, turn.length());
 }
 
-// Calls visit(manifold, point) for each point that overlaps.
+// Calls visit(manifold, point) for each point that overlaps, or is about to and pushes.
 template <typename Visit>
 void forEachContact(SceneWorld& world, const Visit& visit) {
   btDispatcher* dispatcher = world.bullet().getDispatcher();
@@ -37,7 +37,7 @@ void forEachContact(SceneWorld& world, const Visit& visit) {
     const btPersistentManifold* manifold = dispatcher->getManifoldByIndexInternal(i);
     for (int k = 0; k < manifold->getNumContacts(); ++k) {
       const btManifoldPoint& point = manifold->getContactPoint(k);
-      if (point.getDistance() <= 0) visit(*manifold, point);
+      if (point.getDistance() <= 0 || point.getAppliedImpulse() > 0) visit(*manifold, point);
     }
   }
 }

@@ -50,9 +50,12 @@ double Recording::deepestOverlap(double from) const {
 }
 
 double Recording::energyGained() const {
+  const auto inTheMiddle = [this](std::size_t i) {
+    return steps[i].kinetic + (steps[i - 1].potential + steps[i].potential) / 2;
+  };
   double sum = 0;
-  for (std::size_t i = 1; i < steps.size(); ++i) {
-    sum += std::max(0.0, steps[i].energy() - steps[i - 1].energy());
+  for (std::size_t i = 2; i < steps.size(); ++i) {
+    sum += std::max(0.0, inTheMiddle(i) - inTheMiddle(i - 1));
   }
   return sum;
 }

@@ -56,7 +56,11 @@ struct Recording {
   /// The deepest overlap from a time on [m].
   double deepestOverlap(double from = 0) const;
   /// Sum of all increments of the total energy from one step to the next [J]: energy from nowhere, unless
-  /// springs give back what they took.
+  /// springs give back what they took. Bullet moves bodies at the velocities that they have after a step, so
+  /// these belong to its middle, and are put together with the places there: free flight then keeps its
+  /// energy to rounding, and the error of a pendulum is of second order in the step. With the places after
+  /// the step a chain of Bullet's own joints, which swings like that of rings, would gain three times as
+  /// much, and a body that falls would lose m g^2 dt^2 / 2 a step.
   double energyGained() const;
   /// The farthest that the centre of a body came from where it was at time `from` [m].
   double farthestFrom(std::size_t index, double from = 0) const;

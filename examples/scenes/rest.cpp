@@ -75,11 +75,14 @@ void buildSoft(SceneWorld& world, const SceneOptions& options) {
   const double box_depth = kDensity * kGravity * kEdge / stiffness;
   const double ball_volume = 4.0 / 3 * std::numbers::pi * std::pow(kRadius, 3);
   const double ball_depth = depthOfCap(kRadius, kDensity * kGravity * ball_volume / stiffness);
+  // Spheres that stand for the volume up to a flat face do not reach it with all of that: what a plane cuts
+  // off 2 % deep is 19 % too little with 1,000 of them, 9 % with 4,000, 2 % with 16,000, and the box sinks
+  // deeper.
   world
       .expect({"depth of the box", "m", Truth::Kind::equal, box_depth, 0.05 * box_depth,
                "weight = stiffness x area x depth",
                [](const Recording& r) { return kEdge / 2 - r.last(0).position[2]; }, 2})
-      .known_miss = 0.0018;
+      .known_miss = options.spheres < 16000 ? 0.0018 : 0;
   world.expect({"depth of the ball", "m", Truth::Kind::equal, ball_depth, 0.05 * ball_depth,
                 "weight = stiffness x volume of the cap, pi d^2 (3 r - d) / 3",
                 [](const Recording& r) { return kRadius - r.last(1).position[2]; }, 2});

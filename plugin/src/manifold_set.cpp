@@ -83,6 +83,8 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   const btScalar approach = approachSpeed(a, b, from.on_b, from.normal);
   const bool meets = depth + approach * law.time_step > 0;
   const bool bounces = point.m_combinedRestitution * approach > law.push;
+  // The solver would begin the bounce before they touch, and brake them on their way.
+  if (!meets) point.m_combinedRestitution = 0;
   if (meets && bounces && (depth < 0 || spring)) {
     depth = 0;
     spring = false;
