@@ -133,35 +133,62 @@ inline void sumContactsImpl(const HitValues* values, const std::uint32_t* order,
   }
 }
 
+inline void nearestDirectionsImpl(const float* x, const float* y, const float* z, std::size_t count,
+                                  const core::Vec3f* directions, std::size_t direction_count,
+                                  std::uint32_t* nearest) {
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    alignas(64) float best[kLanes];
+    alignas(64) std::uint32_t found[kLanes];
+    std::fill_n(best, kLanes, -2.0f);
+    std::fill_n(found, kLanes, 0u);
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      const core::Vec3f n = directions[d];
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const float cosine = x[first + k] * n.x + y[first + k] * n.y + z[first + k] * n.z;
+        const bool nearer = cosine > best[k];
+        best[k] = nearer ? cosine : best[k];
+        found[k] = nearer ? static_cast<std::uint32_t>(d) : found[k];
+      }
+    }
+    std::copy_n(found, kLanes, nearest + first);
+  }
+}
+
 // Each variant is the same code, inlined into a function for its instructions.
-#define INNERSPHERE_KERNELS(name, Lanes, attributes)                                                        \
-  struct name {                                                                                             \
-    attributes static std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy,    \
-                                                 const Sphere* balls, std::uint32_t count) {                \
-      return innersphere::ballsMeeting(walker, occupancy, balls, count);                                    \
-    }                                                                                                       \
-    attributes static bool walk(const core::Walker& walker, const SphereColumns& listed,                    \
-                                const std::uint32_t* clusters, std::size_t count, Candidates& candidates,   \
-                                CandidateSink& sink) {                                                      \
-      return walkClusters<Lanes>(walker, listed, clusters, count, candidates, sink);                        \
-    }                                                                                                       \
-    attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,      \
-                                  Tally& tally) {                                                           \
-      sumImpl<Lanes, true>(setup, from_a, candidates, tally);                                               \
-    }                                                                                                       \
-    attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates,  \
-                                      Tally& tally) {                                                       \
-      sumImpl<Lanes, false>(setup, from_a, candidates, tally);                                              \
-    }                                                                                                       \
-    attributes static void writeValues(const Tally& tally, std::size_t count, HitValues* values) {          \
-      writeValuesImpl<Lanes>(tally, count, values);                                                         \
-    }                                                                                                       \
-    attributes static void sumContacts(const HitValues* values, const std::uint32_t* order,                 \
-                                       const std::size_t* heads, std::size_t begin, std::size_t end,        \
-                                       SphereContact* contacts) {                                           \
-      sumContactsImpl(values, order, heads, begin, end, contacts);                                          \
-    }                                                                                                       \
-    static constexpr CpuKernels kKernels{ballsMeeting, walk, sumAll, sumVolumes, writeValues, sumContacts}; \
+#define INNERSPHERE_KERNELS(name, Lanes, attributes)                                                       \
+  struct name {                                                                                            \
+    attributes static std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy,   \
+                                                 const Sphere* balls, std::uint32_t count) {               \
+      return innersphere::ballsMeeting(walker, occupancy, balls, count);                                   \
+    }                                                                                                      \
+    attributes static bool walk(const core::Walker& walker, const SphereColumns& listed,                   \
+                                const std::uint32_t* clusters, std::size_t count, Candidates& candidates,  \
+                                CandidateSink& sink) {                                                     \
+      return walkClusters<Lanes>(walker, listed, clusters, count, candidates, sink);                       \
+    }                                                                                                      \
+    attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
+                                  Tally& tally) {                                                          \
+      sumImpl<Lanes, true>(setup, from_a, candidates, tally);                                              \
+    }                                                                                                      \
+    attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates, \
+                                      Tally& tally) {                                                      \
+      sumImpl<Lanes, false>(setup, from_a, candidates, tally);                                             \
+    }                                                                                                      \
+    attributes static void writeValues(const Tally& tally, std::size_t count, HitValues* values) {         \
+      writeValuesImpl<Lanes>(tally, count, values);                                                        \
+    }                                                                                                      \
+    attributes static void sumContacts(const HitValues* values, const std::uint32_t* order,                \
+                                       const std::size_t* heads, std::size_t begin, std::size_t end,       \
+                                       SphereContact* contacts) {                                          \
+      sumContactsImpl(values, order, heads, begin, end, contacts);                                         \
+    }                                                                                                      \
+    attributes static void nearestDirections(const float* x, const float* y, const float* z,               \
+                                             std::size_t count, const core::Vec3f* directions,             \
+                                             std::size_t direction_count, std::uint32_t* nearest) {        \
+      nearestDirectionsImpl(x, y, z, count, directions, direction_count, nearest);                         \
+    }                                                                                                      \
+    static constexpr CpuKernels kKernels{ballsMeeting, walk,        sumAll,           sumVolumes,          \
+                                         writeValues,  sumContacts, nearestDirections};                    \
   }
 
 INNERSPHERE_KERNELS(Baseline, LanesAny, __attribute__((flatten)));

@@ -55,6 +55,11 @@ struct CpuKernels {
   /// Sums hits order[heads[c]] to order[heads[c + 1]] into the contact number c, from `begin` to `end`.
   void (*sumContacts)(const HitValues* values, const std::uint32_t* order, const std::size_t* heads,
                       std::size_t begin, std::size_t end, SphereContact* contacts);
+  /// The first of some directions that is nearest to each unit vector. All are read, and all groups written,
+  /// up to whole kLanes.
+  void (*nearestDirections)(const float* x, const float* y, const float* z, std::size_t count,
+                            const core::Vec3f* directions, std::size_t direction_count,
+                            std::uint32_t* nearest);
 };
 
 /// Those that this processor knows, the best one first.

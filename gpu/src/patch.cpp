@@ -1,30 +1,36 @@
 #include "innersphere/patch.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "core/vec3.hpp"
+#include "direction_groups.hpp"
 #include "innersphere/error.hpp"
 
 namespace innersphere {
 
+using core::Vec3f;
 using core::Vec3r;
 
 namespace {
 
 /// A patch smaller than this share of the largest one is merged into a neighbour.
 constexpr double kSmallestShare = 0.05;
-/// A gap is a split if it is wider than this share of the extent, and too wide to be chance (see splitPlace).
-constexpr double kSplitGap = 0.3;
+/// A gap is a split if it is wider than this share of the extent, and too wide to be chance (see widestGap).
+constexpr float kSplitGap = 0.3f;
 
 struct Item {
-  Vec3r area;
-  Vec3r place;
+  const SphereContact* contact;
+  Vec3f place;    ///< relative to the first contact: moments lose no digits far from the origin of A
   double weight;  ///< length of the area vector
-  double volume;
-  std::size_t group;
-  std::size_t index;  ///< of its contact: decides between equals
 };
+
+Vec3r toVec(const std::array<float, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
 
 /// Sums over the items of a patch; addition merges two patches.
 struct Group {
@@ -32,135 +38,187 @@ struct Group {
   double weight = 0;
   double volume = 0;
   Vec3r moment{0, 0, 0};
-  Mat3d second{};
-  Vec3r normal{0, 0, 0};
+  double second[6] = {};  ///< xx, yy, zz, xy, xz, yz
+
+  // What follows from them:
+  Vec3r normal{0, 0, 0}, centroid{0, 0, 0};
+  double size = 0;
 
   void add(const Item& item) {
-    area = area + item.area;
+    const Vec3r p{item.place.x, item.place.y, item.place.z}, weighted = item.weight * p;
+    area = area + toVec(item.contact->area);
     weight += item.weight;
-    volume += item.volume;
-    moment = moment + item.weight * item.place;
-    const double p[3] = {item.place.x, item.place.y, item.place.z};
-    for (int i = 0; i < 9; ++i) second[i] += item.weight * p[i / 3] * p[i % 3];
+    volume += item.contact->volume;
+    moment = moment + weighted;
+    const double products[6] = {weighted.x * p.x, weighted.y * p.y, weighted.z * p.z,
+                                weighted.x * p.y, weighted.x * p.z, weighted.y * p.z};
+    for (int i = 0; i < 6; ++i) second[i] += products[i];
   }
   void add(const Group& other) {
     area = area + other.area;
     weight += other.weight;
     volume += other.volume;
     moment = moment + other.moment;
-    for (int i = 0; i < 9; ++i) second[i] += other.second[i];
+    for (int i = 0; i < 6; ++i) second[i] += other.second[i];
   }
-  double size() const { return std::sqrt(dot(area, area)); }
-  Vec3r centroid() const { return 1 / weight * moment; }
   /// Keeps the old normal where the area vectors cancel.
-  void updateNormal() {
-    if (size() > 1e-9 * weight) normal = 1 / size() * area;
+  void update() {
+    size = std::sqrt(dot(area, area));
+    centroid = 1 / weight * moment;
+    if (size > 1e-9 * weight) normal = 1 / size * area;
   }
 };
 
-/// Gives each item the group whose direction is nearest, and a new group to those that no group suits. Items
-/// come by falling weight, so groups start from the surest directions.
-void groupByDirection(std::vector<Item>& items, double max_angle) {
-  const double least = std::cos(max_angle);
-  struct Direction {
-    Vec3r sum;
-    double length;
+/// A run of items, by their numbers.
+struct Run {
+  std::uint32_t *begin, *end;
+};
+
+/// Where to split a run along its longest axis: items up to `at` are on one side.
+struct Gap {
+  float Vec3f::*axis = nullptr;  ///< null: nowhere
+  float at = 0;
+};
+
+/// Of n points that are spread evenly at random, the widest gap is about ln(n) / n of their extent; only one
+/// three times as wide counts.
+Gap widestGap(const std::vector<Item>& items, const Run& run) {
+  constexpr std::ptrdiff_t kFewest = 5;  // fewer leave no gap that is wide enough
+  constexpr int kBuckets = 64;
+  if (run.end - run.begin < kFewest) return {};
+  Vec3f lo = items[*run.begin].place, hi = lo;
+  for (const std::uint32_t* k = run.begin; k != run.end; ++k) {
+    const Vec3f& p = items[*k].place;
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+  }
+  const Vec3f extent = hi - lo;
+  const float longest = std::max({extent.x, extent.y, extent.z});
+  float Vec3f::*const axis = extent.x == longest ? &Vec3f::x : extent.y == longest ? &Vec3f::y : &Vec3f::z;
+  const float n = static_cast<float>(run.end - run.begin);
+  float widest = std::max(kSplitGap, 3 * std::log(n) / n) * longest;
+
+  // A gap as wide as that leaves many buckets in a row empty: that mostly decides it.
+  const float first = lo.*axis, scale = kBuckets / longest;
+  const auto bucketOf = [&](float x) {
+    return std::min(static_cast<int>((x - first) * scale), kBuckets - 1);
   };
-  static thread_local std::vector<Direction> sums;
-  sums.clear();
-  const auto nearest = [&](const Item& item, double& best) {
-    std::size_t found = sums.size();
-    for (std::size_t g = 0; g < sums.size(); ++g) {
-      const double cosine = dot(item.area, sums[g].sum) / (item.weight * sums[g].length);
-      if (cosine > best) best = cosine, found = g;
+  if (!(longest > 0) || !std::isfinite(scale)) return {};
+  std::uint64_t filled = 0;
+  for (const std::uint32_t* k = run.begin; k != run.end; ++k)
+    filled |= std::uint64_t{1} << bucketOf(items[*k].place.*axis);
+  std::uint64_t row = ~filled;  // a bit where 16 buckets are empty, from it on
+  static_assert(kSplitGap * kBuckets > 16 + 2);
+  for (int length = 1; length < 16; length *= 2) row &= row >> length;
+  if (row == 0) return {};
+
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  float lowest[kBuckets], highest[kBuckets];
+  std::fill_n(lowest, kBuckets, kInfinity);
+  std::fill_n(highest, kBuckets, -kInfinity);
+  for (const std::uint32_t* k = run.begin; k != run.end; ++k) {
+    const float x = items[*k].place.*axis;
+    const int bucket = bucketOf(x);
+    lowest[bucket] = std::min(lowest[bucket], x);
+    highest[bucket] = std::max(highest[bucket], x);
+  }
+  Gap gap;
+  float before = first;
+  for (; filled != 0; filled &= filled - 1) {
+    const int bucket = std::countr_zero(filled);
+    if (lowest[bucket] - before > widest) {
+      widest = lowest[bucket] - before;
+      gap = {axis, before};
     }
-    return found;
-  };
-  for (Item& item : items) {
-    double best = least;
-    item.group = nearest(item, best);
-    if (item.group == sums.size()) sums.push_back({{0, 0, 0}, 0});
-    Direction& direction = sums[item.group];
-    direction.sum = direction.sum + item.area;
-    direction.length = std::sqrt(dot(direction.sum, direction.sum));
+    before = highest[bucket];
   }
-  // Once more with the final directions, so that early items are not held by where a group began.
-  for (Item& item : items) {
-    double best = -2;
-    item.group = nearest(item, best);
-  }
+  return gap;
 }
 
-/// Splits [begin, end) where its items leave a wide gap along its longest axis, again and again; gives each
-/// part a number of its own. Of n points that are spread evenly at random, the widest gap is about ln(n) / n
-/// of their extent; only one three times as wide counts.
-void splitPlace(Item* begin, Item* end, std::size_t& groups) {
-  Vec3r lo = begin->place, hi = begin->place;
-  for (const Item* item = begin; item != end; ++item) {
-    lo = {std::min(lo.x, item->place.x), std::min(lo.y, item->place.y), std::min(lo.z, item->place.z)};
-    hi = {std::max(hi.x, item->place.x), std::max(hi.y, item->place.y), std::max(hi.z, item->place.z)};
+/// Splits a run where its items leave a wide gap along its longest axis, again and again. Items keep their
+/// order in each part.
+void splitPlace(const std::vector<Item>& items, const Run& run, std::vector<Run>& parts) {
+  static thread_local std::vector<std::uint32_t> beyond;
+  const Gap gap = widestGap(items, run);
+  if (!gap.axis) return parts.push_back(run);
+  beyond.clear();
+  std::uint32_t* middle = run.begin;
+  for (const std::uint32_t* k = run.begin; k != run.end; ++k) {
+    if (items[*k].place.*gap.axis <= gap.at) {
+      *middle++ = *k;
+    } else {
+      beyond.push_back(*k);
+    }
   }
-  const Vec3r extent = hi - lo;
-  const double longest = std::max({extent.x, extent.y, extent.z});
-  double Vec3r::*axis = extent.x == longest ? &Vec3r::x : extent.y == longest ? &Vec3r::y : &Vec3r::z;
-  std::sort(begin, end, [axis](const Item& a, const Item& b) {
-    return a.place.*axis != b.place.*axis ? a.place.*axis < b.place.*axis : a.index < b.index;
-  });
-  const double n = static_cast<double>(end - begin);
-  double widest = longest * std::max(kSplitGap, 3 * std::log(n) / n);
-  Item* split = nullptr;
-  for (Item* item = begin + 1; item < end; ++item) {
-    const double gap = item->place.*axis - item[-1].place.*axis;
-    if (gap > widest) widest = gap, split = item;
-  }
-  if (split && n > 2) {
-    splitPlace(begin, split, groups);
-    splitPlace(split, end, groups);
-    return;
-  }
-  for (Item* item = begin; item != end; ++item) item->group = groups;
-  ++groups;
+  std::copy(beyond.begin(), beyond.end(), middle);
+  splitPlace(items, {run.begin, middle}, parts);
+  splitPlace(items, {middle, run.end}, parts);
+}
+
+bool larger(const Group& a, const Group& b) {
+  return a.size > b.size;
 }
 
 /// Merges the smallest group into the one that is most like it in direction and place, until there are few
 /// enough and none is tiny. Leaves them by falling size.
 void mergeSmall(std::vector<Group>& groups, std::size_t max_groups, double extent2) {
-  // By insertion: keeps the order of equals, and allocates nothing.
-  const auto sort = [&] {
-    for (auto g = groups.begin(); g != groups.end(); ++g) {
-      const auto larger = [](const Group& a, const Group& b) { return a.size() > b.size(); };
-      std::rotate(std::upper_bound(groups.begin(), g, *g, larger), g, g + 1);
+  const double inverse_extent2 = extent2 > 0 ? 1 / extent2 : 0;
+  while (groups.size() > 1) {
+    const auto small = std::max_element(groups.begin(), groups.end(), larger);
+    const auto large = std::min_element(groups.begin(), groups.end(), larger);
+    if (groups.size() <= max_groups && !(small->size < kSmallestShare * large->size)) break;
+    auto best = groups.end();
+    double best_cost = std::numeric_limits<double>::infinity();
+    for (auto group = groups.begin(); group != groups.end(); ++group) {
+      const Vec3r apart = group->centroid - small->centroid;
+      const double cost = 1 - dot(group->normal, small->normal) + inverse_extent2 * dot(apart, apart);
+      if (group != small && (cost < best_cost || best == groups.end())) best = group, best_cost = cost;
     }
-  };
-  for (sort(); groups.size() > 1 &&
-               (groups.size() > max_groups || groups.back().size() < kSmallestShare * groups.front().size());
-       sort()) {
-    const Group small = groups.back();
+    best->add(*small);
+    best->update();
+    *small = groups.back();
     groups.pop_back();
-    Group* best = nullptr;
-    double best_cost = 0;
-    for (Group& group : groups) {
-      const Vec3r apart = group.centroid() - small.centroid();
-      const double cost =
-          1 - dot(group.normal, small.normal) + (extent2 > 0 ? dot(apart, apart) / extent2 : 0);
-      if (!best || cost < best_cost) best = &group, best_cost = cost;
-    }
-    best->add(small);
-    best->updateNormal();
   }
+  // By insertion: keeps the order of equals, and allocates nothing.
+  for (auto g = groups.begin(); g != groups.end(); ++g)
+    std::rotate(std::upper_bound(groups.begin(), g, *g, larger), g, g + 1);
 }
 
-Patch toPatch(const Group& group) {
-  const Vec3r c = group.centroid();
-  const double centre[3] = {c.x, c.y, c.z};
+Patch toPatch(const Group& group, const Vec3r& origin) {
+  const Vec3r &n = group.normal, &c = group.centroid;
+  const double inverse = 1 / group.weight;
+  const double* const second = group.second;
+  const double xx = inverse * second[0] - c.x * c.x, yy = inverse * second[1] - c.y * c.y,
+               zz = inverse * second[2] - c.z * c.z, xy = inverse * second[3] - c.x * c.y,
+               xz = inverse * second[4] - c.x * c.z, yz = inverse * second[5] - c.y * c.z;
   Patch patch;
   patch.volume = group.volume;
-  patch.area = group.size();
-  patch.normal = {group.normal.x, group.normal.y, group.normal.z};
-  patch.centroid = {c.x, c.y, c.z};
-  for (int i = 0; i < 9; ++i)
-    patch.covariance[i] = group.second[i] / group.weight - centre[i / 3] * centre[i % 3];
+  patch.area = group.size;
+  patch.normal = {n.x, n.y, n.z};
+  patch.centroid = {c.x + origin.x, c.y + origin.y, c.z + origin.z};
+  patch.covariance = {xx, xy, xz, xy, yy, yz, xz, yz, zz};
   return patch;
+}
+
+/// Kept from call to call.
+struct Scratch {
+  std::vector<Item> items, undirected;
+  DirectionGroups directions;
+  std::vector<std::uint32_t> first, order;  ///< of the items by direction
+  std::vector<Run> parts;
+  std::vector<Group> groups;
+};
+
+/// Lists the items of each direction, in their order.
+void orderByDirection(Scratch& scratch, std::uint32_t directions) {
+  std::vector<std::uint32_t>& first = scratch.first;
+  first.assign(directions + 1, 0);
+  const std::size_t count = scratch.items.size();
+  for (std::size_t k = 0; k < count; ++k) ++first[scratch.directions.groupOf(k) + 1];
+  for (std::uint32_t g = 0; g < directions; ++g) first[g + 1] += first[g];
+  scratch.order.resize(count);
+  for (std::size_t k = 0; k < count; ++k)
+    scratch.order[first[scratch.directions.groupOf(k)]++] = static_cast<std::uint32_t>(k);
 }
 
 }  // namespace
@@ -171,58 +229,59 @@ void buildPatches(const SphereContact* contacts, std::size_t count, const PatchO
     throw Error(ErrorCode::bad_argument, "max_patches is 0; it must be at least 1");
   if (!(options.max_angle > 0)) throw Error(ErrorCode::bad_argument, "max_angle is not positive");
   patches.clear();
+  if (count == 0) return;
 
-  // Places relative to the first one: moments lose no digits where the bodies meet far from the origin of A.
-  static thread_local std::vector<Item> items, undirected;
-  static thread_local std::vector<Group> groups;
+  static thread_local Scratch scratch;
+  std::vector<Item>&items = scratch.items, &undirected = scratch.undirected;
+  items.reserve(count);
   items.clear();
   undirected.clear();
-  groups.clear();
-  Vec3r lo{0, 0, 0}, hi{0, 0, 0}, origin{0, 0, 0};
-  for (std::size_t i = 0; i < count; ++i) {
-    const SphereContact& contact = contacts[i];
-    const Vec3r place{contact.centroid[0], contact.centroid[1], contact.centroid[2]};
-    if (i == 0) origin = place;
-    const Vec3r area{contact.area[0], contact.area[1], contact.area[2]}, local = place - origin;
-    const Item item{area, local, std::sqrt(dot(area, area)), contact.volume, 0, i};
-    (item.weight > 0 ? items : undirected).push_back(item);
-    lo = {std::min(lo.x, local.x), std::min(lo.y, local.y), std::min(lo.z, local.z)};
-    hi = {std::max(hi.x, local.x), std::max(hi.y, local.y), std::max(hi.z, local.z)};
+  scratch.directions.clear(count);
+  const Vec3r origin = toVec(contacts[0].centroid);
+  Vec3f lo{0, 0, 0}, hi{0, 0, 0};
+  for (const SphereContact* contact = contacts; contact != contacts + count; ++contact) {
+    const Vec3r area = toVec(contact->area), place = toVec(contact->centroid) - origin;
+    const Vec3f p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
+    const double weight = std::sqrt(dot(area, area));
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+    if (weight > 0) {
+      items.push_back({contact, p, weight});
+      scratch.directions.add(area, weight);
+    } else {
+      undirected.push_back({contact, p, 0});
+    }
   }
   if (items.empty()) return;
-  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
-    return a.weight != b.weight ? a.weight > b.weight : a.index < b.index;
-  });
-  groupByDirection(items, options.max_angle);
 
-  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
-    return a.group != b.group ? a.group < b.group : a.index < b.index;
-  });
-  std::size_t parts = 0;
-  for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
-    const std::size_t group = items[begin].group;
-    for (end = begin + 1; end < items.size() && items[end].group == group;) ++end;
-    splitPlace(items.data() + begin, items.data() + end, parts);
+  const std::uint32_t directions = scratch.directions.group(options.max_angle);
+  orderByDirection(scratch, directions);
+  scratch.parts.clear();
+  std::uint32_t* const order = scratch.order.data();
+  for (std::uint32_t g = 0, begin = 0; g < directions; begin = scratch.first[g++]) {
+    if (begin < scratch.first[g]) splitPlace(items, {order + begin, order + scratch.first[g]}, scratch.parts);
   }
-  groups.resize(parts);
-  for (const Item& item : items) groups[item.group].add(item);
-  for (Group& group : groups) group.updateNormal();
-  mergeSmall(groups, options.max_patches, dot(hi - lo, hi - lo));
+  std::vector<Group>& groups = scratch.groups;
+  groups.clear();
+  for (const Run& part : scratch.parts) {
+    Group& group = groups.emplace_back();
+    for (const std::uint32_t* k = part.begin; k != part.end; ++k) group.add(items[*k]);
+    group.update();
+  }
+  const Vec3f extent = hi - lo;
+  mergeSmall(groups, options.max_patches, dot(extent, extent));
 
   // Spheres that are pushed from all sides equally have no direction; their volume goes to the nearest patch.
   for (const Item& item : undirected) {
     const auto distance2 = [&](const Group& group) {
-      return dot(group.centroid() - item.place, group.centroid() - item.place);
+      const Vec3r way = group.centroid - Vec3r{item.place.x, item.place.y, item.place.z};
+      return dot(way, way);
     };
     std::min_element(groups.begin(), groups.end(), [&](const Group& a, const Group& b) {
       return distance2(a) < distance2(b);
-    })->volume += item.volume;
+    })->volume += item.contact->volume;
   }
-  for (const Group& group : groups) {
-    patches.push_back(toPatch(group));
-    Vec3d& c = patches.back().centroid;
-    c = {c[0] + origin.x, c[1] + origin.y, c[2] + origin.z};
-  }
+  for (const Group& group : groups) patches.push_back(toPatch(group, origin));
 }
 
 }  // namespace innersphere
