@@ -118,6 +118,21 @@ struct LanesAny {
 
 #ifdef INNERSPHERE_X86
 
+/// For each set of 8 items, the numbers of those in it, and then any.
+struct KeptNumbers {
+  alignas(32) std::uint32_t numbers[256][8] = {};
+
+  constexpr KeptNumbers() {
+    for (std::uint32_t bits = 0; bits < 256; ++bits) {
+      std::uint32_t count = 0;
+      for (std::uint32_t k = 0; k < 8; ++k) {
+        if (bits >> k & 1u) numbers[bits][count++] = k;
+      }
+    }
+  }
+};
+inline constexpr KeptNumbers kKeptNumbers;
+
 #define INNERSPHERE_AVX2 __attribute__((target("avx2")))
 #define INNERSPHERE_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl")))
 
@@ -152,6 +167,48 @@ struct LanesAvx2 : LanesAny {
       met |= static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_and_ps(near, large))) << k;
     }
     return met;
+  }
+
+  INNERSPHERE_AVX2 static std::size_t append(std::uint32_t walker, const std::uint32_t* places,
+                                             std::uint32_t bits, Candidates& to, std::size_t c) {
+    const __m256i self = _mm256_set1_epi32(static_cast<int>(walker));
+    for (std::size_t k = 0; k < kLanes; k += 8) {
+      const std::uint32_t here = bits >> k & 255u;
+      keep(here, places + k, to.partner.data() + c);
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(to.walker.data() + c), self);
+      c += static_cast<std::size_t>(std::popcount(here));
+    }
+    return c;
+  }
+
+  INNERSPHERE_AVX2 static std::uint32_t bitsOf(const std::uint32_t* flags) {
+    std::uint32_t none = 0;
+    for (std::size_t k = 0; k < kLanes; k += 8) {
+      const __m256i here = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(flags + k));
+      const __m256 zero = _mm256_castsi256_ps(_mm256_cmpeq_epi32(here, _mm256_setzero_si256()));
+      none |= static_cast<std::uint32_t>(_mm256_movemask_ps(zero)) << k;
+    }
+    return none ^ 0xffffu;
+  }
+
+  struct Kept {
+    explicit Kept(std::uint32_t kept) : bits(kept) {}
+    /// There must be room for kLanes.
+    template <typename T>
+    INNERSPHERE_AVX2 void copy(const T* from, T* to) const {
+      keep(bits & 255u, from, to);
+      keep(bits >> 8, from + 8, to + std::popcount(bits & 255u));
+    }
+    std::uint32_t bits;
+  };
+
+ private:
+  /// Writes those of 8 items, and others after them.
+  template <typename T>
+  INNERSPHERE_AVX2 static void keep(std::uint32_t bits, const T* from, T* to) {
+    const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+    const __m256i numbers = _mm256_load_si256(reinterpret_cast<const __m256i*>(kKeptNumbers.numbers[bits]));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(all, numbers));
   }
 };
 

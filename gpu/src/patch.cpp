@@ -273,13 +273,14 @@ void buildPatches(const SphereContact* contacts, std::size_t count, const PatchO
 
   // Spheres that are pushed from all sides equally have no direction; their volume goes to the nearest patch.
   for (const Item& item : undirected) {
-    const auto distance2 = [&](const Group& group) {
+    Group* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (Group& group : groups) {
       const Vec3r way = group.centroid - Vec3r{item.place.x, item.place.y, item.place.z};
-      return dot(way, way);
-    };
-    std::min_element(groups.begin(), groups.end(), [&](const Group& a, const Group& b) {
-      return distance2(a) < distance2(b);
-    })->volume += item.contact->volume;
+      const double distance2 = dot(way, way);
+      if (distance2 < least || !nearest) nearest = &group, least = distance2;
+    }
+    nearest->volume += item.contact->volume;
   }
   for (const Group& group : groups) patches.push_back(toPatch(group, origin));
 }
