@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include "core/walk.hpp"
 #include "cpu_kernels.hpp"
@@ -32,6 +33,24 @@ struct Columns {
 /// A run of GridView::listed.
 struct ListRange {
   std::uint32_t first, count;
+};
+
+/// What core::countsIn() asks of the centre of a partner, in cells from the edge of the grid: is it in this
+/// window? `inverse` is of the cells' size.
+struct CellWindow {
+  core::Vec3f half;
+  float inverse;
+  float lo[3], end[3];
+
+  CellWindow(const core::GridView& grid, const core::Cells& cells, const std::uint32_t (&cell)[3])
+      : half(grid.half), inverse(core::powerOfTwo(-(grid.finest + cells.tier))) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      const float number = static_cast<float>(static_cast<std::int32_t>(cell[axis]));
+      lo[axis] = cell[axis] == cells.box.lo[axis] ? -kInfinity : number - 1;  // number 0 is before the first
+      end[axis] = cell[axis] == cells.box.hi[axis] ? kInfinity : number;
+    }
+  }
 };
 
 /// Any processor.
@@ -60,6 +79,20 @@ struct LanesAny {
     std::uint32_t met = 0;
     for (std::uint32_t bit : bits) met |= bit;
     return met;
+  }
+
+  /// A bit for each sphere with its centre in a window.
+  static std::uint32_t within(const CellWindow& window, const SphereColumns& spheres) {
+    const core::Vec3f half = window.half;
+    std::uint32_t bits = 0;
+    for (std::uint32_t k = 0; k < kLanes; ++k) {
+      const float x = (spheres.x[k] + half.x) * window.inverse, y = (spheres.y[k] + half.y) * window.inverse,
+                  z = (spheres.z[k] + half.z) * window.inverse;
+      const bool in_x = x >= window.lo[0] && x < window.end[0], in_y = y >= window.lo[1] && y < window.end[1],
+                 in_z = z >= window.lo[2] && z < window.end[2];
+      bits |= (in_x && in_y && in_z ? 1u : 0u) << k;
+    }
+    return bits;
   }
 
   /// Writes the pairs of a walker with the places of these bits, from number c on, and returns how many there
@@ -169,6 +202,23 @@ struct LanesAvx2 : LanesAny {
     return met;
   }
 
+  INNERSPHERE_AVX2 static std::uint32_t within(const CellWindow& window, const SphereColumns& spheres) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < kLanes; k += 8) {
+      const auto in = [&](const float* column, float half, int axis) INNERSPHERE_AVX2 {
+        const __m256 at =
+            (_mm256_loadu_ps(column + k) + _mm256_set1_ps(half)) * _mm256_set1_ps(window.inverse);
+        const __m256 low = _mm256_cmp_ps(at, _mm256_set1_ps(window.lo[axis]), _CMP_GE_OQ);
+        const __m256 high = _mm256_cmp_ps(at, _mm256_set1_ps(window.end[axis]), _CMP_LT_OQ);
+        return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_and_ps(low, high)));
+      };
+      bits |= (in(spheres.x, window.half.x, 0) & in(spheres.y, window.half.y, 1) &
+               in(spheres.z, window.half.z, 2))
+              << k;
+    }
+    return bits;
+  }
+
   INNERSPHERE_AVX2 static std::size_t append(std::uint32_t walker, const std::uint32_t* places,
                                              std::uint32_t bits, Candidates& to, std::size_t c) {
     const __m256i self = _mm256_set1_epi32(static_cast<int>(walker));
@@ -242,6 +292,16 @@ struct LanesAvx512 : LanesAny {
     const __m512 sum = _mm512_set1_ps(lookup.reach) + r;
     const __mmask16 near = _mm512_cmp_ps_mask(dx * dx + dy * dy + dz * dz, sum * sum, _CMP_NGT_UQ);
     return _mm512_mask_cmp_ps_mask(near, r, _mm512_set1_ps(lookup.smallest), _CMP_NLT_UQ);
+  }
+
+  INNERSPHERE_AVX512 static std::uint32_t within(const CellWindow& window, const SphereColumns& spheres) {
+    const auto in = [&](const float* column, float half, int axis) INNERSPHERE_AVX512 {
+      const __m512 at = (_mm512_loadu_ps(column) + _mm512_set1_ps(half)) * _mm512_set1_ps(window.inverse);
+      const __mmask16 low = _mm512_cmp_ps_mask(at, _mm512_set1_ps(window.lo[axis]), _CMP_GE_OQ);
+      return std::uint32_t{_mm512_mask_cmp_ps_mask(low, at, _mm512_set1_ps(window.end[axis]), _CMP_LT_OQ)};
+    };
+    return in(spheres.x, window.half.x, 0) & in(spheres.y, window.half.y, 1) &
+           in(spheres.z, window.half.z, 2);
   }
 
   INNERSPHERE_AVX512 static std::size_t append(std::uint32_t walker, const std::uint32_t* places,

@@ -197,22 +197,19 @@ inline bool testGroups(const WalkedGrid& walked, const Walkers& walkers, const T
   return true;
 }
 
-/// Tests a walker against some spheres in columns and adds their places; `counts` has the last word on those
-/// that it meets.
+/// Tests a walker against some spheres in columns and adds their places; `counts` has the last word on groups
+/// of which it meets some.
 template <typename Lanes, typename Counts>
-inline bool testList(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t self,
-                     const SphereColumns& spheres, const std::uint32_t* places, std::uint32_t count,
-                     const Counts& counts, Candidates& candidates, CandidateSink& sink) {
+inline bool testList(const core::Lookup& lookup, std::uint32_t self, const SphereColumns& spheres,
+                     const std::uint32_t* places, std::uint32_t count, const Counts& counts,
+                     Candidates& candidates, CandidateSink& sink) {
   for (std::uint32_t k = 0; k < count; k += kLanes) {
-    if (candidates.count + kLanes > Candidates::kSize && !sink.take(candidates)) return false;
-    std::uint32_t met = Lanes::meeting(lookup, spheres.from(k));
+    const SphereColumns here = spheres.from(k);
+    std::uint32_t met = Lanes::meeting(lookup, here);
     if (count - k < kLanes) met &= (1u << (count - k)) - 1;
-    for (; met != 0; met &= met - 1) {
-      const std::uint32_t place = places[k + static_cast<std::uint32_t>(std::countr_zero(met))];
-      candidates.walker[candidates.count] = self;
-      candidates.partner[candidates.count] = place;
-      candidates.count += counts(grid.centred[place]) ? 1 : 0;
-    }
+    if (met == 0) continue;
+    if (candidates.count + kLanes > Candidates::kSize && !sink.take(candidates)) return false;
+    candidates.count = Lanes::append(self, places + k, met & counts(here), candidates, candidates.count);
   }
   return true;
 }
@@ -227,11 +224,26 @@ inline bool testAll(const core::GridView& grid, const core::Lookup& lookup, std:
     std::uint32_t places[kLanes];
     for (std::uint32_t k = 0; k < kLanes; ++k) places[k] = std::min(begin + k, grid.count);
     Lanes::load(grid.centred, places, columns);
-    const auto always = [](const Sphere&) { return true; };
-    if (!testList<Lanes>(grid, lookup, self, columns, places, kLanes, always, candidates, sink)) return false;
+    const auto always = [](const SphereColumns&) { return ~0u; };
+    if (!testList<Lanes>(lookup, self, columns, places, kLanes, always, candidates, sink)) return false;
   }
   return true;
 }
+
+/// Some of the cells where a walker looks.
+struct SomeCells {
+  static constexpr std::uint32_t kSize = kMostCells;
+  alignas(64) std::uint64_t keys[kSize] = {};  // all of them are looked up
+  std::uint32_t at[kSize][3];
+  std::uint32_t count = 0;
+
+  void add(int tier, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    keys[count] = core::cellKey(tier, x, y, z);
+    at[count][0] = x;
+    at[count][1] = y;
+    at[count++][2] = z;
+  }
+};
 
 /// Tests a walker against the spheres in all cells where it looks.
 template <typename Lanes>
@@ -240,16 +252,32 @@ inline bool walkCells(const WalkedGrid& walked, const core::Lookup& lookup, std:
   const core::GridView& grid = walked.grid;
   const core::Cells cells = core::cellsOf(grid, lookup);
   if (cells.all) return testAll<Lanes>(grid, lookup, self, candidates, sink);
-  for (std::uint32_t number = 0; number < cells.count; ++number) {
-    std::uint32_t at[3];
-    cells.coordinates(number, at);
-    const core::Cell cell = core::findCell(grid, core::cellKey(cells.tier, at[0], at[1], at[2]));
-    const auto here = [&](const Sphere& s) { return core::countsIn(grid, cells, at, s); };
-    if (!testList<Lanes>(grid, lookup, self, walked.listed.from(cell.first), grid.listed + cell.first,
-                         cell.count, here, candidates, sink))
-      return false;
+  if (cells.count == 0) return true;
+  SomeCells some;
+  const auto test = [&] {
+    alignas(64) ListRange lists[SomeCells::kSize];
+    Lanes::findCells(grid, some.keys, some.count, lists);
+    for (std::uint32_t c = 0; c < some.count; ++c) {
+      if (lists[c].count == 0) continue;
+      const CellWindow window(grid, cells, some.at[c]);
+      const auto here = [&](const SphereColumns& spheres) { return Lanes::within(window, spheres); };
+      if (!testList<Lanes>(lookup, self, walked.listed.from(lists[c].first), grid.listed + lists[c].first,
+                           lists[c].count, here, candidates, sink))
+        return false;
+    }
+    some.count = 0;
+    return true;
+  };
+  const auto &lo = cells.box.lo, &hi = cells.box.hi;
+  for (std::uint32_t z = lo[2]; z <= hi[2]; ++z) {
+    for (std::uint32_t y = lo[1]; y <= hi[1]; ++y) {
+      for (std::uint32_t x = lo[0]; x <= hi[0]; ++x) {
+        if (some.count == SomeCells::kSize && !test()) return false;
+        some.add(cells.tier, x, y, z);
+      }
+    }
   }
-  return true;
+  return test();
 }
 
 /// Takes all walkers through the grid.
