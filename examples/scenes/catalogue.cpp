@@ -11,7 +11,7 @@ const std::vector<Scene>& scenes() {
        "Contacts of any solid with any other, many at once, that neither leak nor shake.", buildPile, 6, k240,
        1000, 0, true},
       {"large-pile", "A hundred mixed solids fall into a tray and come to rest on each other.",
-       "The same with so many bodies that pairs come and go all the time.", buildLargePile, 8, k240, 500, 0,
+       "The same with so many bodies that pairs come and go all the time.", buildLargePile, 14, k240, 500, 0,
        true},
       {"rest", "Box, ball, torus, cylinder and gear lie on a plane.",
        "Contact is at the solids' own surfaces, not at those of their spheres.", buildRest, 3},

@@ -53,7 +53,7 @@ void buildNut(SceneWorld& world, const SceneOptions& options) {
                         (r.steps[b].time - r.steps[a].time);
                },
                1.5})
-      .known_miss = 0.015;
+      .known_miss = options.spheres < 4000 ? 0.016 : 0;  // it may stick
   world.expect({"turn over way down", "rad/m", Truth::Kind::equal, turns, 0.03 * turns, "2 pi / p",
                 [index](const Recording& r) {
                   return turnedAboutZ(r, index, 0, r.seconds()) /
@@ -61,8 +61,7 @@ void buildNut(SceneWorld& world, const SceneOptions& options) {
                 },
                 3.5});
   const double way = 0.5 * expected * options.seconds * options.seconds;
-  world.expect(energyGainBelow(0.04, 9.81 / double(nut.getInvMass()) * way, "that of the way down"))
-      .known_miss = 1;
+  world.expect(energyGainBelow(0.04, 9.81 / double(nut.getInvMass()) * way, "that of the way down"));
 }
 
 void buildNutHeld(SceneWorld& world, const SceneOptions& options) {
