@@ -27,7 +27,15 @@ void sortByBits(T*& items, T*& spare, std::size_t count, const Key& key, int fro
   }
 }
 
-/// The same for few items: sorts what key(item) < limit gives in as few steps as their digits allow.
+/// The same for vectors of one size.
+template <typename T, typename Key>
+void sortByBits(std::vector<T>& items, std::vector<T>& spare, const Key& key, int from, int bits) {
+  T *first = items.data(), *second = spare.data();
+  sortByBits(first, second, items.size(), key, from, bits);
+  if (first != items.data()) std::swap(items, spare);
+}
+
+/// Sorts few items by key(item) < limit, in few steps of large digits; the rest is as above.
 template <typename Key>
 void sortByNumber(std::uint32_t*& items, std::uint32_t*& spare, std::size_t count, std::uint32_t limit,
                   const Key& key) {
@@ -46,14 +54,6 @@ void sortByNumber(std::uint32_t*& items, std::uint32_t*& spare, std::size_t coun
     std::swap(items, spare);
     from = end;
   }
-}
-
-/// The same for vectors of one size.
-template <typename T, typename Key>
-void sortByBits(std::vector<T>& items, std::vector<T>& spare, const Key& key, int from, int bits) {
-  T *first = items.data(), *second = spare.data();
-  sortByBits(first, second, items.size(), key, from, bits);
-  if (first != items.data()) std::swap(items, spare);
 }
 
 }  // namespace innersphere
