@@ -15,6 +15,8 @@ namespace {
 
 /// Keeps quotients of zeros finite, at any scale.
 constexpr btScalar kTiny = btScalar(1e-30);
+/// Candidates that a pair has room for from the start: few have more, and need memory again.
+constexpr std::size_t kUsualCandidates = 96;
 
 /// The patch whose direction and place a contact fits best.
 std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& patches,
@@ -100,7 +102,9 @@ void findCandidates(const std::vector<SphereContact>& contacts, const Gauge& gau
   static thread_local std::vector<std::uint64_t> old_ids;
   collectIds(patches, old_ids);
   candidates.indices.clear();
+  candidates.indices.reserve(kUsualCandidates);
   candidates.lines.clear();
+  candidates.lines.reserve(kUsualCandidates);
   candidates.patches.clear();
   const Sorted* sorted = &sortIntoPatches(contacts, reference);
   if (sorted->patches.empty() && !contacts.empty())
