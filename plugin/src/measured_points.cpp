@@ -1,9 +1,6 @@
 #include "measured_points.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "contact_normal.hpp"
 #include "deepest_point.hpp"
@@ -98,19 +95,6 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   const auto add = [&](const Gap& gap, const btVector3& normal, std::uint64_t id) {
     const btScalar depth = (gap.on_a - gap.on_b).dot(normal);
     const bool near = depth > -separation;
-    if (getenv("DBG") && depth > btScalar(atof(getenv("DBG")))) {
-      const Gap& g = gap;
-      fprintf(
-          stderr,
-          "DBG id %llx depth %.2e ang_ab %.1f curv %.1f %.1f n (%.2f %.2f %.2f) na (%.2f %.2f %.2f) nb (%.2f "
-          "%.2f %.2f) on_a r %.4f z %.4f on_b r %.4f z %.4f th %.1f patch n (%.2f %.2f %.2f) area %.1e\n",
-          (unsigned long long)id, depth, btAcos(btMin(btScalar(1), g.normal_a.dot(g.normal_b))) * 57.3,
-          g.curvature_a, g.curvature_b, normal.x(), normal.y(), normal.z(), g.normal_a.x(), g.normal_a.y(),
-          g.normal_a.z(), g.normal_b.x(), g.normal_b.y(), g.normal_b.z(), std::hypot(g.on_a.x(), g.on_a.y()),
-          g.on_a.z(), std::hypot(g.on_b.x(), g.on_b.y()), g.on_b.z(),
-          std::atan2(g.on_b.y(), g.on_b.x()) * 57.3, patch.normal.x(), patch.normal.y(), patch.normal.z(),
-          patch.area);
-    }
     if (near) found.push_back({{gap.on_b, normal, depth, id, 0, 0, shareOfA(gap, normal)}, 0});
     return near;
   };
