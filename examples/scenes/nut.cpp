@@ -53,7 +53,7 @@ void buildNut(SceneWorld& world, const SceneOptions& options) {
                         (r.steps[b].time - r.steps[a].time);
                },
                1.5})
-      .known_miss = options.spheres < 4000 ? 0.016 : 0;  // it may stick
+      .known_miss = options.spheres < 4000 ? 0.0005 : 0;
   world.expect({"turn over way down", "rad/m", Truth::Kind::equal, turns, 0.03 * turns, "2 pi / p",
                 [index](const Recording& r) {
                   return turnedAboutZ(r, index, 0, r.seconds()) /

@@ -103,17 +103,17 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   };
   for (const Measured& m : measured) {
     const btVector3 normal = normals.at(m);
-    if (add(m.gap, normal, m.id)) {
-      found.back().point.curvature_a = m.gap.curvature_a;
-      found.back().point.curvature_b = m.gap.curvature_b;
-    }
     const bool edge_a = rises(m.gap.normal_a, m.gap.curvature_a, normal),
                edge_b = rises(m.gap.normal_b, m.gap.curvature_b, normal);
-    if (edge_a == edge_b) continue;
     corners.clear();
-    gauge.corners(m.index, m.gap, normal, edge_a, corners);
+    if (edge_a != edge_b) gauge.corners(m.index, m.gap, normal, edge_a, corners);
     for (const Gauge::Corner& corner : corners) {
       if (!isFound(corner.id)) add(corner.gap, edge_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id);
+    }
+    // Beside them the face is less deep, or, where it ends in an arc, not there.
+    if (corners.empty() && add(m.gap, normal, m.id)) {
+      found.back().point.curvature_a = m.gap.curvature_a;
+      found.back().point.curvature_b = m.gap.curvature_b;
     }
   }
   for (std::size_t i = first; i < found.size(); ++i) {
