@@ -53,7 +53,6 @@ const Measured* deepestTilted(const std::vector<Measured>& measured) {
 /// Of two faces that meet at an angle, whether A's bears the other one, which ends in an edge where the
 /// contact would get deeper. Nothing if two edges cross.
 std::optional<bool> isFaceOfA(const Gap& gap, const Gauge& gauge) {
-  if (gauge.exactB()) return false;
   const Gauge::Reach reach = gauge.reach(gap, (gap.normal_b - gap.normal_a).normalized());
   if (reach.a < kEdge * reach.b) return false;
   if (reach.b < kEdge * reach.a) return true;
