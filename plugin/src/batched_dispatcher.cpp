@@ -45,7 +45,7 @@ void launchBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pair
       fresh.push_back(contact);
     }
   }
-  registration->batch().launch(fresh);
+  registration->batch().launch(fresh, info.m_timeStep);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

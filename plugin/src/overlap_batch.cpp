@@ -2,11 +2,7 @@
 
 #include <algorithm>
 
-#include <tbb/parallel_for.h>
-
-#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
-
+#include "in_parallel.hpp"
 #include "innersphere/error.hpp"
 #include "measure.hpp"
 #include "patch_builder.hpp"
@@ -16,10 +12,6 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-bool same(const btVector3& a, const btVector3& b) {
-  return a.x() == b.x() && a.y() == b.y() && a.z() == b.z();
-}
-
 /// By how much spheres without volume-true radii are enlarged to fill their solid [m].
 btScalar gapsOf(const PackingShape& shape, const Prefix& prefix) {
   return prefix.volume_true == nullptr ? prefix.recess() * shape.getLocalScaling().x() : btScalar(0);
@@ -27,9 +19,9 @@ btScalar gapsOf(const PackingShape& shape, const Prefix& prefix) {
 
 struct Bodies {
   explicit Bodies(const PackingContact& contact)
-      : a(*contact.a.shape, contact.a.transform, Estimator::raw, contact.measure->slack_a,
+      : a(*contact.a.packing, contact.a.transform, Estimator::raw, contact.measure->slack_a,
           contact.measure->prefix_a),
-        b(*contact.b.shape, contact.b.transform, Estimator::raw, contact.measure->slack_b,
+        b(*contact.b.packing, contact.b.transform, Estimator::raw, contact.measure->slack_b,
           contact.measure->prefix_b) {}
   PackingBody a;
   PackingBody b;
@@ -62,45 +54,6 @@ bool measureOnSurfaces(const Bodies& bodies, PackingContact& contact) {
 
 }  // namespace
 
-PackingSide::PackingSide(const btCollisionObjectWrapper& wrapper, const PackingShape& packing_shape)
-    : object(wrapper.getCollisionObject()),
-      shape(&packing_shape),
-      transform(wrapper.getWorldTransform()),
-      scaling(packing_shape.getLocalScaling()),
-      margin(packing_shape.getMargin()),
-      prefix(packing_shape.impl().prefix) {
-  for (const btCollisionObjectWrapper* w = &wrapper; w->m_parent != nullptr; w = w->m_parent) {
-    if (nesting == kMaxNesting) {
-      nesting = -1;
-      return;
-    }
-    child_of[nesting++] = w->m_index;
-  }
-}
-
-bool PackingSide::isAlike(const PackingSide& other) const {
-  return object == other.object && shape == other.shape && margin == other.margin && prefix == other.prefix &&
-         same(scaling, other.scaling);
-}
-
-bool PackingSide::refresh() {
-  if (nesting < 0) return false;
-  const btCollisionShape* at = object->getCollisionShape();
-  transform = object->getWorldTransform();
-  for (int level = nesting - 1; level >= 0; --level) {
-    if (!at->isCompound()) return false;
-    const auto& compound = static_cast<const btCompoundShape&>(*at);
-    if (child_of[level] < 0 || child_of[level] >= compound.getNumChildShapes()) return false;
-    transform = transform * compound.getChildTransform(child_of[level]);
-    at = compound.getChildShape(child_of[level]);
-  }
-  if (at != shape) return false;
-  scaling = shape->getLocalScaling();
-  margin = shape->getMargin();
-  prefix = shape->impl().prefix;
-  return isFinite(transform);
-}
-
 void OverlapBatch::setOptions(const ContactOptions& options) {
   const std::lock_guard<std::mutex> lock(mutex_);
   finishLaunch();
@@ -126,25 +79,17 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
   finishLaunch();
   if (contact.separation != separation) contact.valid = false;
   contact.separation = separation;
-  const Age age = ageOf(contact, a, b);
-  contact.a = a;
-  contact.b = b;
-  if (age == Age::current) {
-    contact.memory.carryTo(contact.placed(), *a.shape, contact.measure->spacing);
-  } else {
-    contact.searching = age == Age::stale;
-    stale_.assign(1, &contact);
-    gatherStale(&contact);
+  const bool moved = !a.isWhere(contact.a) || !b.isWhere(contact.b);
+  if (moved && looks_.isDue(contact.look)) {
+    lookAtAll(contact.time_step);
     try {
       runStale();
     } catch (const Error&) {
       // Another pair may be at fault; it will hear of it when it is asked for.
-      if (stale_.size() == 1) throw;
-      stale_.assign(1, &contact);
-      runStale();
     }
   }
-  contact.wanted = true;
+  if (!isUpToDate(contact, a, b)) updateAlone(contact, a, b);
+  looks_.ask(contact.look);
   return contact.memory.patches;
 }
 
@@ -160,14 +105,13 @@ QueryContext& OverlapBatch::context() {
   return *context_;
 }
 
-void OverlapBatch::launch(const std::vector<PackingContact*>& fresh) {
+void OverlapBatch::launch(const std::vector<PackingContact*>& fresh, btScalar time_step) {
   const std::lock_guard<std::mutex> lock(mutex_);
   finishLaunch();
-  for (PackingContact* contact : fresh) contact->wanted = true;
-  stale_.clear();
-  gatherStale(nullptr);
+  for (PackingContact* contact : fresh) looks_.ask(contact->look);
+  lookAtAll(time_step);
   if (stale_.empty()) return;
-  prepareStale();
+  countStale();
   makeQueries(Pass::surfaces);
   try {
     if (!queries_.empty()) context().start(queries_.data(), queries_.size(), optionsOf(Pass::surfaces));
@@ -201,46 +145,69 @@ OverlapBatch::Age OverlapBatch::ageOf(const PackingContact& contact, const Packi
   if (!contact.valid || !contact.a.isAlike(a) || !contact.b.isAlike(b)) return Age::stale;
   // Also if the bodies have become faster: contacts are wanted from further away then.
   const Measure& measure = *contact.measure;
-  const Age age = contact.memory.ageAt({a.transform, b.transform}, a.shape->getAngularMotionDisc(),
-                                       b.shape->getAngularMotionDisc(), neededSeparation(contact),
+  const Age age = contact.memory.ageAt({a.transform, b.transform}, a.packing->getAngularMotionDisc(),
+                                       b.packing->getAngularMotionDisc(), neededSeparation(contact),
                                        measure.separation, measure.spacing);
   const bool same = contact.a.transform == a.transform && contact.b.transform == b.transform;
   const bool keeps = measure.on_surfaces && !contact.deep;
   return keeps || same ? age : Age::stale;
 }
 
-/// Appends all pairs but `asked`.
-void OverlapBatch::gatherStale(const PackingContact* asked) {
-  for (PackingContact* other : live_) {
-    if (other == asked || !other->wanted) continue;
-    if (!other->a.object->isActive() && !other->b.object->isActive()) continue;
-    PackingSide a = other->a, b = other->b;
-    if (!a.refresh() || !b.refresh()) continue;
-    const Age age = ageOf(*other, a, b);
-    if (age == Age::current) continue;
-    other->searching = age == Age::stale;
-    other->a = a;
-    other->b = b;
-    other->wanted = false;
-    stale_.push_back(other);
+bool OverlapBatch::isUpToDate(const PackingContact& contact, const PackingSide& a,
+                              const PackingSide& b) const {
+  return contact.valid && looks_.isFresh(contact.look) && contact.a.isAlike(a) && contact.b.isAlike(b) &&
+         contact.a.isWhere(a) && contact.b.isWhere(b) && !(neededSeparation(contact) > contact.needed);
+}
+
+void OverlapBatch::lookAtAll(btScalar time_step) {
+  looks_.begin();
+  inParallel(live_.size(), [&](std::size_t i) { lookAt(*live_[i], time_step); });
+  stale_.clear();
+  for (PackingContact* contact : live_) {
+    if (looks_.isFresh(contact->look) && contact->age != Age::current) stale_.push_back(contact);
   }
 }
 
-void OverlapBatch::prepareStale() {
-  std::size_t searching = 0;
-  for (PackingContact* contact : stale_) {
-    contact->valid = false;
-    if (!contact->searching) continue;
-    contact->measure.emplace(measureOf(*contact));
-    ++searching;
+/// Finds out what there is to do for a pair, and does it if it is only to take its contacts along.
+void OverlapBatch::lookAt(PackingContact& contact, btScalar time_step) {
+  if (!looks_.join(contact.look) || !isActive(contact.a, contact.b)) return;
+  PackingSide a = contact.a, b = contact.b;
+  if (!a.refresh() || !b.refresh()) return;
+  contact.look.wanted = false;
+  contact.time_step = time_step;
+  place(contact, a, b);
+}
+
+void OverlapBatch::place(PackingContact& contact, const PackingSide& a, const PackingSide& b) {
+  contact.age = ageOf(contact, a, b);
+  contact.a = a;
+  contact.b = b;
+  contact.needed = neededSeparation(contact);
+  if (contact.age == Age::current) {
+    contact.memory.carryTo(contact.placed(), *a.packing, contact.measure->spacing);
+    return;
   }
+  contact.valid = false;
+  if (contact.age == Age::stale) contact.measure.emplace(measureOf(contact));
+}
+
+void OverlapBatch::updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b) {
+  place(contact, a, b);
+  if (contact.age == Age::current) return;
+  stale_.assign(1, &contact);
+  runStale();
+}
+
+void OverlapBatch::countStale() {
+  const auto searching = static_cast<std::size_t>(std::count_if(
+      stale_.begin(), stale_.end(), [](const PackingContact* c) { return c->age == Age::stale; }));
   count_.launches += searching > 0 ? 1 : 0;
   count_.pairs += searching;
   count_.measured += stale_.size() - searching;
 }
 
 void OverlapBatch::runStale() {
-  prepareStale();
+  countStale();
   run(Pass::surfaces);
   runFurtherPasses();
 }
@@ -271,12 +238,11 @@ void OverlapBatch::makeQueries(Pass pass) {
 
 void OverlapBatch::takeResults(Pass pass) {
   // Each pair has its own result, so that their order does not matter.
-  tbb::parallel_for(std::size_t(0), queried_.size(),
-                    [&](std::size_t i) { takeResult(pass, i, *queried_[i]); });
+  inParallel(queried_.size(), [&](std::size_t i) { takeResult(pass, i, *queried_[i]); });
 }
 
 bool OverlapBatch::takesPart(Pass pass, const PackingContact& contact) const {
-  if (!contact.searching) return false;
+  if (contact.age != Age::stale) return false;
   if (!contact.measure->on_surfaces) return pass == Pass::volumes;
   switch (pass) {
     case Pass::surfaces:
@@ -308,22 +274,23 @@ btScalar OverlapBatch::neededSeparation(const PackingContact& contact) const {
 }
 
 Measure OverlapBatch::measureOf(const PackingContact& contact) const {
-  return Measure(options_, *contact.a.shape, *contact.b.shape, neededSeparation(contact));
+  return Measure(options_, *contact.a.packing, *contact.b.packing, neededSeparation(contact));
 }
 
 PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) const {
   const Measure& measure = *contact.measure;
   PairQuery query;
-  query.a = &contact.a.shape->model();
-  query.b = &contact.b.shape->model();
-  query.placement_a = PackingBody(*contact.a.shape, contact.a.transform, Estimator::raw, 0).placement();
-  query.placement_b = PackingBody(*contact.b.shape, contact.b.transform, Estimator::raw, 0).placement();
+  query.a = &contact.a.packing->model();
+  query.b = &contact.b.packing->model();
+  query.placement_a = PackingBody(*contact.a.packing, contact.a.transform, Estimator::raw, 0).placement();
+  query.placement_b = PackingBody(*contact.b.packing, contact.b.transform, Estimator::raw, 0).placement();
   query.margin = contact.a.margin + contact.b.margin;
   query.prefix_a = static_cast<std::uint32_t>(measure.prefix_a->count);
   query.prefix_b = static_cast<std::uint32_t>(measure.prefix_b->count);
   if (pass == Pass::surfaces) query.margin += measure.slack();
   if (pass == Pass::deep) {
-    query.margin += gapsOf(*contact.a.shape, *measure.prefix_a) + gapsOf(*contact.b.shape, *measure.prefix_b);
+    query.margin +=
+        gapsOf(*contact.a.packing, *measure.prefix_a) + gapsOf(*contact.b.packing, *measure.prefix_b);
   }
   return query;
 }
@@ -372,9 +339,9 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
 
 /// Those that moved too little for a query.
 void OverlapBatch::measureAgain() {
-  tbb::parallel_for(std::size_t(0), stale_.size(), [&](std::size_t i) {
+  inParallel(stale_.size(), [&](std::size_t i) {
     PackingContact& contact = *stale_[i];
-    if (contact.searching) return;
+    if (contact.age == Age::stale) return;
     contact.memory.turnTo(contact.placed());
     contact.touching = measureOnSurfaces(Bodies(contact), contact);
     contact.memory.measuredAt(contact.placed());

@@ -1,45 +1,22 @@
 // All pairs of packings of one dispatcher, queried together.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
 
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-
+#include "body_side.hpp"
 #include "contact_memory.hpp"
 #include "contact_patch.hpp"
 #include "innersphere/contact_options.hpp"
 #include "innersphere/query.hpp"
+#include "look_count.hpp"
 #include "measure.hpp"
 #include "packing_body.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
-
-/// One side of a pair of packings, as last seen.
-struct PackingSide {
-  PackingSide(const btCollisionObjectWrapper& wrapper, const PackingShape& packing_shape);
-
-  /// The same but for where it is.
-  bool isAlike(const PackingSide& other) const;
-  /// To where the body is now. False if that cannot be known: a changed shape, a body at NaN, a compound of
-  /// compounds of compounds ...
-  bool refresh();
-
-  static constexpr int kMaxNesting = 4;
-
-  const btCollisionObject* object;
-  const PackingShape* shape;
-  btTransform transform;
-  btVector3 scaling;
-  btScalar margin;
-  const Prefix* prefix;
-  int nesting = 0;                          ///< in how many compounds, -1 if too many
-  std::array<int, kMaxNesting> child_of{};  ///< which child of them, innermost first
-};
 
 /// The contact of two packings.
 struct PackingContact {
@@ -52,16 +29,17 @@ struct PackingContact {
   std::optional<Measure> measure;  ///< of the last query
   Placed placed() const { return {a.transform, b.transform}; }
 
-  ContactMemory memory;                 ///< its candidates are indices of contacts
-  std::vector<SphereContact> contacts;  ///< those that are candidates
-  std::size_t count_a = 0;              ///< of A's spheres, which come first
-  Overlap overlap;                      ///< only where depth is not measured on the surfaces
-  bool valid = false;                   ///< all of the above belongs together
-  bool searching = false;               ///< in the present launch
-  bool near = false;                    ///< enlarged spheres overlap
-  bool touching = false;                ///< the surfaces are near each other
-  bool deep = false;                    ///< they are not, and yet the solids overlap
-  bool wanted = false;                  ///< asked for since it was in a batch
+  ContactMemory memory;                                ///< its candidates are indices of contacts
+  std::vector<SphereContact> contacts;                 ///< those that are candidates
+  std::size_t count_a = 0;                             ///< of A's spheres, which come first
+  Overlap overlap;                                     ///< only where depth is not measured on the surfaces
+  bool valid = false;                                  ///< all of the above belongs together
+  ContactMemory::Age age = ContactMemory::Age::stale;  ///< what the present launch has to do
+  bool near = false;                                   ///< enlarged spheres overlap
+  bool touching = false;                               ///< the surfaces are near each other
+  bool deep = false;                                   ///< they are not, and yet the solids overlap
+  btScalar needed = 0;                                 ///< patches are right for gaps up to this [m]
+  Look look;
 };
 
 /// What a batch has done since it was made.
@@ -71,11 +49,11 @@ struct BatchCount {
   std::size_t measured = 0;  ///< pairs that were measured again without a query
 };
 
-/// Bullet asks for one pair at a time. The first one that is out of date makes one query for all pairs that
-/// were asked for lately and need one, so that a step costs one launch, and one more for each pair that is
-/// new. A launch is up to three queries, one after the other: see Pass. Pairs that have moved less than what
-/// a query leaves room for are measured again where it found contact, and those that have hardly moved at all
-/// take their contacts along. Safe to use from several threads at once.
+/// Looks at all pairs at once: see LookCount. A look makes one query for all pairs that need one, so that a
+/// step costs one launch, and one more for each pair that is new. A launch is up to three queries, one after
+/// the other: see Pass. Pairs that have moved less than what a query leaves room for are measured again where
+/// it found contact, and those that have hardly moved at all take their contacts along. Safe to use from
+/// several threads at once.
 class OverlapBatch {
  public:
   /// Error no_device if the options ask for CUDA by name and there is none.
@@ -92,10 +70,10 @@ class OverlapBatch {
   /// What two packings share as they were in the last update of `contact`. Throws Error from the query.
   Overlap volumesOf(const PackingContact& contact);
 
-  /// Queries all pairs now that are out of date and will be asked for: those that were in the step before,
-  /// and `fresh` ones. Errors wait until update() asks for the pair.
+  /// Looks at all pairs now that will be asked for in this step: those that were in the step before, and
+  /// `fresh` ones. Errors wait until update() asks for the pair.
   /// A device works on while Bullet collides other pairs: the first one that is asked for waits for it.
-  void launch(const std::vector<PackingContact*>& fresh);
+  void launch(const std::vector<PackingContact*>& fresh, btScalar time_step);
 
   BatchCount count() const;
 
@@ -103,8 +81,12 @@ class OverlapBatch {
   QueryContext& context();
   using Age = ContactMemory::Age;
   Age ageOf(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
-  void gatherStale(const PackingContact* asked);
-  void prepareStale();
+  bool isUpToDate(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
+  void lookAtAll(btScalar time_step);
+  void lookAt(PackingContact& contact, btScalar time_step);
+  void place(PackingContact& contact, const PackingSide& a, const PackingSide& b);
+  void updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b);
+  void countStale();
   void runStale();
   void runFurtherPasses();
   void finishLaunch();
@@ -129,6 +111,7 @@ class OverlapBatch {
   BatchCount count_;
   ContactOptions options_;
   std::unique_ptr<QueryContext> context_;  ///< made by the first query
+  LookCount looks_;
   std::vector<PackingContact*> live_;
   std::vector<PackingContact*> stale_;
   std::vector<PackingContact*> queried_;
