@@ -111,15 +111,18 @@ bool PairContact::provide(const PackingSide& a, const PackingSide& b) {
 
 const std::vector<ContactPatch>& PairContact::update(const btCollisionObjectWrapper& a,
                                                      const btCollisionObjectWrapper& b, btScalar separation) {
-  const PackingShape& packing = *PackingShape::from(shape_a_);
+  const PackingSide side_a(a, *PackingShape::from(shape_a_));
   if (const PackingShape* other = PackingShape::from(shape_b_)) {
-    const PackingSide side_a(a, packing), side_b(b, *other);
+    const PackingSide side_b(b, *other);
     provide(side_a, side_b);
     return registration_->batch().update(*packings_, side_a, side_b, separation);
   }
-  if (!surface_) surface_.emplace(packing, *shape_b_);
-  return surface_->update(options_, transform_a_, transform_b_,
-                          btMax(separation, sweepOf(*object_a_, *object_b_, time_step_)));
+  const BodySide side_b(b);
+  if (!surface_) {
+    surface_.emplace(side_a, side_b);
+    if (!closest_) registration_->surfaces().add(&*surface_);
+  }
+  return registration_->surfaces().update(*surface_, side_a, side_b, separation, time_step_);
 }
 
 ContactLaw PairContact::lawOf(btScalar time_step) const {
@@ -180,7 +183,7 @@ bool PairContact::read(PairOverlap& pair) {
 
 Overlap PairContact::overlap() {
   return packings_ ? registration_->batch().volumesOf(*packings_)
-                   : surface_->volumesOf(options_, transform_a_, transform_b_);
+                   : registration_->surfaces().volumesOf(*surface_);
 }
 
 btVector3 PairContact::origin() const {
@@ -193,6 +196,7 @@ btVector3 PairContact::arm() const {
 
 void PairContact::forget() {
   if (packings_ && !closest_) registration_->batch().remove(&*packings_);
+  if (surface_ && !closest_) registration_->surfaces().remove(&*surface_);
   packings_.reset();
   surface_.reset();
 }

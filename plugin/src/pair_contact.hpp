@@ -13,7 +13,7 @@
 #include "overlap_batch.hpp"
 #include "penalty.hpp"
 #include "registration.hpp"
-#include "surface_contact.hpp"
+#include "surface_batch.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -71,7 +71,7 @@ class PairContact {
   std::uint64_t pushed_step_ = 0;  ///< when penalty forces acted last
   PenaltyReport penalty_;
   std::optional<PackingContact> packings_;
-  std::optional<SurfaceContact> surface_;
+  std::optional<SurfacePair> surface_;
   ManifoldSet manifolds_;
 };
 

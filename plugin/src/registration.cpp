@@ -53,6 +53,7 @@ std::shared_ptr<Registration> Registration::find(btCollisionDispatcher* dispatch
 
 void Registration::setOptions(const ContactOptions& options) {
   batch_.setOptions(options);
+  surfaces_.setOptions(options);
   const std::lock_guard<std::mutex> lock(mutex_);
   options_ = options;
 }

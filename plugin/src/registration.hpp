@@ -12,6 +12,7 @@
 #include "live_pairs.hpp"
 #include "overlap_batch.hpp"
 #include "step_count.hpp"
+#include "surface_batch.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -48,6 +49,7 @@ class Registration : public std::enable_shared_from_this<Registration> {
   void fillTables(btCollisionDispatcher* dispatcher);
 
   OverlapBatch& batch() { return batch_; }
+  SurfaceBatch& surfaces() { return surfaces_; }
   StepCount& steps() { return steps_; }
   LivePairs& pairs() { return pairs_; }
 
@@ -55,6 +57,7 @@ class Registration : public std::enable_shared_from_this<Registration> {
   mutable std::mutex mutex_;
   ContactOptions options_;
   OverlapBatch batch_;
+  SurfaceBatch surfaces_;
   StepCount steps_;
   LivePairs pairs_;
   std::deque<CreateFunc> create_funcs_;

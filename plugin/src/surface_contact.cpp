@@ -69,17 +69,16 @@ Overlap sumOf(const PackingBody& a, const std::vector<Touch>& touches) {
 SurfaceContact::SurfaceContact(const PackingShape& packing, const btCollisionShape& other)
     : packing_(packing), other_(other), surface_(makeOtherSurface(other)) {}
 
-const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& options,
-                                                        const btTransform& packing, const btTransform& other,
-                                                        btScalar separation) {
+void SurfaceContact::update(const ContactOptions& options, const btTransform& packing,
+                            const btTransform& other, btScalar separation) {
   static thread_local std::vector<SphereContact> contacts;
   std::vector<ContactPatch>& patches = memory_.patches;
   overlap_.reset();
-  if (!surface_) return patches;
+  if (!surface_) return;
   const Placed now{packing, other};
   const Measure measure(options, packing_, other_, separation);
   const PackingBody a(packing_, packing, measure.estimator, measure.slack_a, measure.prefix_a);
-  if (remember(a, measure, now, separation)) return patches;
+  if (remember(a, measure, now, separation)) return;
   touches_.clear();
   surface_->touch(a, other, touches_);
   const auto caps = [&](btScalar slack) {
@@ -100,16 +99,15 @@ const std::vector<ContactPatch>& SurfaceContact::update(const ContactOptions& op
       measured_ = measure;
       margin_ = a.margin;
       scale_ = a.scale();
-      return patches;
+      return;
     }
     caps(0);
-    if (contacts.empty()) return patches;
+    if (contacts.empty()) return;
   } else {
     caps(0);
     if (options.response == Response::penalty) overlap_ = sumOf(a, touches_);
   }
   volumePatches(contacts, measure.spacing, packing.getBasis(), patches);
-  return patches;
 }
 
 bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, const Placed& now,

@@ -22,8 +22,9 @@ class SurfaceContact {
   SurfaceContact(const PackingShape& packing, const btCollisionShape& other);
 
   /// A is the packing.
-  const std::vector<ContactPatch>& update(const ContactOptions& options, const btTransform& packing,
-                                          const btTransform& other, btScalar separation);
+  void update(const ContactOptions& options, const btTransform& packing, const btTransform& other,
+              btScalar separation);
+  const std::vector<ContactPatch>& patches() const { return memory_.patches; }
   /// What both share, at the places of the last update. Its torque is about the origin of the packing.
   const Overlap& volumesOf(const ContactOptions& options, const btTransform& packing,
                            const btTransform& other);

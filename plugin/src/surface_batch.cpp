@@ -1,0 +1,78 @@
+#include "surface_batch.hpp"
+
+#include <algorithm>
+
+#include "in_parallel.hpp"
+#include "sweep.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+btScalar neededSeparation(const SurfacePair& pair, btScalar time_step) {
+  return btMax(pair.separation, sweepOf(*pair.a.object, *pair.b.object, time_step));
+}
+
+}  // namespace
+
+void SurfaceBatch::setOptions(const ContactOptions& options) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  options_ = options;
+  for (SurfacePair* pair : live_) pair->reached.reset();
+}
+
+void SurfaceBatch::add(SurfacePair* pair) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  live_.push_back(pair);
+}
+
+void SurfaceBatch::remove(SurfacePair* pair) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  live_.erase(std::remove(live_.begin(), live_.end(), pair), live_.end());
+}
+
+const std::vector<ContactPatch>& SurfaceBatch::update(SurfacePair& pair, const PackingSide& a,
+                                                      const BodySide& b, btScalar separation,
+                                                      btScalar time_step) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (pair.separation != separation) pair.reached.reset();
+  pair.separation = separation;
+  const auto isHere = [&] { return pair.a.isWhere(a) && pair.b.isWhere(b); };
+  if (!isHere() && looks_.isDue(pair.look)) lookAtAll(time_step);
+  const bool up_to_date = looks_.isFresh(pair.look) && pair.a.isAlike(a) && isHere() &&
+                          pair.reached == neededSeparation(pair, time_step);
+  if (!up_to_date) place(pair, a, b, time_step);
+  looks_.ask(pair.look);
+  return pair.contact.patches();
+}
+
+Overlap SurfaceBatch::volumesOf(SurfacePair& pair) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return pair.contact.volumesOf(options_, pair.a.transform, pair.b.transform);
+}
+
+void SurfaceBatch::lookAtAll(btScalar time_step) {
+  looks_.begin();
+  inParallel(live_.size(), [&](std::size_t i) { lookAt(*live_[i], time_step); });
+}
+
+void SurfaceBatch::lookAt(SurfacePair& pair, btScalar time_step) const {
+  if (!looks_.join(pair.look) || !isActive(pair.a, pair.b)) return;
+  PackingSide a = pair.a;
+  BodySide b = pair.b;
+  if (!a.refresh() || !b.refresh()) return;
+  pair.look.wanted = false;
+  place(pair, a, b, time_step);
+}
+
+void SurfaceBatch::place(SurfacePair& pair, const PackingSide& a, const BodySide& b,
+                         btScalar time_step) const {
+  pair.a = a;
+  pair.b = b;
+  const btScalar needed = neededSeparation(pair, time_step);
+  pair.contact.update(options_, a.transform, b.transform, needed);
+  pair.reached = needed;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,55 @@
+// All pairs of a packing and a shape of another kind of one dispatcher, brought up to date together.
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "body_side.hpp"
+#include "innersphere/contact_options.hpp"
+#include "look_count.hpp"
+#include "surface_contact.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+struct SurfacePair {
+  SurfacePair(const PackingSide& packing, const BodySide& other)
+      : a(packing), b(other), contact(*packing.packing, *other.shape) {}
+
+  PackingSide a;
+  BodySide b;
+  SurfaceContact contact;
+  btScalar separation = 0;          ///< asked for [m]
+  std::optional<btScalar> reached;  ///< contacts are right for gaps up to this [m], if they are at all
+  Look look;
+};
+
+/// Looks at all pairs at once, with all threads: see LookCount. Safe to use from several threads at once.
+class SurfaceBatch {
+ public:
+  void setOptions(const ContactOptions& options);
+
+  void add(SurfacePair* pair);
+  void remove(SurfacePair* pair);
+
+  /// Brings `pair` up to date for two sides and returns its patches: also those of contacts up to
+  /// `separation` [m] apart, or that may close within `time_step` [s]. It need not have been added.
+  const std::vector<ContactPatch>& update(SurfacePair& pair, const PackingSide& a, const BodySide& b,
+                                          btScalar separation, btScalar time_step);
+  /// What both share, as they were in the last update. Its torque is about the origin of the packing.
+  Overlap volumesOf(SurfacePair& pair);
+
+ private:
+  void lookAtAll(btScalar time_step);
+  void lookAt(SurfacePair& pair, btScalar time_step) const;
+  void place(SurfacePair& pair, const PackingSide& a, const BodySide& b, btScalar time_step) const;
+
+  std::mutex mutex_;
+  ContactOptions options_;
+  LookCount looks_;
+  std::vector<SurfacePair*> live_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
