@@ -210,6 +210,7 @@ void ManifoldSet::provide(const btCollisionObject& a, const btCollisionObject& b
 void ManifoldSet::write(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
                         const std::vector<ContactPatch>& patches, const ContactLaw& law, btScalar separation,
                         btManifoldResult* result) {
+  if (patches.empty() && entries_.empty()) return;
   assign(a.getWorldTransform(), patches);
   provide(a, b, patches.size());
   btPersistentManifold* const before = result->getPersistentManifold();

@@ -228,12 +228,11 @@ void OverlapBatch::run(Pass pass) {
 
 void OverlapBatch::makeQueries(Pass pass) {
   queried_.clear();
-  queries_.clear();
   for (PackingContact* contact : stale_) {
-    if (!takesPart(pass, *contact)) continue;
-    queried_.push_back(contact);
-    queries_.push_back(makeQuery(pass, *contact));
+    if (takesPart(pass, *contact)) queried_.push_back(contact);
   }
+  queries_.resize(queried_.size());
+  inParallel(queried_.size(), [&](std::size_t i) { queries_[i] = makeQuery(pass, *queried_[i]); });
 }
 
 void OverlapBatch::takeResults(Pass pass) {
