@@ -56,5 +56,11 @@ void PackingCollisionAlgorithm::registerAlgorithm(btCollisionDispatcher* dispatc
   registration->fillTables(dispatcher);
 }
 
+void PackingCollisionAlgorithm::unregisterAlgorithm(btCollisionDispatcher* dispatcher) {
+  if (const std::shared_ptr<Registration> registration = Registration::take(dispatcher)) {
+    registration->clearTables(dispatcher);
+  }
+}
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

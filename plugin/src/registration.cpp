@@ -34,6 +34,16 @@ Registrations& registrations() {
   return all;
 }
 
+/// Of the dispatcher's tables that lead to us.
+template <typename Visit>
+void forEachRow(const Visit& visit) {
+  for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type) {
+    if (type == COMPOUND_SHAPE_PROXYTYPE || type == SOFTBODY_SHAPE_PROXYTYPE) continue;
+    visit(type, kPackingShapeType);
+    if (type != kPackingShapeType) visit(kPackingShapeType, type);
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<Registration> Registration::of(btCollisionDispatcher* dispatcher) {
@@ -63,23 +73,36 @@ ContactOptions Registration::options() const {
   return options_;
 }
 
+std::shared_ptr<Registration> Registration::take(btCollisionDispatcher* dispatcher) {
+  std::shared_ptr<Registration> taken = find(dispatcher);
+  Registrations& all = registrations();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  all.of.erase(dispatcher);
+  return taken;
+}
+
 void Registration::fillTables(btCollisionDispatcher* dispatcher) {
   // Not the dispatcher's own table, which may hold our functions already, but what the configuration started
   // it with.
   btCollisionConfiguration* defaults = dispatcher->getCollisionConfiguration();
-  const auto fill = [&](int type0, int type1) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  create_funcs_.clear();
+  forEachRow([&](int type0, int type1) {
     create_funcs_.emplace_back(*this, defaults->getCollisionAlgorithmCreateFunc(type0, type1), false);
     dispatcher->registerCollisionCreateFunc(type0, type1, &create_funcs_.back());
     create_funcs_.emplace_back(*this, defaults->getClosestPointsAlgorithmCreateFunc(type0, type1), true);
     dispatcher->registerClosestPointsCreateFunc(type0, type1, &create_funcs_.back());
-  };
-  const std::lock_guard<std::mutex> lock(mutex_);
-  create_funcs_.clear();
-  for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type) {
-    if (type == COMPOUND_SHAPE_PROXYTYPE || type == SOFTBODY_SHAPE_PROXYTYPE) continue;
-    fill(type, kPackingShapeType);
-    if (type != kPackingShapeType) fill(kPackingShapeType, type);
-  }
+  });
+}
+
+void Registration::clearTables(btCollisionDispatcher* dispatcher) {
+  btCollisionConfiguration* defaults = dispatcher->getCollisionConfiguration();
+  forEachRow([&](int type0, int type1) {
+    dispatcher->registerCollisionCreateFunc(type0, type1,
+                                            defaults->getCollisionAlgorithmCreateFunc(type0, type1));
+    dispatcher->registerClosestPointsCreateFunc(type0, type1,
+                                                defaults->getClosestPointsAlgorithmCreateFunc(type0, type1));
+  });
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -36,17 +36,21 @@ class CreateFunc : public btCollisionAlgorithmCreateFunc {
 
 class Registration : public std::enable_shared_from_this<Registration> {
  public:
-  /// The registration of a dispatcher, made on first use and kept to the end of the process: a dispatcher
-  /// does not tell when it goes, and its table refers to our functions until then.
+  /// The registration of a dispatcher, made on first use and kept until take(), or to the end of the process:
+  /// a dispatcher does not tell when it goes, and its table refers to our functions until then.
   static std::shared_ptr<Registration> of(btCollisionDispatcher* dispatcher);
   /// The same, or null if there is none.
   static std::shared_ptr<Registration> find(btCollisionDispatcher* dispatcher);
+  /// The same; from now on the dispatcher has none.
+  static std::shared_ptr<Registration> take(btCollisionDispatcher* dispatcher);
 
   void setOptions(const ContactOptions& options);
   ContactOptions options() const;
 
   /// Writes our functions into the dispatcher's tables.
   void fillTables(btCollisionDispatcher* dispatcher);
+  /// Writes back what its configuration started it with.
+  static void clearTables(btCollisionDispatcher* dispatcher);
 
   OverlapBatch& batch() { return batch_; }
   SurfaceBatch& surfaces() { return surfaces_; }

@@ -8,6 +8,7 @@
 
 #include "innersphere/error.hpp"
 #include "pair_algorithm.hpp"
+#include "registration.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
@@ -76,6 +77,40 @@ TEST(Registration, TwoWorldsDoNotMix) {
   }
   EXPECT_LT(a.bodies.back()->getWorldTransform().getOrigin().z(), 0.49);
   EXPECT_NEAR(b.bodies.back()->getWorldTransform().getOrigin().z(), 0.5, 0.005);
+}
+
+TEST(Registration, CanBeTakenBackAndGivenAgain) {
+  TestWorld world;
+  world.addFloor();
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 4));
+  PackingCollisionAlgorithm::unregisterAlgorithm(&world.dispatcher);
+  btRigidBody& before = world.add(shape, 1, btVector3(0, 0, btScalar(0.6)));
+  world.run(2);
+  EXPECT_LT(before.getWorldTransform().getOrigin().z(), -1);  // as in a world that was never registered
+  PackingCollisionAlgorithm::registerAlgorithm(&world.dispatcher);
+  btRigidBody& after = world.add(shape, 1, btVector3(0, 0, btScalar(0.6)));
+  world.run(2);
+  EXPECT_NEAR(after.getWorldTransform().getOrigin().z(), 0.5, 0.005);
+}
+
+TEST(Registration, TakenBackItIsFreedWithTheLastPair) {
+  std::weak_ptr<Registration> registration;
+  {
+    TestWorld world;
+    registration = Registration::find(&world.dispatcher);
+    world.addFloor();
+    const auto shape = makeShape(latticeBox({1, 1, 1}, 4));
+    world.add(shape, 1, btVector3(0, 0, btScalar(0.5)));
+    world.add(shape, 1, btVector3(0, 0, btScalar(1.5)));
+    world.run(0.1);
+    EXPECT_GT(world.contactCount(), 0);
+    PackingCollisionAlgorithm::unregisterAlgorithm(&world.dispatcher);
+    PackingCollisionAlgorithm::unregisterAlgorithm(&world.dispatcher);
+    world.run(0.1);  // pairs that Bullet knows go on
+    EXPECT_NEAR(world.bodies.back()->getWorldTransform().getOrigin().z(), 1.5, 0.005);
+    EXPECT_FALSE(registration.expired());
+  }
+  EXPECT_TRUE(registration.expired());
 }
 
 TEST(Registration, UnregisteredPackingStillMeetsConvexShapes) {

@@ -16,6 +16,13 @@ struct PackingCollisionAlgorithm {
   /// btGImpactCollisionAlgorithm::registerAlgorithm, which overwrites every row of its own. Calling it again
   /// replaces the options. Throws Error: bad_argument, no_device.
   static void registerAlgorithm(btCollisionDispatcher* dispatcher, const ContactOptions& options = {});
+
+  /// Gives the dispatcher's entries for packings back to its collision configuration. What was kept for them
+  /// (threads' buffers, on a device its memory and streams) is freed with the last pair that Bullet still has
+  /// an algorithm for. Without it that happens at the end of the process, because a dispatcher does not tell
+  /// when it goes: call it before a dispatcher is destroyed where worlds come and go. Does nothing for a
+  /// dispatcher that is not registered.
+  static void unregisterAlgorithm(btCollisionDispatcher* dispatcher);
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
