@@ -126,8 +126,9 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   const Touch& touch = touches_[index];
   const btScalar radius = a_.ownRadius(touch.sphere);
   // Only of a flat surface it is known what it is like beside the nearest point.
-  if (shift.length2() > 0 && (touch.curvature != 0 || shift.length() > radius + a_.slack)) return false;
-  const btVector3 from = a_.centreOf(touch.sphere) + shift;
+  const bool flat = touch.curvature == 0 && !touch.isOnEdge();
+  if (shift.length2() > 0 && (!flat || shift.length() > radius + a_.slack)) return false;
+  const btVector3 from = a_.centreOf(touch.sphere) + touch.aside + shift;
   const btVector3 towards_b = -touch.normal;
   SurfacePoint on_a;
   if (!leave(a_, from, towards_b, 2 * (radius + a_.slack), gap.triangle_a, on_a)) return false;
@@ -159,7 +160,8 @@ void SurfaceGauge::corners(std::size_t index, const Gap& gap, const btVector3& n
                     const btScalar reach = reachOf(touch);
                     const btVector3 centre = a_.centreOf(touch.sphere);
                     const btScalar distance2 = centre.distance2(at);
-                    if (!(distance2 < reach * reach) || !(touch.normal.dot(-normal) > kSameFace)) continue;
+                    if (touch.isOnEdge() || !(distance2 < reach * reach)) continue;
+                    if (!(touch.normal.dot(-normal) > kSameFace)) continue;
                     if (!(distance2 < nearest)) continue;
                     nearest = distance2;
                     corner.gap.normal_b = -touch.normal;

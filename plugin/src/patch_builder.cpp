@@ -15,8 +15,9 @@ namespace {
 
 /// Keeps quotients of zeros finite, at any scale.
 constexpr btScalar kTiny = btScalar(1e-30);
-/// Candidates that a pair has room for from the start: few have more, and need memory again.
+/// What there is room for from the start: few pairs have more, and need memory again.
 constexpr std::size_t kUsualCandidates = 96;
+constexpr std::size_t kUsualPatches = 16;
 
 /// The patch whose direction and place a contact fits best.
 std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& patches,
@@ -41,6 +42,11 @@ std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& pa
 
 /// The contacts of each patch, as moments and indices. Valid until the next call in the same thread.
 struct Sorted {
+  Sorted() : members(kUsualPatches) {
+    patches.reserve(kUsualPatches);
+    moments.reserve(kUsualPatches);
+    for (std::vector<std::size_t>& m : members) m.reserve(kUsualCandidates);
+  }
   std::vector<Patch> patches;
   std::vector<std::vector<std::size_t>> members;
   std::vector<PatchMoments> moments;
@@ -106,6 +112,7 @@ void findCandidates(const std::vector<SphereContact>& contacts, const Gauge& gau
   candidates.lines.clear();
   candidates.lines.reserve(kUsualCandidates);
   candidates.patches.clear();
+  candidates.patches.reserve(kUsualPatches);
   const Sorted* sorted = &sortIntoPatches(contacts, reference);
   if (sorted->patches.empty() && !contacts.empty())
     sorted = &sortIntoPatches(aimed(contacts, gauge), reference);

@@ -87,11 +87,18 @@ class Selection {
   ContactPatch& patch_;
 };
 
+std::vector<std::vector<ContactPoint>> roomForGroups() {
+  constexpr std::size_t kUsualPoints = 64;
+  std::vector<std::vector<ContactPoint>> groups(kMaxGroups);
+  for (std::vector<ContactPoint>& group : groups) group.reserve(kUsualPoints);
+  return groups;
+}
+
 }  // namespace
 
 void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uint64_t>& old_ids,
                    btScalar spacing, std::vector<ContactPatch>& patches) {
-  static thread_local std::vector<std::vector<ContactPoint>> groups;
+  static thread_local std::vector<std::vector<ContactPoint>> groups = roomForGroups();
   for (std::vector<ContactPoint>& group : groups) group.clear();
   patches.clear();
   std::sort(found.begin(), found.end(), [](const MeasuredPoint& a, const MeasuredPoint& b) {
@@ -107,10 +114,7 @@ void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uin
         best = g;
       }
     }
-    if (best == patches.size()) {
-      patches.emplace_back();
-      if (groups.size() < patches.size()) groups.emplace_back();
-    }
+    if (best == patches.size()) patches.emplace_back();
     groups[best].push_back(m.point);
     ContactPatch& patch = patches[best];
     patch.area += m.area;

@@ -85,7 +85,8 @@ void SurfaceContact::update(const ContactOptions& options, const btTransform& pa
     contacts.clear();
     for (const Touch& touch : touches_) {
       const btScalar reach = a.radiusOf(touch.sphere) + a.margin + slack;
-      if (touch.distance < reach) contacts.push_back(cap(touch, a.centreOf(touch.sphere), reach));
+      if (touch.distance < reach)
+        contacts.push_back(cap(touch, a.centreOf(touch.sphere) + touch.aside, reach));
     }
   };
   if (measure.on_surfaces) {

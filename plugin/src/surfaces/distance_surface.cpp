@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "surfaces/face_on_edge.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
@@ -36,7 +38,23 @@ bool DistanceSurface::touchOne(const PackingBody& body, const btTransform& world
   touch.distance = found.distance;
   touch.normal = world.getBasis() * found.normal;
   touch.curvature = found.curvature;
+  touch.aside.setZero();
+  if (found.on_edge && found.distance > 0) {
+    layFaceOn(body, touch, [&](const btVector3& edge, const btVector3& direction, btScalar tolerance) {
+      const btTransform from_world = world.inverse();
+      return isOutermost(from_world(edge + body.origin()), from_world.getBasis() * direction, tolerance);
+    });
+  }
   return true;
+}
+
+bool DistanceSurface::isOutermost(const btVector3&, const btVector3&, btScalar) const {
+  return false;
+}
+
+bool DistanceSurface::isOutermost(const btConvexShape& shape, const btVector3& p, const btVector3& direction,
+                                  btScalar tolerance) {
+  return (shape.localGetSupportingVertex(direction) - p).dot(direction) < tolerance;
 }
 
 bool DistanceSurface::boxIsAsBefore(const btCollisionShape& shape) {

@@ -16,6 +16,11 @@ struct Touch {
   btScalar distance = 0;      ///< of its centre from the other surface [m], negative inside the other solid
   btVector3 normal{0, 0, 0};  ///< unit, out of the other solid at the nearest point; axes of the world
   btScalar curvature = 0;     ///< of the other surface there [1/m]; 0 if flat, or not known
+  /// From the line through its centre along the normal to the nearest point: not zero where that lies on an
+  /// edge of the other surface that a face of the solid lies on. Then the normal is that of the face [m].
+  btVector3 aside{0, 0, 0};
+
+  bool isOnEdge() const { return !aside.isZero(); }
 };
 
 /// One implementation for each kind of shape. An object belongs to one pair of bodies and may remember things

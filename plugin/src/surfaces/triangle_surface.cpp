@@ -6,6 +6,7 @@
 // which side is outside is decided by where the body's spheres are when they first touch, and kept while the
 // pair lives, so that small spheres which have gone through are pushed back the right way.
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -14,6 +15,7 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include "surfaces/distance_surface.hpp"
+#include "surfaces/face_on_edge.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -32,6 +34,7 @@ struct Candidate {
   btVector3
       direction;  ///< unit, from the nearest point to the centre; the triangle's normal if they coincide
   btVector3 point;
+  std::array<btVector3, 3> corners;
 };
 
 class Collector : public btTriangleCallback {
@@ -40,8 +43,8 @@ class Collector : public btTriangleCallback {
       : body_(body), to_packing_(to_packing), candidates_(candidates) {}
 
   void processTriangle(btVector3* triangle, int, int) override {
-    btVector3 v[3];
-    for (int i = 0; i < 3; ++i) v[i] = to_packing_(triangle[i]) / body_.scale();
+    std::array<btVector3, 3> v;
+    for (std::size_t i = 0; i < 3; ++i) v[i] = to_packing_(triangle[i]) / body_.scale();
     btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
     const btScalar length = normal.length();
     if (!(length > 0)) return;
@@ -62,7 +65,7 @@ class Collector : public btTriangleCallback {
   }
 
  private:
-  void test(std::size_t i, const btVector3* v, const btVector3& normal) {
+  void test(std::size_t i, const std::array<btVector3, 3>& v, const btVector3& normal) {
     const btVector3 c = centre(body_.shape().packing().spheres[i]);
     btSubSimplexClosestResult result;
     result.reset();
@@ -75,8 +78,8 @@ class Collector : public btTriangleCallback {
     const bool interior = used.usedVertexA && used.usedVertexB && used.usedVertexC;
     const auto order = static_cast<std::uint32_t>(candidates_.size());
     Candidate candidate{
-        static_cast<std::uint32_t>(i), order, interior, distance, normal.dot(c - v[0]), normal,
-        result.m_closestPointOnSimplex};
+        static_cast<std::uint32_t>(i),  order, interior, distance, normal.dot(c - v[0]), normal,
+        result.m_closestPointOnSimplex, v};
     if (distance > SIMD_EPSILON * reach) {
       candidate.direction = offset / distance;
     } else {
@@ -148,37 +151,66 @@ class TriangleSurface : public OtherSurface {
       return std::any_of(touches.begin() + static_cast<std::ptrdiff_t>(start), touches.end(),
                          [&](const Touch& t) { return btFabs(t.normal.dot(normal)) > kSameDirection; });
     };
+    const btScalar same = btScalar(1e-4) * body.prefix->median_radius;
     for (const Candidate* c = first; c != last; ++c) {
       const btVector3 direction = body.world.getBasis() * c->direction;
       if (known(direction)) continue;
-      const Corner corner = cornerAt(c, first, last, btScalar(1e-4) * body.prefix->median_radius);
+      const Corner corner = cornerAt(c, first, last, same);
       const bool rim = !c->interior && corner.triangles == 1;
       if (rim && c != first) continue;
       // Nothing lies behind the rim of an open mesh.
       const bool inside = corner.height * side_ < 0 && !rim;
       const btScalar distance = c->distance * body.scale();
-      touches.push_back({c->sphere, inside ? -distance : distance, inside ? -direction : direction});
+      Touch touch{c->sphere, inside ? -distance : distance, inside ? -direction : direction};
+      if (!c->interior && touch.distance > 0) {
+        layFaceOn(body, touch, [&](const btVector3&, const btVector3& out, btScalar tolerance) {
+          return isOutermost(c, first, last, same, out * body.world.getBasis(), tolerance / body.scale());
+        });
+        if (touch.isOnEdge() && known(touch.normal)) continue;
+      }
+      touches.push_back(touch);
     }
+  }
+
+  /// Visits the triangles that share the nearest point of `c`.
+  template <typename Visit>
+  static void forEachSharing(const Candidate* c, const Candidate* first, const Candidate* last,
+                             btScalar tolerance, const Visit& visit) {
+    const auto test = [&](const Candidate& other) {
+      if (!(other.point.distance2(c->point) > tolerance * tolerance)) visit(other);
+    };
+    visit(*c);
+    for (const Candidate* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o)
+      test(*(o - 1));
+    for (const Candidate* o = c + 1; o != last && o->distance - c->distance <= tolerance; ++o) test(*o);
   }
 
   struct Corner {
     int triangles;
     btScalar height;
   };
-  /// The triangles that share the nearest point of `c`. Of their heights, the largest in size tells inside
+  /// Of the heights of the triangles that share the nearest point of `c`, the largest in size tells inside
   /// from outside.
   static Corner cornerAt(const Candidate* c, const Candidate* first, const Candidate* last,
                          btScalar tolerance) {
-    Corner corner{1, c->height};
-    const auto join = [&](const Candidate& other) {
-      if (other.point.distance2(c->point) > tolerance * tolerance) return;
-      ++corner.triangles;
-      if (btFabs(other.height) > btFabs(corner.height)) corner.height = other.height;
-    };
-    for (const Candidate* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o)
-      join(*(o - 1));
-    for (const Candidate* o = c + 1; o != last && o->distance - c->distance <= tolerance; ++o) join(*o);
+    Corner corner{0, 0};
+    forEachSharing(c, first, last, tolerance, [&](const Candidate& sharing) {
+      if (corner.triangles++ == 0 || btFabs(sharing.height) > btFabs(corner.height))
+        corner.height = sharing.height;
+    });
     return corner;
+  }
+
+  /// Whether the triangles that share the nearest point of `c` have nothing further out than it, up to
+  /// `tolerance`.
+  static bool isOutermost(const Candidate* c, const Candidate* first, const Candidate* last, btScalar same,
+                          const btVector3& direction, btScalar tolerance) {
+    bool outermost = true;
+    forEachSharing(c, first, last, same, [&](const Candidate& sharing) {
+      for (const btVector3& v : sharing.corners)
+        outermost = outermost && (v - c->point).dot(direction) < tolerance;
+    });
+    return outermost;
   }
 
   const btConcaveShape& mesh_;
