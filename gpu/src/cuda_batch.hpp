@@ -16,12 +16,17 @@ static_assert(core::kClusterSize == kWarp, "a warp walks one cluster");
 constexpr unsigned kGroup = 32;  ///< clusters under one ball
 constexpr unsigned kItem = 8;    ///< neighbouring clusters that a warp of a batch takes at once
 
+/// Two neighbours in a list, as halves, the first one's below: see cuda_entries.hpp.
+struct alignas(16) EntryPair {
+  unsigned x, y, z, radius;
+};
+
 /// A grid, with what only kernels read.
 struct alignas(16) Grid {
   core::GridView view;
-  /// The spheres of view.listed, relative to the centre. After them come all spheres in their order, for
-  /// walkers that look at all, and some that meet nothing.
-  const Sphere* entries;
+  /// The spheres of view.listed. After them come all spheres in their order, for walkers that look at all,
+  /// and some that meet nothing.
+  const EntryPair* entries;
   const Sphere* groups;         ///< balls around kGroup clusters each
   const std::uint32_t* places;  ///< of the packing's spheres in the grid
 };

@@ -22,7 +22,7 @@ using BlockScan = cub::BlockScan<T, kListThreads>;
 union Shared {
   core::HilbertTable table;
   core::CellsNear near[kWarps][kWarp];
-  std::uint32_t lists[kListThreads / kLanes][kLongestInOrder];
+  ListInOrder lists[kListThreads / kLanes];
   BlockSum<std::uint64_t>::TempStorage sum;
   BlockScan<std::uint64_t>::TempStorage scan;
 };

@@ -50,7 +50,7 @@ struct GridArrays {
   Sphere* groups;
   core::Cell* cells;
   std::uint32_t* listed;
-  Sphere* entries;
+  EntryPair* entries;
   Grid* header;
   std::uint64_t listed_room;
   std::uint64_t table_room;  ///< a power of two
@@ -112,6 +112,11 @@ BuildStatus sortLists(const BuildPlan& plan, const GridArrays& arrays, BuildScra
                       cudaStream_t stream);
 void launchSorted(const BuildPlan& plan, const GridArrays& arrays, const BuildStatus& status,
                   BuildScratch& scratch, cudaStream_t stream);
+
+/// Behind the lists: pairs of all spheres, and of none for steps that go beyond the end.
+__host__ __device__ inline std::size_t entriesOfAll(std::uint32_t spheres) {
+  return core::padded(spheres) / 2 + 4;
+}
 
 __host__ __device__ inline std::size_t groupCount(std::size_t clusters) {
   return (clusters + kGroup - 1) / kGroup;

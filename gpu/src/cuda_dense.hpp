@@ -38,27 +38,38 @@ inline __device__ void fillLists(const BuildPlan& plan, const GridArrays& grid, 
 
 constexpr unsigned kLanes = 16;  ///< that put a list in order
 
+/// Of a list, while it is put in order.
+struct ListInOrder {
+  std::uint32_t filled[kLongestInOrder];
+  std::uint32_t sorted[kLongestInOrder];
+};
+static_assert(kLongestInOrder % core::kListStep == 0, "lists are filled up");
+
 /// Puts a cell's places in order.
-inline __device__ void orderList(const core::GridPlan& plan, const GridArrays& arrays, std::uint64_t first,
-                                 std::uint32_t count, unsigned lane, unsigned lanes,
-                                 std::uint32_t (&shared)[kLongestInOrder]) {
-  for (std::uint32_t k = lane; k < count; k += kLanes) shared[k] = arrays.listed[first + k];
+inline __device__ void orderList(const core::GridPlan& plan, const GridArrays& arrays, const CellFrame& frame,
+                                 std::uint64_t first, std::uint32_t count, unsigned lane, unsigned lanes,
+                                 ListInOrder& shared) {
+  for (std::uint32_t k = lane; k < count; k += kLanes) shared.filled[k] = arrays.listed[first + k];
   __syncwarp(lanes);
   for (std::uint32_t k = lane; k < core::padded(count); k += kLanes) {
-    const std::uint32_t place = k < count ? shared[k] : plan.view.count;
-    const Sphere entry = entryOf(plan, arrays, place);  // on its way while the others are counted
+    const std::uint32_t place = k < count ? shared.filled[k] : plan.view.count;
     std::uint32_t rank = k < count ? 0 : k;
-    for (std::uint32_t other = 0; k < count && other < count; ++other) rank += shared[other] < place ? 1 : 0;
-    arrays.listed[first + rank] = place;
-    arrays.entries[first + rank] = entry;
+    for (std::uint32_t other = 0; k < count && other < count; ++other)
+      rank += shared.filled[other] < place ? 1 : 0;
+    shared.sorted[rank] = place;
+  }
+  __syncwarp(lanes);
+  for (std::uint32_t k = lane; k < core::padded(count) / 2; k += kLanes) {
+    const uint2 places{shared.sorted[2 * k], shared.sorted[2 * k + 1]};
+    reinterpret_cast<uint2*>(arrays.listed + first)[k] = places;
+    arrays.entries[first / 2 + k] = entriesOf(plan, arrays, frame, places);
   }
   __syncwarp(lanes);
 }
 
 /// kLanes take a cell.
 inline __device__ void orderLists(const BuildPlan& plan, const GridArrays& grid, const BuildArrays& arrays,
-                                  const DenseCells& cells, std::uint32_t (&shared)[kLongestInOrder],
-                                  const Threads& threads) {
+                                  const DenseCells& cells, ListInOrder& shared, const Threads& threads) {
   const unsigned lane = threadIdx.x % kLanes;
   const unsigned lanes = ((1u << kLanes) - 1) << (threadIdx.x % kWarp / kLanes * kLanes);
   const BuildStatus status = cells.status(*arrays.longest);
@@ -67,7 +78,8 @@ inline __device__ void orderLists(const BuildPlan& plan, const GridArrays& grid,
   for (std::uint64_t cell = threads.first / kLanes; cell < cells.cells; cell += threads.count / kLanes) {
     const std::uint32_t count = cells.counts[cell];
     if (count != 0)
-      orderList(plan.grid, grid, placesOf(cells.sums[cell]) - count, count, lane, lanes, shared);
+      orderList(plan.grid, grid, frameOf(plan.grid.view, cells.keyOf(plan.tiers, cell)),
+                placesOf(cells.sums[cell]) - count, count, lane, lanes, shared);
   }
   finishGrid(plan, grid, cells, status, threads.first, threads.count);
 }

@@ -29,6 +29,17 @@ inline __device__ Sphere load(const Sphere* sphere) {
   return {s.x, s.y, s.z, s.w};
 }
 
+/// Stays where it stands: to save registers the compiler would have each of several loads wait for the one
+/// before.
+inline __device__ EntryPair load(const EntryPair* pair) {
+  EntryPair p;
+  asm volatile("ld.global.v4.u32 {%0, %1, %2, %3}, [%4];"
+               : "=r"(p.x), "=r"(p.y), "=r"(p.z), "=r"(p.radius)
+               : "l"(pair)
+               : "memory");
+  return p;
+}
+
 /// False if nothing in the ball, which is in the walker's frame, can meet the grid.
 inline __device__ bool ballMeets(const core::GridView& grid, const core::Search& search, const Sphere& ball) {
   return core::ballMeets(search, grid, ball);

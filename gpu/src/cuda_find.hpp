@@ -3,22 +3,25 @@
 #pragma once
 
 #include "cuda_device.hpp"
+#include "cuda_entries.hpp"
 
 namespace innersphere::device {
 
-/// The list that a sphere of the cluster goes through. A step tests kListStep of its spheres that are `steps`
-/// apart, so that lanes with neighbouring steps read neighbouring spheres.
+/// The list that a sphere of the cluster goes through. A step tests up to kStepPairs pairs of its spheres
+/// that are `steps` apart, so that lanes with neighbouring steps read neighbours.
 struct alignas(16) Walk {
-  float smallest;  ///< see core::Lookup
+  HalfWalker walker;
   unsigned self;   ///< place, with flags
-  unsigned shift;  ///< from the step of the warp to the first place in the list, modulo 2^32
+  unsigned shift;  ///< from the step of the warp to the first pair in the list, modulo 2^32
   unsigned steps;
+  unsigned end;  ///< of the list's pairs
 };
+constexpr unsigned kStepPairs = 4;  ///< see entriesOfAll()
 
 /// The spheres of the cluster that have a list to go through, as all lanes read them.
 struct Walking {
-  float4 balls[kWarp];  ///< centre and reach
   Walk walks[kWarp];
+  core::Lookup lookups[kWarp];  ///< of those that look into several cells
 };
 
 /// Flags of a walker's place.
@@ -39,14 +42,15 @@ inline __device__ unsigned anyLane(unsigned bits) {
 #endif
 }
 
-/// A run of spheres to test, in steps of kListStep.
+/// Pairs of spheres to test.
 struct List {
-  std::uint32_t first, steps;
+  std::uint32_t first, count;
   unsigned flags;
+  HalfWalker walker;
 };
 
-inline __device__ unsigned stepsOf(unsigned count) {
-  return (count + core::kListStep - 1) / core::kListStep;
+inline __device__ unsigned pairsOf(unsigned spheres) {
+  return core::padded(spheres) / 2;
 }
 
 inline __device__ core::Cell cellAt(const core::GridView& grid, std::uint64_t key) {
@@ -58,51 +62,51 @@ inline __device__ core::Cell cellAt(const core::GridView& grid, std::uint64_t ke
   }
 }
 
-/// The cell of a walker that looks into one; false if it may look into several. Beyond the grid there is
-/// none.
-inline __device__ bool singleCell(const core::GridView& grid, const core::Lookup& lookup,
-                                  std::uint64_t& key) {
-  constexpr float kEnd = 1 << core::kAxisBits;
-  const int tier = core::tierOf(grid, core::levelOf(lookup.smallest));
-  const float scale = core::powerOfTwo(-(grid.finest + tier));
-  const float x = floorf((lookup.p.x + grid.half.x) * scale) + 1;
-  const float y = floorf((lookup.p.y + grid.half.y) * scale) + 1;
-  const float z = floorf((lookup.p.z + grid.half.z) * scale) + 1;
-  key = core::cellKey(tier, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                      static_cast<std::uint32_t>(z));
-  return lookup.reach <= core::reachOf(grid, tier) && fminf(fminf(x, y), z) >= 0 &&
-         fmaxf(fmaxf(x, y), z) < kEnd;
-}
-
-/// What a walker meets in the cell number `number` of those where it looks, `count` in all.
+/// What a walker meets in the cell number `number` of those where it looks, `count` in all. Nearly all look
+/// into one; beyond the grid there is none.
 inline __device__ List listOf(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t number,
                               std::uint32_t& count) {
-  std::uint64_t key;
-  unsigned flags = 0;
-  if (singleCell(grid, lookup, key)) {
+  constexpr float kEnd = 1 << core::kAxisBits;
+  int tier = core::tierOf(grid, core::levelOf(lookup.smallest));
+  const float scale = core::powerOfTwo(-(grid.finest + tier));
+  core::Vec3f cell{floorf((lookup.p.x + grid.half.x) * scale) + 1,
+                   floorf((lookup.p.y + grid.half.y) * scale) + 1,
+                   floorf((lookup.p.z + grid.half.z) * scale) + 1};
+  List list{};
+  if (lookup.reach <= core::reachOf(grid, tier) && fminf(fminf(cell.x, cell.y), cell.z) >= 0 &&
+      fmaxf(fmaxf(cell.x, cell.y), cell.z) < kEnd) {
     count = 1;
-    if (number > 0) return {0, 0, 0};
+    if (number > 0) return {};
   } else {
     const core::Cells cells = core::cellsOf(grid, lookup);
     count = cells.count;
-    if (number >= count) return {0, 0, 0};
-    if (cells.all) return {grid.listed_count, stepsOf(grid.count), 0};  // see Grid::entries
+    if (number >= count) return {};
+    if (cells.all)  // see Grid::entries
+      return {grid.listed_count / 2, pairsOf(grid.count), 0, makeHalfWalker(grid, frameOfAll(grid), lookup)};
     std::uint32_t at[3];
     cells.coordinates(number, at);
-    key = core::cellKey(cells.tier, at[0], at[1], at[2]);
-    flags = count > 1 ? kSeveral : 0;
+    cell = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
+    tier = cells.tier;
+    list.flags = count > 1 ? kSeveral : 0;
   }
-  const core::Cell cell = cellAt(grid, key);
-  return {cell.first, stepsOf(cell.count), flags};
+  list.walker = makeHalfWalker(grid, frameOf(grid, tier, cell), lookup);
+  const core::Cell found =
+      cellAt(grid, core::cellKey(tier, static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y),
+                                 static_cast<std::uint32_t>(cell.z)));
+  list.first = found.first / 2;
+  list.count = pairsOf(found.count);
+  return list;
 }
 
-/// Of a walker that looks into several cells: whether a partner counts in this one.
+/// Of a walker that looks into several cells: whether the partner at this place of a list counts in this one.
 inline __device__ bool countsHere(const core::GridView& grid, const core::Lookup& lookup,
-                                  std::uint32_t number, const Sphere& partner) {
+                                  std::uint32_t number, std::uint32_t listed) {
   const core::Cells cells = core::cellsOf(grid, lookup);
   std::uint32_t at[3];
   cells.coordinates(number, at);
-  return core::countsIn(grid, cells, at, partner);
+  const Sphere s = load(grid.spheres + __ldg(grid.listed + listed));
+  return core::countsIn(grid, cells, at,
+                        {s.x - grid.centre.x, s.y - grid.centre.y, s.z - grid.centre.z, s.radius});
 }
 
 /// The lists of a warp, one after the other: a step is in the list that begins last before it.
@@ -124,14 +128,16 @@ struct Lists {
 /// Puts the lists of all lanes into a row, with their walkers, those that have one, in `walking`.
 inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, unsigned self, unsigned lane,
                                Walking& walking) {
-  const unsigned scanned = scan(list.steps, lane);
-  const unsigned owners = __ballot_sync(kAll, list.steps != 0);
-  const Lists lists{scanned - list.steps, list.steps != 0, __shfl_sync(kAll, scanned, kWarp - 1)};
+  const unsigned steps = (list.count + kStepPairs - 1) / kStepPairs;
+  const unsigned scanned = scan(steps, lane);
+  const unsigned owners = __ballot_sync(kAll, steps != 0);
+  const Lists lists{scanned - steps, steps != 0, __shfl_sync(kAll, scanned, kWarp - 1)};
   __syncwarp();
   if (lists.any) {
     const unsigned to = __popc(owners & ((1u << lane) - 1));
-    walking.balls[to] = {lookup.p.x, lookup.p.y, lookup.p.z, lookup.reach};
-    walking.walks[to] = {lookup.smallest, self | list.flags, list.first - lists.begin, list.steps};
+    walking.walks[to] = {list.walker, self | list.flags, list.first - lists.begin, steps,
+                         list.first + list.count};
+    if (list.flags & kSeveral) walking.lookups[to] = lookup;
   }
   __syncwarp();
   return lists;
@@ -140,50 +146,45 @@ inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, uns
 /// The candidates of a warp that wait to be decided. Most clusters have fewer.
 constexpr unsigned kQueue = 288;
 using Queue = Candidate[kQueue];
+static_assert(kQueue >= kWarp - 1 + kWarp * 2 * kStepPairs, "room for one round beside what is left over");
 
-/// Whether there is room for what one round may add.
-inline __device__ bool isFull(unsigned queued) {
-  return queued + kWarp * core::kListStep > kQueue;
-}
-
-/// One round, for which there is room in the queue: each lane tests a step. `number` is that of the cell of
-/// walkers that look into several. All lanes call it.
-inline __device__ void testStep(const Grid& grid, const Lists& lists, std::uint32_t number, unsigned first,
+/// One round: each lane tests a step. `number` is that of the cell of walkers that look into several. False,
+/// and nothing is queued, if there is no room. All lanes call it.
+inline __device__ bool testStep(const Grid& grid, const Lists& lists, std::uint32_t number, unsigned first,
                                 unsigned lane, const Walking& walking, Queue& queue, unsigned& queued) {
   const unsigned owner = lists.ownerOf(first, lane);
-  unsigned met = 0, at = 0, self = 0, steps = 0;
-  if (first + lane < lists.total) {
-    const float4 ball = walking.balls[owner];
-    const Walk walk = walking.walks[owner];
-    self = walk.self;
-    steps = walk.steps;
-    at = walk.shift + first + lane;
-    const core::Lookup lookup{{ball.x, ball.y, ball.z}, ball.w, walk.smallest};
-    const Sphere* entry = grid.entries + at;
-    const std::size_t apart = steps;
+  const auto pairOfBit = [](unsigned bit) { return 15 - bit % 16; };
+  const bool any = first + lane < lists.total;
+  const Walk& walk = walking.walks[owner];
+  const unsigned self = walk.self, end = walk.end, steps = any ? walk.steps : 0;
+  const unsigned at = any ? walk.shift + first + lane : end;
+  EntryPair pairs[kStepPairs];  // maybe some beyond the end
 #pragma unroll
-    for (unsigned k = 0; k < core::kListStep; ++k, entry += apart) {
-      if (core::meets(lookup, load(entry))) met |= 1u << k;
-    }
-    if (met != 0 && self & kSeveral) {
-      for (unsigned k = 0; k < core::kListStep; ++k) {
-        if ((met >> k & 1) != 0 &&
-            !countsHere(grid.view, lookup, number, load(grid.entries + at + k * steps)))
-          met ^= 1u << k;
-      }
+  for (unsigned k = 0; k < kStepPairs; ++k) pairs[k] = load(grid.entries + (at + k * steps));
+  __syncwarp();        // all are on their way before the first is used
+  unsigned found = 0;  // bit 31 - k: the second of pair k; 15 - k: the first
+#pragma unroll
+  for (unsigned k = 0; k < kStepPairs; ++k) {
+    const unsigned both = met(walk.walker, pairs[k]) >> k;
+    if (at + k * steps < end) found |= both;
+  }
+  if (found != 0 && self & kSeveral) {
+    for (unsigned left = found; left != 0; left &= left - 1) {
+      const auto bit = static_cast<unsigned>(__ffs(static_cast<int>(left)) - 1);
+      const unsigned listed = 2 * (at + pairOfBit(bit) * steps) + bit / 16;
+      if (!countsHere(grid.view, walking.lookups[owner], number, listed)) found ^= 1u << bit;
     }
   }
-  while (true) {
-    const unsigned finders = __ballot_sync(kAll, met != 0);
-    if (finders == 0) break;
-    if (met != 0) {
-      const unsigned k = static_cast<unsigned>(__ffs(static_cast<int>(met)) - 1);
-      queue[queued + __popc(finders & ((1u << lane) - 1))] = {self, at + k * steps};
-      met &= met - 1;
-    }
-    queued += __popc(finders);
+  const unsigned mine = __popc(found), before = scan(mine, lane);
+  const unsigned total = __shfl_sync(kAll, before, kWarp - 1);
+  if (queued + total > kQueue) return false;
+  for (unsigned to = queued + before - mine; found != 0; found &= found - 1, ++to) {
+    const auto bit = static_cast<unsigned>(__ffs(static_cast<int>(found)) - 1);
+    queue[to] = {self, 2 * (at + pairOfBit(bit) * steps) + bit / 16};
   }
+  queued += total;
   __syncwarp();
+  return true;
 }
 
 }  // namespace innersphere::device

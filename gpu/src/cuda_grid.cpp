@@ -116,7 +116,7 @@ void CudaGrid::makeRoom(const BuildStatus& status, std::uint32_t spheres, cudaSt
   if (listed_.capacity() < status.listed) {
     const std::uint64_t room = status.listed + (listed_.capacity() > 0 ? status.listed / 4 : 0);
     listed_.reserve(room);
-    entries_.reserve(room + spheres + core::kListStep);
+    entries_.reserve(room / 2 + entriesOfAll(spheres));
   }
   cells_.reserve(tableSizeFor(status.cells));
   INNERSPHERE_CUDA(cudaMemsetAsync(cells_.data(), 0xff, cells_.capacity() * sizeof(core::Cell), stream));

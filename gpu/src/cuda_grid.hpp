@@ -30,7 +30,8 @@ class CudaGrid : public DeviceGrid {
 
   int device_;
   DeviceArray<Grid> header_;
-  DeviceArray<Sphere> spheres_, groups_, entries_;
+  DeviceArray<Sphere> spheres_, groups_;
+  DeviceArray<EntryPair> entries_;
   DeviceArray<std::uint32_t> ids_, places_, listed_;
   DeviceArray<core::Cluster> clusters_;
   DeviceArray<core::Cell> cells_;

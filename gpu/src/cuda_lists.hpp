@@ -3,6 +3,7 @@
 
 #include "cuda_build.hpp"
 #include "cuda_device.hpp"
+#include "cuda_entries.hpp"
 
 namespace innersphere::device {
 
@@ -39,7 +40,7 @@ struct DenseCells : CellCounts {
   __device__ std::uint64_t keyOf(const Tiers& tiers, std::uint64_t cell) const {
     int t = 0;
     while (cell >= tiers.first[t + 1]) ++t;
-    return tiers.of[t].keyOf(cell - tiers.first[t]);
+    return tiers.of[t].keyOf(static_cast<std::uint32_t>(cell - tiers.first[t]));
   }
   __device__ core::Cell find(const Tiers& tiers, std::uint64_t key) const {
     constexpr std::uint64_t kMask = (1u << core::kAxisBits) - 1;
@@ -94,10 +95,20 @@ __device__ void insertCell(const BuildPlan& plan, const GridArrays& arrays, cons
   }
 }
 
-/// What a list holds of a place: its sphere, or something that meets nothing.
-inline __device__ Sphere entryOf(const core::GridPlan& plan, const GridArrays& arrays, std::uint32_t place) {
-  const float far = __int_as_float(0x7f800000);
-  return place < plan.view.count ? plan.centred(arrays.spheres[place]) : Sphere{far, far, far, -far};
+inline __device__ CellFrame frameOf(const core::GridView& grid, std::uint64_t key) {
+  constexpr std::uint64_t kMask = (1u << core::kAxisBits) - 1;
+  const auto axis = [&](int number) { return static_cast<float>(key >> number * core::kAxisBits & kMask); };
+  return frameOf(grid, static_cast<int>(key >> (3 * core::kAxisBits)), {axis(0), axis(1), axis(2)});
+}
+
+/// Two places of a list.
+inline __device__ EntryPair entriesOf(const core::GridPlan& plan, const GridArrays& arrays,
+                                      const CellFrame& frame, const uint2& places) {
+  const auto ball = [&](std::uint32_t place) {
+    return place < plan.view.count ? partnerBall(plan.view, frame, plan.centred(load(arrays.spheres + place)))
+                                   : noBall();
+  };
+  return pairOf(ball(places.x), ball(places.y));
 }
 
 /// A ball around the balls of a group of clusters; a warp calls it.
@@ -123,8 +134,11 @@ __device__ void finishGrid(const BuildPlan& plan, const GridArrays& arrays, cons
                            const BuildStatus& status, std::uint64_t thread, std::uint64_t threads) {
   const core::GridPlan& grid = plan.grid;
   const std::uint32_t count = grid.view.count;
-  for (std::uint64_t i = thread; i < count + core::kListStep; i += threads)
-    arrays.entries[status.listed + i] = entryOf(grid, arrays, static_cast<std::uint32_t>(i));
+  const CellFrame frame = frameOfAll(grid.view);
+  for (std::uint64_t i = thread; i < entriesOfAll(count); i += threads) {
+    const auto first = static_cast<std::uint32_t>(2 * i);
+    arrays.entries[status.listed / 2 + i] = entriesOf(grid, arrays, frame, {first, first + 1});
+  }
   for (std::uint64_t i = thread; i < tableSizeFor(status.cells); i += threads) {
     const std::uint64_t key = arrays.cells[i].key;
     arrays.cells[i] = key == kNoKey ? core::Cell{0, 0, 0} : cells.find(plan.tiers, key);
@@ -140,7 +154,6 @@ __device__ void finishGrid(const BuildPlan& plan, const GridArrays& arrays, cons
   view.cells = arrays.cells;
   view.listed = arrays.listed;
   view.listed_count = static_cast<std::uint32_t>(status.listed);
-  view.centred = arrays.entries + status.listed;
   view.hash_shift = hashShift(status.cells);
   *arrays.header = {view, arrays.entries, arrays.groups, arrays.places};
 }

@@ -56,10 +56,14 @@ __global__ void writeLists(const __grid_constant__ BuildPlan plan, const __grid_
   for (std::uint64_t cell = thread / kWarp; cell < cells.cells; cell += threads / kWarp) {
     const std::uint32_t count = cells.counts[cell];
     const std::uint64_t first = placesOf(cells.sums[cell]);
-    for (std::uint32_t k = lane; k < core::padded(count); k += kWarp) {
-      const std::uint32_t place = k < count ? numbers[starts[cell] + k] : plan.grid.view.count;
-      arrays.listed[first + k] = place;
-      arrays.entries[first + k] = entryOf(plan.grid, arrays, place);
+    const CellFrame frame = frameOf(plan.grid.view, cells.keyOf(plan.tiers, cell));
+    const auto placeAt = [&](std::uint32_t k) {
+      return k < count ? numbers[starts[cell] + k] : plan.grid.view.count;
+    };
+    for (std::uint32_t k = lane; k < core::padded(count) / 2; k += kWarp) {
+      const uint2 places{placeAt(2 * k), placeAt(2 * k + 1)};
+      reinterpret_cast<uint2*>(arrays.listed + first)[k] = places;
+      arrays.entries[first / 2 + k] = entriesOf(plan.grid, arrays, frame, places);
     }
   }
   finishGrid(plan, arrays, cells, cells.status(0), thread, threads);

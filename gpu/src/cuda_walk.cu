@@ -73,9 +73,9 @@ __device__ __forceinline__ bool findCandidates(const Scene& scene, const Job& jo
     while (true) {
       const unsigned first = (progress.round * job.parts + job.part) * kWarp;
       if (first >= lists.total) break;
-      if (isFull(warp.queued)) return false;
-      testStep(grid, lists, progress.number, first, lane, warp.memory.walking, warp.memory.queue,
-               warp.queued);
+      if (!testStep(grid, lists, progress.number, first, lane, warp.memory.walking, warp.memory.queue,
+                    warp.queued))
+        return false;
       ++progress.round;
     }
   }
@@ -138,6 +138,27 @@ __device__ unsigned partsOf(unsigned clusters) {
   return clusters <= kSingleWarps / 4 ? 4 : clusters <= kSingleWarps / 2 ? 2 : 1;
 }
 
+/// Decides what the warps of a block have queued, each 32 of all of it at a time. All threads call it.
+template <Goal goal>
+__device__ __forceinline__ void decideTogether(const Batch& batch, const Scene& scene,
+                                               WarpMemory (&memory)[kSingleWarps],
+                                               unsigned (&queued)[kSingleWarps], Warp<goal>& warp) {
+  const unsigned number = threadIdx.x / kWarp;
+  if (warp.lane == 0) queued[number] = warp.queued;
+  warp.queued = 0;
+  __syncthreads();
+  unsigned all = 0;
+  for (const unsigned of_warp : queued) all += of_warp;
+  for (unsigned first = number * kWarp; first < all; first += kSingleWarps * kWarp) {
+    unsigned at = min(first + warp.lane, all - 1), owner = 0;
+    for (; at >= queued[owner]; ++owner) at -= queued[owner];
+    WarpMemory& own = warp.memory;
+    warp.summer.add(batch, scene, 0, memory[owner].queue[at], first + warp.lane < all, warp.lane, own.columns,
+                    own.sums);
+    if (warp.summer.full()) warp.summer.flush(*batch.sums, scene.query.units, warp.lane, own.sums);
+  }
+}
+
 /// A single query: blocks share all its clusters, the warps of a block those that can meet the other body,
 /// and the last block brings the sums home.
 template <Goal goal>
@@ -146,7 +167,9 @@ __global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
   constexpr unsigned kThreads = kSingleWarps * kWarp;
   __shared__ WarpMemory memory[kSingleWarps];
   __shared__ Scene scene;
-  __shared__ unsigned active[kThreads], active_count;
+  __shared__ unsigned char active[kThreads];  // threads whose clusters are
+  __shared__ unsigned active_count, queued[kSingleWarps];
+  static_assert(kThreads <= 256);
   copyScene(query, threadIdx.x, kThreads, scene);
   if (threadIdx.x == 0) active_count = 0;
   Warp<goal> warp(memory[threadIdx.x / kWarp], threadIdx.x % kWarp);
@@ -160,30 +183,24 @@ __global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
       const core::Cluster* of_body = scene.grids[side].view.clusters;
       if (ballMeets(scene.grids[1 - side].view, scene.query.searches[side],
                     load(&of_body[side == 0 ? cluster : cluster - clusters_a].ball)))
-        active[atomicAdd(&active_count, 1u)] = cluster;
+        active[atomicAdd(&active_count, 1u)] = static_cast<unsigned char>(threadIdx.x);
     }
     __syncthreads();
-    const bool last = first + gridDim.x * kThreads >= clusters;
     const unsigned parts = partsOf(active_count), jobs = parts * active_count;
-    for (unsigned number = threadIdx.x / kWarp; number < jobs || (last && warp.queued > 0);
-         number += kSingleWarps) {
-      const bool drain = number >= jobs;
-      Job job{0, 0, number % parts, parts};
-      if (!drain) {
-        job.cluster = active[number / parts];
-        job.side = job.cluster < clusters_a ? 0 : 1;
-        if (job.side != 0) job.cluster -= clusters_a;
-      }
+    for (unsigned number = threadIdx.x / kWarp; number < jobs; number += kSingleWarps) {
+      Job job{0, first + active[number / parts] * gridDim.x, number % parts, parts};
+      job.side = job.cluster < clusters_a ? 0 : 1;
+      if (job.side != 0) job.cluster -= clusters_a;
       Progress progress;
-      bool done = drain;
+      bool done;
       do {
-        if (!drain) done = findCandidates(scene, job, progress, warp);
-        decide(batch, scene, 0, drain, *batch.sums, warp);
+        done = findCandidates(scene, job, progress, warp);
+        if (!done || goal == Goal::touch) decide(batch, scene, 0, done, *batch.sums, warp);
       } while (!done && !warp.touched);
       if (goal == Goal::touch && warp.touched) warp.flush(*batch.sums, scene.query.units);  // for all to see
-      if (drain || (goal == Goal::touch && isTouched(*batch.sums))) break;
+      if (goal == Goal::touch && isTouched(*batch.sums)) break;
     }
-    __syncthreads();
+    decideTogether(batch, scene, memory, queued, warp);
     if (threadIdx.x == 0) active_count = 0;
     __syncthreads();
   }

@@ -1,7 +1,9 @@
 #include "prepare.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "core/walk.hpp"
@@ -28,7 +30,20 @@ bool finite(const Placement& placement) {
 }
 
 double length(const Vec3r& v) {
-  return std::hypot(v.x, v.y, v.z);
+  const double squared = dot(v, v);
+  return squared > 1e-280 && squared < 1e280 ? std::sqrt(squared) : std::hypot(v.x, v.y, v.z);
+}
+
+constexpr int kExponentBias = 1023, kMantissaBits = 52;
+
+/// As std::ldexp(1, exponent), where that is a normal number.
+double powerOfTwo(int exponent) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + kExponentBias) << kMantissaBits);
+}
+
+/// As std::ilogb, of positive normal numbers.
+int exponentOf(double x) {
+  return static_cast<int>(std::bit_cast<std::uint64_t>(x) >> kMantissaBits) - kExponentBias;
 }
 
 Mat3<double> transposed(const Mat3<double>& a) {
@@ -150,7 +165,7 @@ bool boxMeets(const Side& walker, const Side& owner, const core::Search& search)
 core::Units makeUnits(const Side& a, const Side& b, std::size_t index) {
   const double ra = a.scale * a.grid.largest + a.margin;
   const double rb = b.scale * b.grid.largest + b.margin;
-  const double pairs = static_cast<double>(a.grid.count) * static_cast<double>(b.grid.count);
+  const int pair_bits = exponentOf(static_cast<double>(a.grid.count) * static_cast<double>(b.grid.count));
   const double small = std::min(ra, rb);
   const double area = 3.2 * small * small;            // pi r^2, and
   const double volume = 4.2 * small * small * small;  // 4/3 pi r^3, with room for rounding
@@ -161,10 +176,9 @@ core::Units makeUnits(const Side& a, const Side& b, std::size_t index) {
       fail(ErrorCode::bad_argument, index,
            "lengths are too small or too large to be summed; scale the scene towards metres");
     }
-    const int coarse_shift = core::kCoarseBits - 1 - std::ilogb(bound);
-    const int fine_bits =
-        std::min(core::kFineBits, core::kFixedBits - core::kCoarseBits - std::ilogb(pairs) - 1);
-    return core::Unit{std::ldexp(1.0, coarse_shift), std::ldexp(1.0, fine_bits), coarse_shift, fine_bits};
+    const int coarse_shift = core::kCoarseBits - 1 - exponentOf(bound);
+    const int fine_bits = std::min(core::kFineBits, core::kFixedBits - core::kCoarseBits - pair_bits - 1);
+    return core::Unit{powerOfTwo(coarse_shift), powerOfTwo(fine_bits), coarse_shift, fine_bits};
   };
   return {unit(volume), unit(volume * reach_a), unit(volume * reach_b), unit(area), unit(volume * (ra + rb))};
 }

@@ -36,15 +36,6 @@ INNERSPHERE_HD inline T dot(const Vec3<T>& a, const Vec3<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// Where rounding does not matter: fused on the device.
-INNERSPHERE_HD inline float squaredLength(const Vec3f& a) {
-#if defined(__CUDA_ARCH__)
-  return __fmaf_rn(a.x, a.x, __fmaf_rn(a.y, a.y, a.z * a.z));
-#else
-  return dot(a, a);
-#endif
-}
-
 template <typename T>
 INNERSPHERE_HD inline Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

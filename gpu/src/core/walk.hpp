@@ -2,7 +2,7 @@
 //
 // Each sphere of A meets the spheres of B that are at least as large as it, and each sphere of B those of A
 // that are strictly larger: every pair once. All of them are listed in one cell of the walker's tier, so the
-// work for one sphere does not depend on how many there are. What overlaps in single precision is a
+// work for one sphere does not depend on how many there are. What overlaps in lower precision is a
 // candidate; pair.hpp decides it in double precision.
 //
 // Margins make walkers larger than their tier foresees. Then they look into all cells near them, and a sphere
@@ -119,15 +119,8 @@ INNERSPHERE_HD inline Cells cellsOf(const GridView& grid, const Lookup& lookup) 
   return cells;
 }
 
-/// `partner` is relative to the centre of the grid.
-INNERSPHERE_HD inline bool meets(const Lookup& lookup, const Sphere& partner) {
-  const Vec3f d{partner.x - lookup.p.x, partner.y - lookup.p.y, partner.z - lookup.p.z};
-  const float sum = lookup.reach + partner.radius;
-  const bool near = !(squaredLength(d) > sum * sum);
-  return partner.radius < lookup.smallest ? false : near;
-}
-
-/// Whether a partner counts in this cell: of those where a walker looks, the one nearest to its centre.
+/// Whether a partner counts in this cell: of those where a walker looks, the one nearest to its centre, which
+/// is relative to that of the grid.
 INNERSPHERE_HD inline bool countsIn(const GridView& grid, const Cells& cells, const std::uint32_t (&cell)[3],
                                     const Sphere& partner) {
   const Vec3f p{partner.x, partner.y, partner.z};
