@@ -138,6 +138,15 @@ __device__ unsigned partsOf(unsigned clusters) {
   return clusters <= kSingleWarps / 4 ? 4 : clusters <= kSingleWarps / 2 ? 2 : 1;
 }
 
+/// The number of the bit, of those that are set in a row of words, that has `before` others before it.
+__device__ unsigned bitOf(const unsigned (&words)[kSingleWarps], unsigned before) {
+  unsigned word = 0;
+  for (; before >= __popc(words[word]); ++word) before -= __popc(words[word]);
+  unsigned bits = words[word];
+  for (; before > 0; --before) bits &= bits - 1;
+  return word * kWarp + static_cast<unsigned>(__ffs(static_cast<int>(bits)) - 1);
+}
+
 /// Decides what the warps of a block have queued, each 32 of all of it at a time. All threads call it.
 template <Goal goal>
 __device__ __forceinline__ void decideTogether(const Batch& batch, const Scene& scene,
@@ -167,28 +176,30 @@ __global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
   constexpr unsigned kThreads = kSingleWarps * kWarp;
   __shared__ WarpMemory memory[kSingleWarps];
   __shared__ Scene scene;
-  __shared__ unsigned char active[kThreads];  // threads whose clusters are
-  __shared__ unsigned active_count, queued[kSingleWarps];
-  static_assert(kThreads <= 256);
+  __shared__ unsigned active[kSingleWarps];  // a bit for each thread whose cluster is
+  __shared__ unsigned queued[kSingleWarps];
   copyScene(query, threadIdx.x, kThreads, scene);
-  if (threadIdx.x == 0) active_count = 0;
   Warp<goal> warp(memory[threadIdx.x / kWarp], threadIdx.x % kWarp);
   __syncthreads();
 
   const unsigned clusters_a = scene.query.clusters[0], clusters = clusters_a + scene.query.clusters[1];
   for (unsigned first = blockIdx.x; first < clusters; first += gridDim.x * kThreads) {
     const unsigned cluster = first + threadIdx.x * gridDim.x;
+    bool meets = false;
     if (cluster < clusters) {
       const unsigned side = cluster < clusters_a ? 0 : 1;
       const core::Cluster* of_body = scene.grids[side].view.clusters;
-      if (ballMeets(scene.grids[1 - side].view, scene.query.searches[side],
-                    load(&of_body[side == 0 ? cluster : cluster - clusters_a].ball)))
-        active[atomicAdd(&active_count, 1u)] = static_cast<unsigned char>(threadIdx.x);
+      meets = ballMeets(scene.grids[1 - side].view, scene.query.searches[side],
+                        load(&of_body[side == 0 ? cluster : cluster - clusters_a].ball));
     }
+    const unsigned meeting = __ballot_sync(kAll, meets);
+    if (warp.lane == 0) active[threadIdx.x / kWarp] = meeting;
     __syncthreads();
+    unsigned active_count = 0;
+    for (const unsigned of_warp : active) active_count += __popc(of_warp);
     const unsigned parts = partsOf(active_count), jobs = parts * active_count;
     for (unsigned number = threadIdx.x / kWarp; number < jobs; number += kSingleWarps) {
-      Job job{0, first + active[number / parts] * gridDim.x, number % parts, parts};
+      Job job{0, first + bitOf(active, number / parts) * gridDim.x, number % parts, parts};
       job.side = job.cluster < clusters_a ? 0 : 1;
       if (job.side != 0) job.cluster -= clusters_a;
       Progress progress;
@@ -201,8 +212,6 @@ __global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
       if (goal == Goal::touch && isTouched(*batch.sums)) break;
     }
     decideTogether(batch, scene, memory, queued, warp);
-    if (threadIdx.x == 0) active_count = 0;
-    __syncthreads();
   }
   warp.summer.flushBlock(*batch.sums, scene.query.units, kSingleWarps, warp.lane,
                          [&](unsigned w) -> Sums& { return memory[w].sums; });
