@@ -75,9 +75,8 @@ struct CellBox {
 /// to `centre`, so that positions keep their digits in single precision where the packing is far from its
 /// origin.
 struct GridView {
-  const Sphere* spheres;  ///< `count` of them, by level and, within one, along a Hilbert curve
-  const Sphere*
-      centred;  ///< the same, relative to `centre`, and one more that meets nothing; not on a device
+  const Sphere* spheres;     ///< `count` of them, by level and, within one, along a Hilbert curve
+  const Sphere* centred;     ///< the same, relative to `centre`, and one that meets nothing; CPU only
   const std::uint32_t* ids;  ///< their indices in the packing
   const Cluster* clusters;
   const Cell* cells;            ///< the hash table, at most half full
