@@ -46,39 +46,45 @@ SurfacePoint pointOf(const PackingBody& body, const SurfaceTree::Hit& hit, const
   return point;
 }
 
-/// Where a ray from inside the solid leaves it; through triangle `known`, if it does.
+/// Where a ray from inside the solid leaves it; through triangle `known` or one near it, if it does.
 bool leave(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
            std::size_t known, SurfacePoint& point) {
   const SurfaceTree& tree = body.shape().surfaceTree();
   const Ray ray(body, from, direction, reach);
   SurfaceTree::Hit hit;
-  const bool again =
-      known != Gap::kNone && tree.castAt(known, ray.from, ray.direction, ray.reach, hit) && hit.distance > 0;
-  if (!again && !tree.cast(ray.from, ray.direction, ray.reach, hit)) return false;
-  point = pointOf(body, hit, from, direction);
-  if (point.facing < kFacing) return false;
+  const auto leaves = [&] {
+    point = pointOf(body, hit, from, direction);
+    return !(point.facing < kFacing);
+  };
+  const bool near = known != Gap::kNone && tree.castNear(known, ray.from, ray.direction, ray.reach, hit) &&
+                    hit.distance > 0 && leaves();
+  if (!near && !(tree.cast(ray.from, ray.direction, ray.reach, ray.direction, hit) && leaves())) return false;
   point.at += direction * body.margin;
   return true;
 }
 
 /// Where the line of a ray enters the solid: ahead of it, or behind if it starts inside; through triangle
-/// `known`, if it does.
+/// `known` or one near it, if it does.
 bool enter(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
-           std::size_t known, SurfacePoint& point) {
+           std::size_t known, const btVector3& opposed, SurfacePoint& point) {
   const SurfaceTree& tree = body.shape().surfaceTree();
   const Ray ray(body, from, direction, reach);
+  const btVector3 towards = -opposed * body.world.getBasis();
   SurfaceTree::Hit hit;
-  if (known != Gap::kNone && tree.castAt(known, ray.from, ray.direction, ray.reach, hit)) {
+  const auto enters = [&] {
     point = pointOf(body, hit, from, direction);
-  } else {
-    if (!tree.cast(ray.from, ray.direction, ray.reach, hit)) return false;
+    return !(point.facing > -kFacing);
+  };
+  const bool near =
+      known != Gap::kNone && tree.castNear(known, ray.from, ray.direction, ray.reach, hit) && enters();
+  if (!near) {
+    if (!tree.cast(ray.from, ray.direction, ray.reach, towards, hit)) return false;
     point = pointOf(body, hit, from, direction);
     if (point.facing > 0) {
       // A line along a face may miss the edge where it enters.
-      NearestTriangle::Result nearest;
-      const bool inside =
-          body.shape().nearestTriangle().find(ray.from, ray.reach, nearest) && nearest.distance < 0;
-      if (!inside || !tree.cast(ray.from, -ray.direction, ray.reach, hit)) return false;
+      SurfaceTree::Nearest nearest;
+      const bool inside = tree.nearest(ray.from, ray.reach, nearest) && nearest.distance < 0;
+      if (!inside || !tree.cast(ray.from, -ray.direction, ray.reach, towards, hit)) return false;
       point = pointOf(body, hit, from, -direction);
       point.facing = -point.facing;
     }
@@ -93,8 +99,8 @@ bool faceAt(const PackingBody& body, const btVector3& at, const btVector3& norma
   const btMatrix3x3& axes = body.world.getBasis();
   // A little inside, where the direction to the face is well defined.
   const btVector3 place = at - normal * (kSunk * size + body.margin);
-  NearestTriangle::Result nearest;
-  return body.shape().nearestTriangle().find((place * axes) / body.scale(), size / body.scale(), nearest) &&
+  SurfaceTree::Nearest nearest;
+  return body.shape().surfaceTree().nearest((place * axes) / body.scale(), size / body.scale(), nearest) &&
          nearest.distance < 0 && (axes * nearest.normal).dot(normal) > kSameFace;
 }
 
@@ -142,7 +148,8 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   return true;
 }
 
-bool SurfaceGauge::nearest(std::size_t index, btVector3& direction) const {
+bool SurfaceGauge::nearest(std::size_t index, btVector3& direction, Gap& gap) const {
+  gap.triangle_a = a_.shape().solid->triangleNear(touches_[index].sphere);
   direction = -touches_[index].normal;
   return true;
 }
@@ -203,7 +210,7 @@ bool PackingGauge::measure(std::size_t index, const btVector3& direction, const 
   const btScalar reach = 2 * (radius + a_.slack + b_.slack);
   SurfacePoint left, entered;
   if (!leave(own, from, way, reach, of_a ? gap.triangle_a : gap.triangle_b, left) ||
-      !enter(other, from - apart, way, reach, of_a ? gap.triangle_b : gap.triangle_a, entered))
+      !enter(other, from - apart, way, reach, of_a ? gap.triangle_b : gap.triangle_a, left.normal, entered))
     return false;
   const btVector3 offset = own.origin() - a_.origin();
   left.at += offset;
@@ -219,7 +226,7 @@ bool PackingGauge::measure(std::size_t index, const btVector3& direction, const 
   return true;
 }
 
-bool PackingGauge::nearest(std::size_t index, btVector3& direction) const {
+bool PackingGauge::nearest(std::size_t index, btVector3& direction, Gap& gap) const {
   const bool of_a = index < count_a_;
   const PackingBody& own = of_a ? a_ : b_;
   const PackingBody& other = of_a ? b_ : a_;
@@ -227,9 +234,11 @@ bool PackingGauge::nearest(std::size_t index, btVector3& direction) const {
   const btMatrix3x3& axes = other.world.getBasis();
   const btVector3 centre = own.origin() + own.centreOf(sphere) - other.origin();
   const btScalar reach = 2 * (own.ownRadius(sphere) + a_.slack + b_.slack);
-  NearestTriangle::Result nearest;
-  if (!other.shape().nearestTriangle().find((centre * axes) / other.scale(), reach / other.scale(), nearest))
+  (of_a ? gap.triangle_a : gap.triangle_b) = own.shape().solid->triangleNear(sphere);
+  SurfaceTree::Nearest nearest;
+  if (!other.shape().surfaceTree().nearest((centre * axes) / other.scale(), reach / other.scale(), nearest))
     return false;
+  if (!nearest.beside) (of_a ? gap.triangle_b : gap.triangle_a) = nearest.triangle;
   direction = (axes * nearest.normal) * btScalar(of_a ? -1 : 1);
   return true;
 }

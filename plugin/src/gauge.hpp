@@ -33,13 +33,13 @@ class Gauge {
   virtual ~Gauge() = default;
   /// At contact `index` of the list that the gauge was made for, along `direction` from A to B (a shape that
   /// is no packing chooses its own), with the line moved sideways by `shift`. False if the line does not pass
-  /// both surfaces near there. The triangles that `gap` comes with are taken if the line passes them; all are
-  /// looked at only where they are kNone, or missed.
+  /// both surfaces near there. The triangles that `gap` comes with, or those around them, are taken if the
+  /// line passes them; all are looked at only where they are kNone, or missed.
   virtual bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                        Gap& gap) const = 0;
   /// The direction from A to B in which the sphere of a contact is nearest to the other solid's surface.
-  /// False if it is too far away to tell.
-  virtual bool nearest(std::size_t index, btVector3& direction) const = 0;
+  /// False if it is too far away to tell. Leaves the triangles near the sphere in `gap`.
+  virtual bool nearest(std::size_t index, btVector3& direction, Gap& gap) const = 0;
   /// How far the faces at a gap go on in direction `towards` (unit), until they end in a sharp edge [m].
   struct Reach {
     btScalar a;
@@ -74,7 +74,7 @@ class SurfaceGauge : public Gauge {
   SurfaceGauge(const PackingBody& a, const std::vector<Touch>& touches) : a_(a), touches_(touches) {}
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                Gap& gap) const override;
-  bool nearest(std::size_t index, btVector3& direction) const override;
+  bool nearest(std::size_t index, btVector3& direction, Gap& gap) const override;
   /// Of the other shape only its distance is known: it is taken as large.
   Reach reach(const Gap&, const btVector3&) const override { return {0, BT_LARGE_FLOAT}; }
   void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
@@ -96,7 +96,7 @@ class PackingGauge : public Gauge {
       : a_(a), b_(b), contacts_(contacts), count_a_(count_a) {}
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                Gap& gap) const override;
-  bool nearest(std::size_t index, btVector3& direction) const override;
+  bool nearest(std::size_t index, btVector3& direction, Gap& gap) const override;
   Reach reach(const Gap& gap, const btVector3& towards) const override;
   void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;

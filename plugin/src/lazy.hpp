@@ -16,10 +16,12 @@ class Lazy {
  public:
   template <typename Make>
   const T& get(const Make& make) const {
-    std::call_once(once_, [&] {
-      value_ = make();
-      made_ = true;
-    });
+    if (!made_.load(std::memory_order_acquire)) {
+      std::call_once(once_, [&] {
+        value_ = make();
+        made_ = true;
+      });
+    }
     return *value_;
   }
   /// Whether it has been asked for.

@@ -25,6 +25,8 @@ void align(const Gauge& gauge, Measured& m) {
   const bool parallel = m.gap.normal_a.dot(m.gap.normal_b) > kParallel;
   if (normal.dot(m.direction) > (parallel ? kAligned : kParallel)) return;
   Gap gap;
+  gap.triangle_a = m.gap.triangle_a;
+  gap.triangle_b = m.gap.triangle_b;
   if (!gauge.measure(m.index, normal, btVector3(0, 0, 0), gap)) return;
   m.direction = normal;
   m.gap = gap;
@@ -33,13 +35,14 @@ void align(const Gauge& gauge, Measured& m) {
 /// Towards the nearest point of the other surface, or, where the surfaces do not oppose each other there, in
 /// the direction of the patch.
 bool measure(const Gauge& gauge, const btVector3& patch_normal, Measured& m) {
+  Gap start;
   const auto measureAlong = [&](const btVector3& direction) {
     m.direction = direction;
-    m.gap = Gap();
+    m.gap = start;
     return gauge.measure(m.index, direction, btVector3(0, 0, 0), m.gap);
   };
   btVector3 nearest;
-  bool found = gauge.nearest(m.index, nearest) && measureAlong(nearest);
+  bool found = gauge.nearest(m.index, nearest, start) && measureAlong(nearest);
   if (gauge.exactB()) return found;
   const bool own = found && opposed(m.gap) && nearest.dot(patch_normal) > kOwnDirection;
   if (!own) found = measureAlong(patch_normal);
@@ -51,12 +54,19 @@ bool measure(const Gauge& gauge, const btVector3& patch_normal, Measured& m) {
 bool measureAgain(const Gauge& gauge, const Candidates::Line& line, Measured& m) {
   if (line.direction.isZero()) return false;
   m.direction = line.direction;
-  if (gauge.exactB()) gauge.nearest(m.index, m.direction);
+  if (gauge.exactB()) gauge.nearest(m.index, m.direction, m.gap);
   m.gap.triangle_a = line.triangle_a;
   m.gap.triangle_b = line.triangle_b;
   if (!gauge.measure(m.index, m.direction, btVector3(0, 0, 0), m.gap)) return false;
   if (!gauge.exactB()) align(gauge, m);
   return true;
+}
+
+/// Too far apart for a contact, until the candidates are searched again. On flat surfaces it is of use all
+/// the same: it tells where faces end.
+bool isFar(const Measured& m, btScalar separation) {
+  const bool curved = m.gap.curvature_a != 0 || m.gap.curvature_b != 0;
+  return curved && (m.gap.on_a - m.gap.on_b).dot(m.direction) < -separation;
 }
 
 /// Whether a corner of a surface is deeper than the place where it was measured.
@@ -87,6 +97,7 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     if (!again) candidates.lines.emplace_back();
     if (!found) continue;
     measured.push_back(m);
+    if (!again && isFar(m, separation)) continue;
     candidates.lines[k] = {m.direction, m.gap.triangle_a, m.gap.triangle_b};
   }
   climb(gauge, measured);

@@ -117,8 +117,20 @@ const SurfaceTree& PackedSolid::surfaceTree() const {
   return surface_tree_.get([this] { return std::make_unique<SurfaceTree>(packing().surface); });
 }
 
-const NearestTriangle& PackedSolid::nearestTriangle() const {
-  return nearest_triangle_.get([this] { return std::make_unique<NearestTriangle>(packing().surface); });
+std::size_t PackedSolid::triangleNear(std::size_t sphere) const {
+  const std::vector<Sphere>& spheres = packing().spheres;
+  const Triangles& known = triangles_near_.get([&] {
+    return std::make_unique<Triangles>(std::make_unique<std::atomic<std::uint32_t>[]>(spheres.size()));
+  });
+  // Several threads may look for one at once, and find the same.
+  std::uint32_t found = known[sphere].load(std::memory_order_relaxed);
+  if (found == 0) {
+    SurfaceTree::Nearest nearest{0, btVector3(0, 0, 0), 0, false};
+    surfaceTree().nearest(centre(spheres[sphere]), BT_LARGE_FLOAT, nearest);
+    found = static_cast<std::uint32_t>(nearest.triangle) + 1;
+    known[sphere].store(found, std::memory_order_relaxed);
+  }
+  return found - 1;
 }
 
 const VertexClimb& PackedSolid::vertexClimb() const {
@@ -129,7 +141,7 @@ PackedSolid::Built PackedSolid::built() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool spheres = std::any_of(prefixes_.begin(), prefixes_.end(),
                                    [](const auto& prefix) { return prefix.second.hasTree(); });
-  return {spheres, surface_tree_.made(), nearest_triangle_.made(), vertex_climb_.made()};
+  return {spheres, surface_tree_.made(), vertex_climb_.made()};
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

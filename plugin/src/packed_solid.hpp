@@ -1,13 +1,13 @@
 // What all shapes of one collision model share.
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
 
 #include "innersphere/collision_model.hpp"
 #include "lazy.hpp"
-#include "nearest_triangle.hpp"
 #include "principal_frame.hpp"
 #include "sphere_tree.hpp"
 #include "surface_tree.hpp"
@@ -54,11 +54,12 @@ class PackedSolid {
   const Prefix& prefixWithin(btScalar gap, const Prefix& most) const;
   /// Only if hasSurface(). In the packing's frame.
   const SurfaceTree& surfaceTree() const;
-  const NearestTriangle& nearestTriangle() const;
+  /// The triangle that is nearest to the centre of a sphere.
+  std::size_t triangleNear(std::size_t sphere) const;
   const VertexClimb& vertexClimb() const;
   /// What has been built so far.
   struct Built {
-    bool sphere_tree, surface_tree, nearest_triangle, vertex_climb;
+    bool sphere_tree, surface_tree, vertex_climb;
   };
   Built built() const;
 
@@ -73,7 +74,9 @@ class PackedSolid {
   mutable std::mutex mutex_;
   mutable std::map<std::size_t, Prefix> prefixes_;
   Lazy<SurfaceTree> surface_tree_;
-  Lazy<NearestTriangle> nearest_triangle_;
+  /// Plus one; 0 until it is asked for.
+  using Triangles = std::unique_ptr<std::atomic<std::uint32_t>[]>;
+  Lazy<Triangles> triangles_near_;
   Lazy<VertexClimb> vertex_climb_;
 };
 

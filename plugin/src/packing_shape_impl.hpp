@@ -19,7 +19,6 @@ struct PackingShape::Impl {
   const Packing& packing() const { return solid->packing(); }
   bool hasSurface() const { return solid->hasSurface(); }
   const SurfaceTree& surfaceTree() const { return solid->surfaceTree(); }
-  const NearestTriangle& nearestTriangle() const { return solid->nearestTriangle(); }
   const VertexClimb& vertexClimb() const { return solid->vertexClimb(); }
   /// By how much volume-true spheres reach out of the boxes below: without a surface they are what collides.
   btScalar bulge() const { return hasSurface() ? btScalar(0) : prefix->largest_bulge; }

@@ -76,7 +76,8 @@ const std::vector<SphereContact>& aimed(const std::vector<SphereContact>& contac
   result = contacts;
   for (std::size_t i = 0; i < result.size(); ++i) {
     btVector3 direction(0, 0, 0);
-    gauge.nearest(i, direction);
+    Gap gap;
+    gauge.nearest(i, direction, gap);
     result[i].area =
         toFloats(direction * btScalar(std::cbrt(contacts[i].volume) * std::cbrt(contacts[i].volume)));
   }

@@ -11,94 +11,160 @@ namespace {
 constexpr btScalar kSmooth = btScalar(0.866);  // cos 30 degrees
 /// Normals that differ by less are those of a flat face, but for rounding [rad].
 constexpr btScalar kFlat = btScalar(1e-4);
+/// How far beyond an edge, in weights, a line still meets a triangle: no rounding leaves a gap between two.
+constexpr btScalar kBeyond = btScalar(1e-4);
 /// Instead of the triangle across a sharp edge, or one that no other triangle shares.
 constexpr std::uint32_t kSharp = ~std::uint32_t(0), kSeam = kSharp - 1;
-/// Triangles that are crossed to look for one, for the bulge of a triangle and for where a face ends.
-constexpr int kCrossed = 4;
-constexpr int kCrossedFar = 12;
-
-/// Twice the area of a triangle along its normal.
-btVector3 areaVector(const Surface& surface, std::size_t t) {
-  const auto& triangle = surface.triangles[t];
-  const btVector3 a = toBullet(surface.vertices[triangle[0]]);
-  return (toBullet(surface.vertices[triangle[1]]) - a).cross(toBullet(surface.vertices[triangle[2]]) - a);
-}
+/// Edges that are crossed to look for one, for the bulge of a triangle and for where a face ends.
+constexpr std::uint32_t kCrossed = 4;
+constexpr std::uint32_t kCrossedFar = 12;
+/// Triangles that are looked at on the way to the one that a line meets.
+constexpr int kNearby = 8;
 
 btVector3 unit(const btVector3& v) {
   const btScalar length = v.length();
   return length > 0 ? v / length : btVector3(0, 0, 0);
 }
 
+constexpr std::size_t next(std::size_t k) {
+  return k == 2 ? 0 : k + 1;
+}
+
 }  // namespace
 
-SmoothNormals::SmoothNormals(const Surface& surface)
-    : surface_(surface),
-      corners_(3 * surface.triangles.size()),
-      across_(3 * surface.triangles.size(), kSeam) {
+SmoothNormals::SmoothNormals(const Surface& surface) : facets_(surface.triangles.size()) {
+  setCorners(surface);
+  setNormals(surface);
+  countToSharp();
+}
+
+void SmoothNormals::setCorners(const Surface& surface) {
+  for (std::size_t t = 0; t < facets_.size(); ++t) {
+    Facet& facet = facets_[t];
+    for (std::size_t k = 0; k < 3; ++k)
+      facet.corners[k] = toBullet(surface.vertices[surface.triangles[t][k]]);
+    const btVector3 normal = (facet.corners[1] - facet.corners[0]).cross(facet.corners[2] - facet.corners[0]);
+    facet.face = unit(normal);
+    if (facet.face.isZero()) continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      facet.inwards[k] = facet.face.cross(facet.corners[next(k)] - facet.corners[k]) / normal.length();
+  }
+}
+
+void SmoothNormals::setNormals(const Surface& surface) {
   std::vector<std::vector<std::uint32_t>> around(surface.vertices.size());
-  std::vector<btVector3> faces(surface.triangles.size());
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    faces[t] = unit(areaVector(surface, t));
+  for (std::size_t t = 0; t < facets_.size(); ++t) {
     for (std::uint32_t v : surface.triangles[t]) around[v].push_back(static_cast<std::uint32_t>(t));
   }
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
+  for (std::size_t t = 0; t < facets_.size(); ++t) {
+    Facet& facet = facets_[t];
+    for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = surface.triangles[t][k];
+      facet.across[k] = kSeam;
       btVector3 sum(0, 0, 0);
       for (std::uint32_t other : around[v]) {
         const auto& triangle = surface.triangles[other];
-        const std::uint32_t next = surface.triangles[t][(k + 1) % 3];
-        const bool smooth = !(faces[t].dot(faces[other]) < kSmooth);
-        if (other != t && std::find(triangle.begin(), triangle.end(), next) != triangle.end())
-          across_[3 * t + k] = smooth ? other : kSharp;
+        const btVector3* corners = facets_[other].corners;
+        const bool smooth = !(facet.face.dot(facets_[other].face) < kSmooth);
+        if (other != t &&
+            std::find(triangle.begin(), triangle.end(), surface.triangles[t][next(k)]) != triangle.end())
+          facet.across[k] = smooth ? other : kSharp;
         if (!smooth) continue;
         // Weighted by the angle at the corner, so that it does not matter how faces are cut.
-        const int at = triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
-        const btVector3 p = toBullet(surface.vertices[v]);
-        const btVector3 e1 = unit(toBullet(surface.vertices[triangle[(at + 1) % 3]]) - p);
-        const btVector3 e2 = unit(toBullet(surface.vertices[triangle[(at + 2) % 3]]) - p);
-        sum += faces[other] * btAcos(btClamped(e1.dot(e2), btScalar(-1), btScalar(1)));
+        const std::size_t at = triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
+        const btVector3 e1 = unit(corners[next(at)] - corners[at]);
+        const btVector3 e2 = unit(corners[next(next(at))] - corners[at]);
+        sum += facets_[other].face * btAcos(btClamped(e1.dot(e2), btScalar(-1), btScalar(1)));
       }
-      corners_[3 * t + k] = toFloats(unit(sum));
+      facet.normals[k] = unit(sum);
+    }
+    facet.curvature = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const btVector3 turn = facet.normals[next(k)] - facet.normals[k];
+      const btVector3 edge = facet.corners[next(k)] - facet.corners[k];
+      // The parabola with these normals along the edge; on a ball that is its height over the triangle, to
+      // second order.
+      facet.bulges[k] = turn.dot(edge) / 2;
+      if (turn.length() < kFlat || !(edge.length2() > 0)) continue;
+      const btScalar along = turn.dot(edge) / edge.length2();
+      if (btFabs(along) > btFabs(facet.curvature)) facet.curvature = along;
     }
   }
 }
 
-SmoothNormals::Place SmoothNormals::at(std::size_t t, const btVector3& point) const {
-  const auto& triangle = surface_.triangles[t];
-  btVector3 v[3], n[3];
-  for (int k = 0; k < 3; ++k) {
-    v[k] = toBullet(surface_.vertices[triangle[k]]);
-    n[k] = toBullet(corners_[3 * t + k]);
+void SmoothNormals::countToSharp() {
+  for (Facet& facet : facets_) {
+    const bool sharp = std::find(facet.across, facet.across + 3, kSharp) != facet.across + 3;
+    facet.to_sharp = sharp ? 1 : kCrossedFar + 1;
   }
-  const btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
-  btScalar weight[3];
+  for (std::uint32_t count = 1; count < kCrossedFar; ++count) {
+    for (Facet& facet : facets_) {
+      for (const std::uint32_t other : facet.across) {
+        if (other < kSeam && facets_[other].to_sharp == count)
+          facet.to_sharp = std::min(facet.to_sharp, count + 1);
+      }
+    }
+  }
+}
+
+/// False if the line is parallel to the triangle's plane.
+bool SmoothNormals::crossPlane(const Facet& facet, const btVector3& from, const btVector3& direction,
+                               Crossing& crossing) {
+  const btScalar along = facet.face.dot(direction);
+  if (along == 0) return false;
+  crossing.distance = facet.face.dot(facet.corners[0] - from) / along;
+  const btVector3 at = from + direction * crossing.distance;
+  // Each corner's is the height over the edge across.
+  for (std::size_t k = 0; k < 3; ++k)
+    crossing.weights[k] = facet.inwards[next(k)].dot(at - facet.corners[next(k)]);
+  return true;
+}
+
+bool SmoothNormals::cross(std::size_t t, const btVector3& from, const btVector3& direction,
+                          Crossing& crossing) const {
+  if (!crossPlane(facets_[t], from, direction, crossing)) return false;
+  const std::array<btScalar, 3>& w = crossing.weights;
+  return w[0] > -kBeyond && w[1] > -kBeyond && w[2] > -kBeyond;
+}
+
+bool SmoothNormals::crossNear(std::size_t& triangle, const btVector3& from, const btVector3& direction,
+                              Crossing& crossing) const {
+  std::size_t t = triangle;
+  for (int i = 0; i < kNearby; ++i) {
+    if (!crossPlane(facets_[t], from, direction, crossing)) return false;
+    const std::array<btScalar, 3>& w = crossing.weights;
+    const std::size_t corner = w[0] < w[1] ? (w[0] < w[2] ? 0 : 2) : (w[1] < w[2] ? 1 : 2);
+    if (w[corner] > -kBeyond) {
+      triangle = t;
+      return true;
+    }
+    // Over the edge that it is furthest beyond.
+    t = facets_[t].across[next(corner)];
+    if (t == kSharp || t == kSeam) return false;
+  }
+  return false;
+}
+
+SmoothNormals::Place SmoothNormals::at(std::size_t t, const Crossing& crossing) const {
+  const Facet& facet = facets_[t];
   btVector3 sum(0, 0, 0);
-  for (int k = 0; k < 3; ++k) {
-    weight[k] = (v[(k + 1) % 3] - point).cross(v[(k + 2) % 3] - point).dot(normal) / normal.length2();
-    sum += n[k] * weight[k];
-  }
-  // The parabola with these normals along each edge; on a ball that is its height over the triangle, to
-  // second order.
   btScalar bulge = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int next = (k + 1) % 3;
-    bulge += weight[k] * weight[next] * (n[next] - n[k]).dot(v[next] - v[k]) / 2;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum += facet.normals[k] * crossing.weights[k];
+    bulge += crossing.weights[k] * crossing.weights[next(k)] * facet.bulges[k];
   }
   return {unit(sum), bulge};
 }
 
 bool SmoothNormals::isPastSharpEdge(std::size_t t, const btVector3& point) const {
-  for (int i = 0; i < kCrossed; ++i) {
-    btVector3 v[3];
-    for (int k = 0; k < 3; ++k) v[k] = toBullet(surface_.vertices[surface_.triangles[t][k]]);
-    const btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
+  for (std::uint32_t i = 0; i + facets_[t].to_sharp <= kCrossed; ++i) {
+    const Facet& facet = facets_[t];
     std::size_t edge = 3;
     for (std::size_t k = 0; k < 3 && edge == 3; ++k) {
-      if ((v[(k + 1) % 3] - v[k]).cross(point - v[k]).dot(normal) < 0) edge = k;
+      if (facet.inwards[k].dot(point - facet.corners[k]) < 0) edge = k;
     }
     if (edge == 3) return false;
-    t = across_[3 * t + edge];
+    t = facet.across[edge];
     if (t == kSharp || t == kSeam) return t == kSharp;
   }
   return false;
@@ -108,19 +174,16 @@ btScalar SmoothNormals::untilSharpEdge(std::size_t t, const btVector3& point, co
                                        btScalar farthest) const {
   btVector3 at = point;
   btScalar way = 0;
-  for (int i = 0; i < kCrossedFar && way < farthest; ++i) {
-    btVector3 v[3];
-    for (int k = 0; k < 3; ++k) v[k] = toBullet(surface_.vertices[surface_.triangles[t][k]]);
-    const btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
-    const btVector3 along = towards - normal * towards.dot(normal);
+  for (std::uint32_t i = 0; i + facets_[t].to_sharp <= kCrossedFar && way < farthest; ++i) {
+    const Facet& facet = facets_[t];
+    const btVector3 along = towards - facet.face * towards.dot(facet.face);
     // The edge by which the line along the triangle leaves it.
     std::size_t edge = 3;
     btScalar nearest = BT_LARGE_FLOAT;
     for (std::size_t k = 0; k < 3; ++k) {
-      const btVector3 inwards = normal.cross(v[(k + 1) % 3] - v[k]);
-      const btScalar speed = -along.dot(inwards);
+      const btScalar speed = -along.dot(facet.inwards[k]);
       if (!(speed > 0)) continue;
-      const btScalar time = btMax(btScalar(0), (at - v[k]).dot(inwards) / speed);
+      const btScalar time = btMax(btScalar(0), (at - facet.corners[k]).dot(facet.inwards[k]) / speed);
       if (time < nearest) {
         nearest = time;
         edge = k;
@@ -129,26 +192,11 @@ btScalar SmoothNormals::untilSharpEdge(std::size_t t, const btVector3& point, co
     if (edge == 3) return farthest;
     way += nearest * along.length();
     at += along * nearest;
-    t = across_[3 * t + edge];
+    t = facet.across[edge];
     if (t == kSharp) return btMin(way, farthest);
     if (t == kSeam) break;
   }
   return farthest;
-}
-
-btScalar SmoothNormals::curvature(std::size_t t) const {
-  const auto& triangle = surface_.triangles[t];
-  btScalar most = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int next = (k + 1) % 3;
-    const btVector3 turn = toBullet(corners_[3 * t + next]) - toBullet(corners_[3 * t + k]);
-    const btVector3 edge =
-        toBullet(surface_.vertices[triangle[next]]) - toBullet(surface_.vertices[triangle[k]]);
-    if (turn.length() < kFlat || !(edge.length2() > 0)) continue;
-    const btScalar along = turn.dot(edge) / edge.length2();
-    if (btFabs(along) > btFabs(most)) most = along;
-  }
-  return most;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

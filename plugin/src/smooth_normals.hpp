@@ -15,17 +15,33 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Neighbouring triangles that meet at less than 30 degrees are taken as one curved surface: its normal turns
-/// smoothly across them. Sharper edges stay sharp, and flat faces exactly flat.
+/// smoothly across them. Sharper edges stay sharp, and flat faces exactly flat. All that is known of a
+/// triangle before a ray comes is kept with it. Const members are safe to call from several threads at once.
 class SmoothNormals {
  public:
   explicit SmoothNormals(const Surface& surface);
 
+  /// Where a line meets a triangle.
+  struct Crossing {
+    btScalar distance;                ///< [m] along the line, negative behind its start
+    std::array<btScalar, 3> weights;  ///< of the triangle's corners, sum 1
+  };
+  /// False if the line misses the triangle. `direction` is a unit vector.
+  bool cross(std::size_t triangle, const btVector3& from, const btVector3& direction,
+             Crossing& crossing) const;
+  /// The same for triangles near the given one, on the same side of sharp edges: sets it to the one that is
+  /// met.
+  bool crossNear(std::size_t& triangle, const btVector3& from, const btVector3& direction,
+                 Crossing& crossing) const;
+
+  /// Of the curved surface, where a line crosses a triangle.
   struct Place {
     btVector3 normal;  ///< unit
     btScalar bulge;    ///< how far the curved surface stands out of the triangle there [m]
   };
-  /// At a point of a triangle.
-  Place at(std::size_t triangle, const btVector3& point) const;
+  Place at(std::size_t triangle, const Crossing& crossing) const;
+  /// Of the triangle itself: unit, out of the solid.
+  const btVector3& face(std::size_t triangle) const { return facets_[triangle].face; }
   /// Whether a sharp edge lies between a triangle and a point over its plane, not far away.
   bool isPastSharpEdge(std::size_t triangle, const btVector3& point) const;
   /// How far the surface goes on from a point of a triangle in a direction (unit), until it ends in a sharp
@@ -34,12 +50,28 @@ class SmoothNormals {
                           btScalar farthest) const;
   /// Of the surface across a triangle [1/m]: the curvature along that edge that shows most of it, positive
   /// where the solid is convex, exactly 0 where it is flat.
-  btScalar curvature(std::size_t triangle) const;
+  btScalar curvature(std::size_t triangle) const { return facets_[triangle].curvature; }
 
  private:
-  const Surface& surface_;
-  std::vector<std::array<float, 3>> corners_;  ///< three normals a triangle
-  std::vector<std::uint32_t> across_;          ///< triangles beyond its edges, from corner k to the next
+  /// A triangle. Its edge k goes from corner k to the next.
+  struct Facet {
+    btVector3 corners[3];
+    btVector3 inwards[3];  ///< along the triangle, from edge k; their products are weights [1/m]
+    btVector3 normals[3];  ///< of the curved surface at the corners
+    btVector3 face;        ///< unit; zero if the triangle has no area
+    btScalar curvature;
+    btScalar bulges[3];       ///< of the edges, at weights of 1 of both ends [m]
+    std::uint32_t across[3];  ///< triangles beyond the edges
+    std::uint32_t to_sharp;   ///< how many edges lead across a sharp one, at least; a few more than looked at
+                              ///< if none is near
+  };
+  void setCorners(const Surface& surface);
+  void setNormals(const Surface& surface);
+  void countToSharp();
+  static bool crossPlane(const Facet& facet, const btVector3& from, const btVector3& direction,
+                         Crossing& crossing);
+
+  std::vector<Facet> facets_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

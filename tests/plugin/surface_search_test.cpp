@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "nearest_triangle.hpp"
+#include "surface_tree.hpp"
 #include "test_packings.hpp"
 #include "vertex_climb.hpp"
 
@@ -34,9 +34,9 @@ double boxDistance(const btVector3& p, double normal[3]) {
   return length2 > 0 ? std::sqrt(length2) : deepest;
 }
 
-TEST(NearestTriangle, IsTheDistanceOfABox) {
+TEST(SurfaceTree, IsTheDistanceOfABox) {
   const Packing box = latticeBox(kSize, 1);
-  const NearestTriangle nearest(box.surface);
+  const SurfaceTree tree(box.surface);
   std::mt19937 rng(5);
   std::uniform_real_distribution<double> uniform(-2, 2);
   for (int i = 0; i < 2000; ++i) {
@@ -44,8 +44,8 @@ TEST(NearestTriangle, IsTheDistanceOfABox) {
     double normal[3];
     const double distance = boxDistance(p, normal);
     if (std::fabs(distance) < 1e-3) continue;  // too near for a direction
-    NearestTriangle::Result found;
-    ASSERT_TRUE(nearest.find(p, 10, found));
+    SurfaceTree::Nearest found;
+    ASSERT_TRUE(tree.nearest(p, 10, found));
     EXPECT_NEAR(found.distance, distance, 1e-5);
     // Inside there are places between two faces; there any of the two will do.
     const btVector3 foot = p - found.normal * found.distance;
@@ -57,12 +57,12 @@ TEST(NearestTriangle, IsTheDistanceOfABox) {
   }
 }
 
-TEST(NearestTriangle, LooksNoFurtherThanItsReach) {
+TEST(SurfaceTree, LooksNoFurtherThanItsReach) {
   const Packing box = latticeBox(kSize, 1);
-  const NearestTriangle nearest(box.surface);
-  NearestTriangle::Result found;
-  EXPECT_FALSE(nearest.find(btVector3(btScalar(0.8), 0, 0), btScalar(0.29), found));
-  EXPECT_TRUE(nearest.find(btVector3(btScalar(0.8), 0, 0), btScalar(0.31), found));
+  const SurfaceTree tree(box.surface);
+  SurfaceTree::Nearest found;
+  EXPECT_FALSE(tree.nearest(btVector3(btScalar(0.8), 0, 0), btScalar(0.29), found));
+  EXPECT_TRUE(tree.nearest(btVector3(btScalar(0.8), 0, 0), btScalar(0.31), found));
 }
 
 TEST(VertexClimb, FindsTheHighestVertexOfAConvexSolid) {

@@ -10,7 +10,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 class DistanceSurface : public OtherSurface {
  public:
-  void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) final;
+  void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override;
   bool touchAgain(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) final;
 
  protected:

@@ -14,9 +14,9 @@ bool faceOver(const PackingBody& body, const Touch& touch, btVector3& normal) {
   const btMatrix3x3& axes = body.world.getBasis();
   const btScalar sunk = kSunk * body.ownRadius(touch.sphere) + body.margin;
   const btVector3 place = body.centreOf(touch.sphere) - touch.normal * (touch.distance - sunk);
-  NearestTriangle::Result nearest;
-  if (!body.shape().nearestTriangle().find((place * axes) / body.scale(),
-                                           2 * body.reach(touch.sphere) / body.scale(), nearest))
+  SurfaceTree::Nearest nearest;
+  if (!body.shape().surfaceTree().nearest((place * axes) / body.scale(),
+                                          2 * body.reach(touch.sphere) / body.scale(), nearest))
     return false;
   normal = axes * nearest.normal;
   return nearest.distance < 0;
