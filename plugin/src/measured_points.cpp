@@ -89,6 +89,9 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   const Candidates::OfPatch& patch = candidates.patches[p];
   measured.clear();
   const bool again = patch.end <= candidates.lines.size();
+  Candidates::Line deepest_line;
+  std::size_t deepest = 0;
+  btScalar most = 0;
   for (std::size_t k = p == 0 ? 0 : candidates.patches[p - 1].end; k < patch.end; ++k) {
     Measured m;
     m.index = candidates.indices[k];
@@ -97,9 +100,17 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     if (!again) candidates.lines.emplace_back();
     if (!found) continue;
     measured.push_back(m);
-    if (!again && isFar(m, separation)) continue;
-    candidates.lines[k] = {m.direction, m.gap.triangle_a, m.gap.triangle_b};
+    const Candidates::Line line{m.direction, m.gap.triangle_a, m.gap.triangle_b};
+    const btScalar depth = (m.gap.on_a - m.gap.on_b).dot(m.direction);
+    if (measured.size() == 1 || depth > most) {
+      most = depth;
+      deepest = k;
+      deepest_line = line;
+    }
+    if (again || !isFar(m, separation)) candidates.lines[k] = line;
   }
+  // From there the climb to the deepest point starts.
+  if (!measured.empty()) candidates.lines[deepest] = deepest_line;
   climb(gauge, measured);
   const ContactNormal normals(measured, gauge);
   const std::size_t first = found.size();
