@@ -9,8 +9,10 @@ namespace {
 /// A surface that is met at a flatter angle than 30 degrees is the side of the solid, not the face in
 /// contact.
 constexpr btScalar kFacing = btScalar(0.5);
-/// Normals within 5 degrees are those of one face; a place this deep, in spheres, is under it.
+/// Normals within 5 degrees are those of one flat face, within 15 degrees of one that bends: a corner may be
+/// over it some way from where it was measured. A place this deep, in spheres, is under it.
 constexpr btScalar kSameFace = btScalar(0.996);
+constexpr btScalar kSameBentFace = btScalar(0.966);
 constexpr btScalar kSunk = btScalar(0.1);
 constexpr std::uint64_t kCornerId = std::uint64_t(1) << 62;
 
@@ -101,7 +103,7 @@ bool faceAt(const PackingBody& body, const btVector3& at, const btVector3& norma
   const btVector3 place = at - normal * (kSunk * size + body.margin);
   SurfaceTree::Nearest nearest;
   return body.shape().surfaceTree().nearest((place * axes) / body.scale(), size / body.scale(), nearest) &&
-         nearest.distance < 0 && (axes * nearest.normal).dot(normal) > kSameFace;
+         nearest.distance < 0 && (axes * nearest.normal).dot(normal) > kSameBentFace;
 }
 
 /// The face with about this normal that a place is over or under, if there is one.
