@@ -45,9 +45,9 @@ TEST(Thread, TouchesAsTheHelixSays) {
   btRigidBody& bolt = world.add(bolt_shape, 0, btVector3(0, 0, 0));
   bolt.setWorldTransform(bolt_shape->principalTransform().inverse());
   btRigidBody& nut = world.add(nut_shape, 1, btVector3(0, 0, 0));
-  // Half a step of the mesh is a 72nd of a turn.
-  for (int step = 0; step < 48; step += 5) {
-    const double angle = 2 * M_PI * step / 72;
+  // A 72nd of a turn is half a step of the mesh.
+  for (int step = 0; step < 240; ++step) {
+    const double angle = 2 * M_PI * 0.2 * step / 72;
     // From where the flanks touch, if the clearance is taken up on one side.
     for (const double lowered : {-0.0005, 0.0002, 0.0005}) {
       SCOPED_TRACE("step " + std::to_string(step) + ", lowered by " + std::to_string(lowered));
