@@ -98,12 +98,11 @@ bool enter(const PackingBody& body, const btVector3& from, const btVector3& dire
 
 /// Whether a face with this normal is at a place. `size` is that of the things looked at.
 bool faceAt(const PackingBody& body, const btVector3& at, const btVector3& normal, btScalar size) {
-  const btMatrix3x3& axes = body.world.getBasis();
   // A little inside, where the direction to the face is well defined.
   const btVector3 place = at - normal * (kSunk * size + body.margin);
   SurfaceTree::Nearest nearest;
-  return body.shape().surfaceTree().nearest((place * axes) / body.scale(), size / body.scale(), nearest) &&
-         nearest.distance < 0 && (axes * nearest.normal).dot(normal) > kSameBentFace;
+  return body.nearest(place, size, nearest) && nearest.distance < 0 &&
+         nearest.normal.dot(normal) > kSameBentFace;
 }
 
 /// The face with about this normal that a place is over or under, if there is one.
@@ -233,15 +232,13 @@ bool PackingGauge::nearest(std::size_t index, btVector3& direction, Gap& gap) co
   const PackingBody& own = of_a ? a_ : b_;
   const PackingBody& other = of_a ? b_ : a_;
   const std::size_t sphere = contacts_[index].sphere;
-  const btMatrix3x3& axes = other.world.getBasis();
   const btVector3 centre = own.origin() + own.centreOf(sphere) - other.origin();
   const btScalar reach = 2 * (own.ownRadius(sphere) + a_.slack + b_.slack);
   (of_a ? gap.triangle_a : gap.triangle_b) = own.shape().solid->triangleNear(sphere);
   SurfaceTree::Nearest nearest;
-  if (!other.shape().surfaceTree().nearest((centre * axes) / other.scale(), reach / other.scale(), nearest))
-    return false;
+  if (!other.nearest(centre, reach, nearest)) return false;
   if (!nearest.beside) (of_a ? gap.triangle_b : gap.triangle_a) = nearest.triangle;
-  direction = (axes * nearest.normal) * btScalar(of_a ? -1 : 1);
+  direction = nearest.normal * btScalar(of_a ? -1 : 1);
   return true;
 }
 

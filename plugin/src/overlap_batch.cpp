@@ -146,8 +146,8 @@ OverlapBatch::Age OverlapBatch::ageOf(const PackingContact& contact, const Packi
   // Also if the bodies have become faster: contacts are wanted from further away then.
   const Measure& measure = *contact.measure;
   const Age age = contact.memory.ageAt({a.transform, b.transform}, a.packing->getAngularMotionDisc(),
-                                       b.packing->getAngularMotionDisc(), neededSeparation(contact),
-                                       measure.separation, measure.spacing);
+                                       b.packing->getAngularMotionDisc(), contact.needed, measure.separation,
+                                       measure.spacing);
   const bool same = contact.a.transform == a.transform && contact.b.transform == b.transform;
   const bool keeps = measure.on_surfaces && !contact.deep;
   return keeps || same ? age : Age::stale;
@@ -179,16 +179,16 @@ void OverlapBatch::lookAt(PackingContact& contact, btScalar time_step) {
 }
 
 void OverlapBatch::place(PackingContact& contact, const PackingSide& a, const PackingSide& b) {
+  contact.needed = neededSeparation(contact);
   contact.age = ageOf(contact, a, b);
   contact.a = a;
   contact.b = b;
-  contact.needed = neededSeparation(contact);
   if (contact.age == Age::current) {
     contact.memory.carryTo(contact.placed(), *a.packing, contact.measure->spacing);
     return;
   }
   contact.valid = false;
-  if (contact.age == Age::stale) contact.measure.emplace(measureOf(contact));
+  if (contact.age == Age::stale) contact.measure.emplace(options_, *a.packing, *b.packing, contact.needed);
 }
 
 void OverlapBatch::updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b) {
@@ -270,10 +270,6 @@ QueryOptions OverlapBatch::optionsOf(Pass pass) const {
 
 btScalar OverlapBatch::neededSeparation(const PackingContact& contact) const {
   return btMax(contact.separation, sweepOf(*contact.a.object, *contact.b.object, contact.time_step));
-}
-
-Measure OverlapBatch::measureOf(const PackingContact& contact) const {
-  return Measure(options_, *contact.a.packing, *contact.b.packing, neededSeparation(contact));
 }
 
 PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) const {

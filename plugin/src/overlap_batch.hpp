@@ -38,7 +38,7 @@ struct PackingContact {
   bool near = false;                                   ///< enlarged spheres overlap
   bool touching = false;                               ///< the surfaces are near each other
   bool deep = false;                                   ///< they are not, and yet the solids overlap
-  btScalar needed = 0;                                 ///< patches are right for gaps up to this [m]
+  btScalar needed = 0;  ///< patches are, or will be, right for gaps up to this [m]
   Look look;
 };
 
@@ -102,7 +102,6 @@ class OverlapBatch {
   bool takesPart(Pass pass, const PackingContact& contact) const;
   QueryOptions optionsOf(Pass pass) const;
   btScalar neededSeparation(const PackingContact& contact) const;
-  Measure measureOf(const PackingContact& contact) const;
   PairQuery makeQuery(Pass pass, const PackingContact& contact) const;
   void takeResult(Pass pass, std::size_t index, PackingContact& contact) const;
   void measureAgain();

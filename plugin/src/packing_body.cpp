@@ -26,5 +26,13 @@ Placement PackingBody::placement() const {
   return p;
 }
 
+bool PackingBody::nearest(const btVector3& place, btScalar reach, SurfaceTree::Nearest& nearest) const {
+  const btMatrix3x3& axes = world.getBasis();
+  if (!impl->surfaceTree().nearest((place * axes) / scale(), reach / scale(), nearest)) return false;
+  nearest.distance *= scale();
+  nearest.normal = axes * nearest.normal;
+  return true;
+}
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -39,6 +39,10 @@ struct PackingBody {
 
   Placement placement() const;
 
+  /// Of the solid's surface, without the margin: `place` relative to origin(), axes of the world, and the
+  /// normal of the result, too. False if the surface is further away than `reach` [m].
+  bool nearest(const btVector3& place, btScalar reach, SurfaceTree::Nearest& nearest) const;
+
   const PackingShape::Impl* impl;
   const Prefix* prefix;
   btTransform world;             ///< from the packing's frame, scaled, to the world

@@ -43,18 +43,7 @@ class EdgeBelow : public testing::TestWithParam<std::tuple<std::string, double>>
     world.add(block(), 0, btVector3(0, 0, btScalar(-reach)), turn);
     world.add(makeShape(latticeBox({2, 2, 2}, 16)), 1, btVector3(btScalar(0.1), 0, btScalar(1 - kDepth)));
     world.world.performDiscreteCollisionDetection();
-    std::vector<btManifoldPoint> points;
-    for (int m = 0; m < world.dispatcher.getNumManifolds(); ++m) {
-      const btPersistentManifold& manifold = *world.dispatcher.getManifoldByIndexInternal(m);
-      const bool cube_is_a = manifold.getBody0() == world.bodies.back().get();
-      for (int i = 0; i < manifold.getNumContacts(); ++i) {
-        points.push_back(manifold.getContactPoint(i));
-        if (!cube_is_a) points.back().m_normalWorldOnB *= -1;
-      }
-    }
-    std::sort(points.begin(), points.end(),
-              [](const auto& p, const auto& q) { return p.getDistance() < q.getDistance(); });
-    return points;
+    return world.contactsOfLast();
   }
 
   btTriangleMesh mesh_;

@@ -31,21 +31,8 @@ class EdgeContact : public testing::TestWithParam<std::tuple<std::string, double
     addGround();
     world.add(makeShape(latticeBox({1, 1, 1}, 8)), 1, btVector3(0, 0, btScalar(reach - depth)), turn);
     world.world.performDiscreteCollisionDetection();
-    std::vector<btManifoldPoint> points;
-    for (int m = 0; m < dispatcher().getNumManifolds(); ++m) {
-      const btPersistentManifold& manifold = *dispatcher().getManifoldByIndexInternal(m);
-      const bool cube_is_a = manifold.getBody0() == world.bodies.back().get();
-      for (int i = 0; i < manifold.getNumContacts(); ++i) {
-        points.push_back(manifold.getContactPoint(i));
-        if (!cube_is_a) points.back().m_normalWorldOnB *= -1;
-      }
-    }
-    std::sort(points.begin(), points.end(),
-              [](const auto& p, const auto& q) { return p.getDistance() < q.getDistance(); });
-    return points;
+    return world.contactsOfLast();
   }
-
-  btCollisionDispatcher& dispatcher() { return world.dispatcher; }
 
   TestWorld world;
 };

@@ -92,6 +92,21 @@ double TestWorld::deepestContact() const {
   return deepest;
 }
 
+std::vector<btManifoldPoint> TestWorld::contactsOfLast() const {
+  std::vector<btManifoldPoint> points;
+  for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+    const bool last_is_a = manifold.getBody0() == bodies.back().get();
+    for (int i = 0; i < manifold.getNumContacts(); ++i) {
+      points.push_back(manifold.getContactPoint(i));
+      if (!last_is_a) points.back().m_normalWorldOnB *= -1;
+    }
+  }
+  std::sort(points.begin(), points.end(),
+            [](const auto& p, const auto& q) { return p.getDistance() < q.getDistance(); });
+  return points;
+}
+
 double tiltDegrees(const btRigidBody& body) {
   double cosine = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -29,6 +29,8 @@ class TestWorld {
   double kineticEnergy() const;
   int contactCount() const;
   double deepestContact() const;  ///< [m], positive
+  /// Of the body that was added last, deepest first; normals point to it.
+  std::vector<btManifoldPoint> contactsOfLast() const;
 
   btDefaultCollisionConfiguration configuration;
   const std::unique_ptr<btCollisionDispatcher> owned_dispatcher;

@@ -22,7 +22,7 @@ class BoxSurface : public DistanceSurface {
     if (length > 0) {
       nearest.distance = length;
       nearest.normal = outside / length;
-      nearest.on_edge = length > outside[outside.maxAxis()];
+      if (length > outside[outside.maxAxis()]) nearest.edged = &box_;
     } else {
       const int axis = beyond.maxAxis();
       nearest.distance = beyond[axis];
@@ -33,10 +33,6 @@ class BoxSurface : public DistanceSurface {
       if (p[i] < 0) nearest.normal[i] = -nearest.normal[i];
     }
     return true;
-  }
-
-  bool isOutermost(const btVector3& p, const btVector3& direction, btScalar tolerance) const override {
-    return DistanceSurface::isOutermost(box_, p, direction, tolerance);
   }
 
   const btBoxShape& box_;

@@ -25,12 +25,8 @@ class ConvexSurface : public DistanceSurface {
       return false;
     nearest.distance = distance;
     nearest.normal = results.normal.normalized();
-    nearest.on_edge = true;
+    nearest.edged = &convex_;
     return true;
-  }
-
-  bool isOutermost(const btVector3& p, const btVector3& direction, btScalar tolerance) const override {
-    return DistanceSurface::isOutermost(convex_, p, direction, tolerance);
   }
 
   btScalar lowerBound(const btVector3& p) const override { return boxDistance(convex_, p); }

@@ -39,22 +39,15 @@ bool DistanceSurface::touchOne(const PackingBody& body, const btTransform& world
   touch.normal = world.getBasis() * found.normal;
   touch.curvature = found.curvature;
   touch.aside.setZero();
-  if (found.on_edge && found.distance > 0) {
-    layFaceOn(body, touch, [&](const btVector3& edge, const btVector3& direction, btScalar tolerance) {
+  if (found.edged != nullptr && found.distance > 0) {
+    layFaceOn(body, touch, [&](const btVector3& edge, const btVector3& out, btScalar tolerance) {
       const btTransform from_world = world.inverse();
-      return isOutermost(from_world(edge + body.origin()), from_world.getBasis() * direction, tolerance);
+      const btVector3 direction = from_world.getBasis() * out;
+      const btVector3 outermost = found.edged->localGetSupportingVertex(direction);
+      return (outermost - from_world(edge + body.origin())).dot(direction) < tolerance;
     });
   }
   return true;
-}
-
-bool DistanceSurface::isOutermost(const btVector3&, const btVector3&, btScalar) const {
-  return false;
-}
-
-bool DistanceSurface::isOutermost(const btConvexShape& shape, const btVector3& p, const btVector3& direction,
-                                  btScalar tolerance) {
-  return (shape.localGetSupportingVertex(direction) - p).dot(direction) < tolerance;
 }
 
 bool DistanceSurface::boxIsAsBefore(const btCollisionShape& shape) {

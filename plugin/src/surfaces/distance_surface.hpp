@@ -18,17 +18,13 @@ class DistanceSurface : public OtherSurface {
     btScalar distance;       ///< [m], negative inside
     btVector3 normal;        ///< unit, outwards
     btScalar curvature = 0;  ///< [1/m]
-    bool on_edge = false;    ///< the surface may have an edge or a corner there
+    /// The shape, if it may have an edge or a corner there.
+    const btConvexShape* edged = nullptr;
   };
   /// In the frame of the shape. False where the distance is unknown; the point is then taken as far away.
   virtual bool nearest(const btVector3& p, Nearest& nearest) const = 0;
   /// At most the distance of p, and cheaper; only its comparison with a radius matters.
   virtual btScalar lowerBound(const btVector3& p) const;
-  /// Of shapes with edges: whether no other point lies further out than `p`, up to `tolerance` [m].
-  virtual bool isOutermost(const btVector3& p, const btVector3& direction, btScalar tolerance) const;
-  /// The same for a convex shape.
-  static bool isOutermost(const btConvexShape& shape, const btVector3& p, const btVector3& direction,
-                          btScalar tolerance);
   /// Whether the bounding box of a shape is what it was at the last call. What moves less than the box shows
   /// is not noticed before the bodies move.
   bool boxIsAsBefore(const btCollisionShape& shape);

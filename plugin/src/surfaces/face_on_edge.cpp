@@ -11,14 +11,11 @@ constexpr btScalar kSunk = btScalar(0.1);
 
 bool faceOver(const PackingBody& body, const Touch& touch, btVector3& normal) {
   if (!body.shape().hasSurface()) return false;
-  const btMatrix3x3& axes = body.world.getBasis();
   const btScalar sunk = kSunk * body.ownRadius(touch.sphere) + body.margin;
   const btVector3 place = body.centreOf(touch.sphere) - touch.normal * (touch.distance - sunk);
   SurfaceTree::Nearest nearest;
-  if (!body.shape().surfaceTree().nearest((place * axes) / body.scale(),
-                                          2 * body.reach(touch.sphere) / body.scale(), nearest))
-    return false;
-  normal = axes * nearest.normal;
+  if (!body.nearest(place, 2 * body.reach(touch.sphere), nearest)) return false;
+  normal = nearest.normal;
   return nearest.distance < 0;
 }
 
