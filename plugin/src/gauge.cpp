@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "crossing_edges.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -112,18 +114,18 @@ bool faceUnder(const PackingBody& body, const btVector3& at, const btVector3& no
   return faceAt(body, at, normal, size) && leave(body, inside, normal, size, Gap::kNone, point);
 }
 
-/// Corners uphill from a triangle, relative to the body's origin: visit(corner, id).
+/// Corners uphill from a triangle, relative to the body's origin: visit(corner, id, is_peak).
 template <typename Visit>
 void forEachCorner(const PackingBody& body, std::size_t triangle, const btVector3& direction,
                    const btVector3& start, btScalar reach, std::uint64_t first_id, const Visit& visit) {
   static thread_local std::vector<std::uint32_t> vertices;
   const btMatrix3x3& axes = body.world.getBasis();
   vertices.clear();
-  body.shape().vertexClimb().from(triangle, direction * axes, (start * axes) / body.scale(),
-                                  reach / body.scale(), vertices);
+  const bool is_peak = body.shape().vertexClimb().from(
+      triangle, direction * axes, (start * axes) / body.scale(), reach / body.scale(), vertices);
   for (std::uint32_t v : vertices) {
     const btVector3 vertex = axes * (toBullet(body.shape().packing().surface.vertices[v]) * body.scale());
-    visit(vertex + direction * body.margin, first_id + 2 * std::uint64_t(v));
+    visit(vertex + direction * body.margin, first_id + 2 * std::uint64_t(v), is_peak);
   }
 }
 
@@ -160,9 +162,9 @@ void SurfaceGauge::corners(std::size_t index, const Gap& gap, const btVector3& n
   if (!of_a) return;
   const auto reachOf = [&](const Touch& touch) { return a_.ownRadius(touch.sphere) + a_.slack; };
   forEachCorner(a_, gap.triangle_a, normal, gap.on_a, reachOf(touches_[index]), kCornerId,
-                [&](const btVector3& at, std::uint64_t id) {
+                [&](const btVector3& at, std::uint64_t id, bool is_peak) {
                   // The face is known where spheres are near it.
-                  Corner corner{gap, id};
+                  Corner corner{gap, id, is_peak};
                   btScalar nearest = BT_LARGE_FLOAT;
                   for (const Touch& touch : touches_) {
                     const btScalar reach = reachOf(touch);
@@ -245,10 +247,14 @@ bool PackingGauge::nearest(std::size_t index, btVector3& direction, Gap& gap) co
 Gauge::Reach PackingGauge::reach(const Gap& gap, const btVector3& towards) const {
   const auto until = [&](const PackingBody& body, std::size_t triangle, const btVector3& at) {
     const btMatrix3x3& axes = body.world.getBasis();
-    return body.scale() * body.shape().surfaceTree().untilSharpEdge(triangle, (at * axes) / body.scale(),
-                                                                    towards * axes, BT_LARGE_FLOAT);
+    return body.scale() *
+           body.shape().surfaceTree().untilSharpEdge(triangle, (at * axes) / body.scale(), towards * axes);
   };
   return {until(a_, gap.triangle_a, gap.on_a), until(b_, gap.triangle_b, gap.on_b - apart())};
+}
+
+bool PackingGauge::crossing(const Gap& gap, Corner& crossing) const {
+  return crossingEdges(a_, b_, gap, crossing);
 }
 
 void PackingGauge::corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
@@ -262,11 +268,11 @@ void PackingGauge::corners(std::size_t index, const Gap& gap, const btVector3& n
   const btVector3 way = of_a ? normal : -normal;
   const btVector3 face = (of_a ? gap.on_b : gap.on_a) - offset;
   forEachCorner(own, of_a ? gap.triangle_a : gap.triangle_b, way, (of_a ? gap.on_a : gap.on_b) - offset,
-                reach, kCornerId + (of_a ? 0 : 1), [&](const btVector3& at, std::uint64_t id) {
+                reach, kCornerId + (of_a ? 0 : 1), [&](const btVector3& at, std::uint64_t id, bool is_peak) {
                   SurfacePoint under;
                   const btVector3 place = at - way * (at - face).dot(way) - to_other;
                   if (!faceUnder(other, place, -way, reach, under)) return;
-                  Corner corner{gap, id};
+                  Corner corner{gap, id, is_peak};
                   (of_a ? corner.gap.on_a : corner.gap.on_b) = at + offset;
                   (of_a ? corner.gap.on_b : corner.gap.on_a) = under.at + to_other + offset;
                   (of_a ? corner.gap.normal_b : corner.gap.normal_a) = under.normal * btScalar(of_a ? -1 : 1);

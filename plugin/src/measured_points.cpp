@@ -114,10 +114,11 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   climb(gauge, measured);
   const ContactNormal normals(measured, gauge);
   const std::size_t first = found.size();
-  const auto add = [&](const Gap& gap, const btVector3& normal, std::uint64_t id) {
+  using Kind = MeasuredPoint::Kind;
+  const auto add = [&](const Gap& gap, const btVector3& normal, std::uint64_t id, Kind kind) {
     const btScalar depth = (gap.on_a - gap.on_b).dot(normal);
     const bool near = depth > -separation;
-    if (near) found.push_back({{gap.on_b, normal, depth, id, 0, 0, shareOfA(gap, normal)}, 0});
+    if (near) found.push_back({{gap.on_b, normal, depth, id, 0, 0, shareOfA(gap, normal)}, kind, 0});
     return near;
   };
   const auto isFound = [&](std::uint64_t id) {
@@ -127,13 +128,20 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     const btVector3 normal = normals.at(m);
     const bool edge_a = rises(m.gap.normal_a, m.gap.curvature_a, normal),
                edge_b = rises(m.gap.normal_b, m.gap.curvature_b, normal);
+    const bool faces = opposed(m.gap) || m.gap.curvature_a != 0 || m.gap.curvature_b != 0;
     corners.clear();
     if (edge_a != edge_b) gauge.corners(m.index, m.gap, normal, edge_a, corners);
     for (const Gauge::Corner& corner : corners) {
-      if (!isFound(corner.id)) add(corner.gap, edge_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id);
+      if (!isFound(corner.id))
+        add(corner.gap, edge_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id,
+            corner.is_peak ? Kind::corner : Kind::edge);
     }
+    Gauge::Corner crossing;
+    const bool crosses =
+        !faces && gauge.crossing(m.gap, crossing) &&
+        (isFound(crossing.id) || add(crossing.gap, crossing.gap.normal_a, crossing.id, Kind::crossing));
     // Beside them the face is less deep, or, where it ends in an arc, not there.
-    if (corners.empty() && add(m.gap, normal, m.id)) {
+    if (corners.empty() && !crosses && add(m.gap, normal, m.id, faces ? Kind::faces : Kind::edge)) {
       found.back().point.curvature_a = m.gap.curvature_a;
       found.back().point.curvature_b = m.gap.curvature_b;
     }

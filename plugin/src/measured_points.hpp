@@ -12,7 +12,15 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// A point and the part of the patch's area that it stands for.
 struct MeasuredPoint {
+  /// What it is measured between.
+  enum class Kind {
+    faces,
+    edge,      ///< and a face, somewhere along it
+    corner,    ///< of the one, over a face of the other, where the one reaches furthest
+    crossing,  ///< of two edges
+  };
   ContactPoint point;
+  Kind kind;
   btScalar area;  ///< [m^2]
 };
 

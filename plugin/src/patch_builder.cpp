@@ -132,6 +132,7 @@ bool measurePatches(Candidates& candidates, const Gauge& gauge, const Measure& m
   found.clear();
   for (std::size_t p = 0; p < candidates.patches.size(); ++p)
     measurePoints(candidates, p, gauge, measure.separation, found);
+  keepLeastWaysOut(measure.spacing, found);
   selectPatches(found, old_ids, measure.spacing, patches);
   return std::any_of(found.begin(), found.end(),
                      [&](const MeasuredPoint& m) { return m.point.depth > -measure.spacing; });

@@ -17,6 +17,22 @@ constexpr btScalar kSameGroup = btScalar(0.966);
 /// More groups than this are merged.
 constexpr std::size_t kMaxGroups = 8;
 
+/// How far around a crossing edges have sunk in, in units of the depth.
+constexpr btScalar kSunkAround = 3;
+
+/// Whether there is a better way out than the one that `point` is pushed, by `other`.
+bool isFreedBy(const MeasuredPoint& other, const MeasuredPoint& point, btScalar spacing) {
+  using Kind = MeasuredPoint::Kind;
+  const bool crossing = point.kind == Kind::crossing;
+  if (!crossing && (other.kind != Kind::crossing || point.kind == Kind::faces)) return false;
+  if (other.kind == Kind::edge || point.point.normal.dot(other.point.normal) > kSameGroup) return false;
+  const auto middle = [](const ContactPoint& p) { return p.on_b + p.normal * (p.depth / 2); };
+  const btScalar depth = crossing ? point.point.depth : other.point.depth;
+  const btScalar around = kSunkAround * btMax(depth, btScalar(0)) + spacing;
+  if (middle(point.point).distance2(middle(other.point)) > around * around) return false;
+  return point.kind == Kind::edge || point.point.depth > other.point.depth;
+}
+
 class Selection {
  public:
   Selection(const std::vector<ContactPoint>& found, const std::vector<std::uint64_t>& old_ids,
@@ -95,6 +111,18 @@ std::vector<std::vector<ContactPoint>> roomForGroups() {
 }
 
 }  // namespace
+
+void keepLeastWaysOut(btScalar spacing, std::vector<MeasuredPoint>& found) {
+  static thread_local std::vector<MeasuredPoint> all;
+  const auto isCrossing = [](const MeasuredPoint& m) { return m.kind == MeasuredPoint::Kind::crossing; };
+  if (std::none_of(found.begin(), found.end(), isCrossing)) return;
+  all = found;
+  const auto isFreed = [&](const MeasuredPoint& m) {
+    return std::any_of(all.begin(), all.end(),
+                       [&](const MeasuredPoint& other) { return isFreedBy(other, m, spacing); });
+  };
+  found.erase(std::remove_if(found.begin(), found.end(), isFreed), found.end());
+}
 
 void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uint64_t>& old_ids,
                    btScalar spacing, std::vector<ContactPatch>& patches) {

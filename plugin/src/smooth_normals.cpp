@@ -13,8 +13,8 @@ constexpr btScalar kSmooth = btScalar(0.866);  // cos 30 degrees
 constexpr btScalar kFlat = btScalar(1e-4);
 /// How far beyond an edge, in weights, a line still meets a triangle: no rounding leaves a gap between two.
 constexpr btScalar kBeyond = btScalar(1e-4);
-/// Instead of the triangle across a sharp edge, or one that no other triangle shares.
-constexpr std::uint32_t kSharp = ~std::uint32_t(0), kSeam = kSharp - 1;
+/// Added to the triangle across a sharp edge. Instead of one across an edge that no other triangle shares.
+constexpr std::uint32_t kSharp = std::uint32_t(1) << 31, kSeam = kSharp - 1;
 /// Edges that are crossed to look for one, for the bulge of a triangle and for where a face ends.
 constexpr std::uint32_t kCrossed = 4;
 constexpr std::uint32_t kCrossedFar = 12;
@@ -68,7 +68,7 @@ void SmoothNormals::setNormals(const Surface& surface) {
         const bool smooth = !(facet.face.dot(facets_[other].face) < kSmooth);
         if (other != t &&
             std::find(triangle.begin(), triangle.end(), surface.triangles[t][next(k)]) != triangle.end())
-          facet.across[k] = smooth ? other : kSharp;
+          facet.across[k] = smooth ? other : kSharp + other;
         if (!smooth) continue;
         // Weighted by the angle at the corner, so that it does not matter how faces are cut.
         const std::size_t at = triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
@@ -94,7 +94,7 @@ void SmoothNormals::setNormals(const Surface& surface) {
 
 void SmoothNormals::countToSharp() {
   for (Facet& facet : facets_) {
-    const bool sharp = std::find(facet.across, facet.across + 3, kSharp) != facet.across + 3;
+    const bool sharp = *std::max_element(facet.across, facet.across + 3) >= kSharp;
     facet.to_sharp = sharp ? 1 : kCrossedFar + 1;
   }
   for (std::uint32_t count = 1; count < kCrossedFar; ++count) {
@@ -140,7 +140,7 @@ bool SmoothNormals::crossNear(std::size_t& triangle, const btVector3& from, cons
     }
     // Over the edge that it is furthest beyond.
     t = facets_[t].across[next(corner)];
-    if (t == kSharp || t == kSeam) return false;
+    if (t >= kSeam) return false;
   }
   return false;
 }
@@ -165,16 +165,16 @@ bool SmoothNormals::isPastSharpEdge(std::size_t t, const btVector3& point) const
     }
     if (edge == 3) return false;
     t = facet.across[edge];
-    if (t == kSharp || t == kSeam) return t == kSharp;
+    if (t >= kSeam) return t >= kSharp;
   }
   return false;
 }
 
-btScalar SmoothNormals::untilSharpEdge(std::size_t t, const btVector3& point, const btVector3& towards,
-                                       btScalar farthest) const {
+SmoothNormals::Ending SmoothNormals::untilSharpEdge(std::size_t t, const btVector3& point,
+                                                    const btVector3& towards) const {
   btVector3 at = point;
   btScalar way = 0;
-  for (std::uint32_t i = 0; i + facets_[t].to_sharp <= kCrossedFar && way < farthest; ++i) {
+  for (std::uint32_t i = 0; i + facets_[t].to_sharp <= kCrossedFar; ++i) {
     const Facet& facet = facets_[t];
     const btVector3 along = towards - facet.face * towards.dot(facet.face);
     // The edge by which the line along the triangle leaves it.
@@ -189,14 +189,30 @@ btScalar SmoothNormals::untilSharpEdge(std::size_t t, const btVector3& point, co
         edge = k;
       }
     }
-    if (edge == 3) return farthest;
+    if (edge == 3) break;
     way += nearest * along.length();
     at += along * nearest;
+    if (facet.across[edge] >= kSharp)
+      return {way, static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(edge)};
     t = facet.across[edge];
-    if (t == kSharp) return btMin(way, farthest);
     if (t == kSeam) break;
   }
-  return farthest;
+  return {};
+}
+
+SmoothNormals::SharpEdge SmoothNormals::sharpEdge(const Ending& ending) const {
+  const Facet& facet = facets_[ending.triangle];
+  const std::uint32_t across = facet.across[ending.edge] - kSharp;
+  const Facet& other = facets_[across];
+  std::size_t back = 0;
+  while (back < 2 && other.across[back] != kSharp + ending.triangle) ++back;
+  SharpEdge edge;
+  edge.from = facet.corners[ending.edge];
+  edge.to = facet.corners[next(ending.edge)];
+  edge.inwards[0] = unit(facet.inwards[ending.edge]);
+  edge.inwards[1] = unit(other.inwards[back]);
+  edge.id = std::min(3 * ending.triangle + ending.edge, 3 * across + static_cast<std::uint32_t>(back));
+  return edge;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

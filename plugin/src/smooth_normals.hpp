@@ -44,10 +44,24 @@ class SmoothNormals {
   const btVector3& face(std::size_t triangle) const { return facets_[triangle].face; }
   /// Whether a sharp edge lies between a triangle and a point over its plane, not far away.
   bool isPastSharpEdge(std::size_t triangle, const btVector3& point) const;
-  /// How far the surface goes on from a point of a triangle in a direction (unit), until it ends in a sharp
-  /// edge; at most `farthest`, and no further than some triangles away [m].
-  btScalar untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
-                          btScalar farthest) const;
+  /// The sharp edge in which the surface ends.
+  struct Ending {
+    btScalar distance = BT_LARGE_FLOAT;  ///< [m]
+    std::uint32_t triangle = 0;          ///< only if there is an edge
+    std::uint32_t edge = 0;              ///< of the triangle's
+
+    bool found() const { return distance < BT_LARGE_FLOAT; }
+  };
+  /// The one that is met from a point of a triangle in a direction, no further than some triangles away.
+  Ending untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const;
+  /// A sharp edge, seen from either side.
+  struct SharpEdge {
+    btVector3 from{0, 0, 0};
+    btVector3 to{0, 0, 0};
+    btVector3 inwards[2];  ///< unit: along its two faces, from the edge
+    std::uint32_t id = 0;  ///< the same from both sides
+  };
+  SharpEdge sharpEdge(const Ending& ending) const;
   /// Of the surface across a triangle [1/m]: the curvature along that edge that shows most of it, positive
   /// where the solid is convex, exactly 0 where it is flat.
   btScalar curvature(std::size_t triangle) const { return facets_[triangle].curvature; }
@@ -61,7 +75,7 @@ class SmoothNormals {
     btVector3 face;        ///< unit; zero if the triangle has no area
     btScalar curvature;
     btScalar bulges[3];       ///< of the edges, at weights of 1 of both ends [m]
-    std::uint32_t across[3];  ///< triangles beyond the edges
+    std::uint32_t across[3];  ///< triangles beyond the edges; see kSharp
     std::uint32_t to_sharp;   ///< how many edges lead across a sharp one, at least; a few more than looked at
                               ///< if none is near
   };

@@ -109,9 +109,16 @@ bool SurfaceTree::castNear(std::size_t triangle, const btVector3& from, const bt
   return true;
 }
 
-btScalar SurfaceTree::untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
-                                     btScalar farthest) const {
-  return normals().untilSharpEdge(triangle, point, towards, farthest);
+btScalar SurfaceTree::untilSharpEdge(std::size_t triangle, const btVector3& point,
+                                     const btVector3& towards) const {
+  return normals().untilSharpEdge(triangle, point, towards).distance;
+}
+
+bool SurfaceTree::sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
+                            SmoothNormals::SharpEdge& edge) const {
+  const SmoothNormals::Ending ending = normals().untilSharpEdge(triangle, point, towards);
+  if (ending.found()) edge = normals().sharpEdge(ending);
+  return ending.found();
 }
 
 bool SurfaceTree::nearest(const btVector3& point, btScalar reach, Nearest& result) const {

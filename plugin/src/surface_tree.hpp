@@ -40,8 +40,10 @@ class SurfaceTree {
   bool castNear(std::size_t triangle, const btVector3& from, const btVector3& direction, btScalar length,
                 Hit& hit) const;
   /// See SmoothNormals.
-  btScalar untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
-                          btScalar farthest) const;
+  btScalar untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const;
+  /// The edge itself; false if there is none.
+  bool sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
+                 SmoothNormals::SharpEdge& edge) const;
 
   struct Nearest {
     btScalar distance;  ///< [m], negative inside the solid

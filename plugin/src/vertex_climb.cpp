@@ -27,7 +27,7 @@ VertexClimb::VertexClimb(const Surface& surface)
   }
 }
 
-void VertexClimb::from(std::size_t triangle, const btVector3& direction, const btVector3& start,
+bool VertexClimb::from(std::size_t triangle, const btVector3& direction, const btVector3& start,
                        btScalar reach, std::vector<std::uint32_t>& vertices) const {
   const auto at = [&](std::uint32_t v) { return toBullet(surface_.vertices[v]); };
   constexpr std::uint32_t kNone = ~std::uint32_t(0);
@@ -40,16 +40,20 @@ void VertexClimb::from(std::size_t triangle, const btVector3& direction, const b
     highest = height;
   };
   for (std::uint32_t v : surface_.triangles[triangle]) climb(v);
-  if (top == kNone) return;
+  if (top == kNone) return false;
   for (std::uint32_t before = kNone; before != top;) {
     before = top;
     for (std::uint32_t i = first_[before]; i < first_[before + 1]; ++i) climb(neighbours_[i]);
   }
   vertices.push_back(top);
+  bool is_peak = true;
   for (std::uint32_t i = first_[top]; i < first_[top + 1]; ++i) {
     const btVector3 edge = at(neighbours_[i]) - at(top);
-    if (btFabs(edge.dot(direction)) < kLevel * edge.length()) vertices.push_back(neighbours_[i]);
+    const btScalar rise = edge.dot(direction), level = kLevel * edge.length();
+    if (btFabs(rise) < level) vertices.push_back(neighbours_[i]);
+    is_peak = is_peak && !(rise > level);
   }
+  return is_peak;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -20,8 +20,9 @@ class VertexClimb {
 
   /// Appends the vertex that is furthest along `direction` (unit) among its neighbours, uphill from a
   /// triangle and no further than `reach` from `start`, and the other ends of edges that are level with it,
-  /// wherever they are: those of an edge that lies on a face, say. None if no vertex is near.
-  void from(std::size_t triangle, const btVector3& direction, const btVector3& start, btScalar reach,
+  /// wherever they are: those of an edge that lies on a face, say. None if no vertex is near. True if the
+  /// surface does not rise on beyond `reach`.
+  bool from(std::size_t triangle, const btVector3& direction, const btVector3& start, btScalar reach,
             std::vector<std::uint32_t>& vertices) const;
 
  private:

@@ -61,8 +61,9 @@ TEST(SmoothNormals, ASideGoesOnToTheRims) {
   for (std::uint32_t ring = 0; ring < kRings; ++ring) {
     const std::size_t triangle = sideTriangle(ring, 5);
     const btVector3 place = placeOn(surface, triangle);
-    EXPECT_NEAR(normals.untilSharpEdge(triangle, place, btVector3(0, 0, 1), 10), kHeight - place.z(), 1e-5);
-    EXPECT_NEAR(normals.untilSharpEdge(triangle, place, btVector3(0, 0, -1), 10), place.z(), 1e-5);
+    EXPECT_NEAR(normals.untilSharpEdge(triangle, place, btVector3(0, 0, 1)).distance, kHeight - place.z(),
+                1e-5);
+    EXPECT_NEAR(normals.untilSharpEdge(triangle, place, btVector3(0, 0, -1)).distance, place.z(), 1e-5);
   }
 }
 
@@ -72,7 +73,7 @@ TEST(SmoothNormals, AroundACylinderNothingEnds) {
   const std::size_t triangle = sideTriangle(1, kSegments - 2);
   const btVector3 place = placeOn(surface, triangle);
   const btVector3 around(-place.y(), place.x(), 0);
-  EXPECT_EQ(normals.untilSharpEdge(triangle, place, around.normalized(), 10), 10);
+  EXPECT_FALSE(normals.untilSharpEdge(triangle, place, around.normalized()).found());
   EXPECT_FALSE(normals.isPastSharpEdge(triangle, place + around * btScalar(0.3)));
 }
 
@@ -83,9 +84,28 @@ TEST(SmoothNormals, ATopEndsAtItsRim) {
   const btVector3 place = placeOn(surface, triangle);
   const btVector3 outwards = btVector3(place.x(), place.y(), 0).normalized();
   const double rim = kRadius * std::cos(M_PI / kSegments);
-  EXPECT_NEAR(normals.untilSharpEdge(triangle, place, outwards, 10),
+  EXPECT_NEAR(normals.untilSharpEdge(triangle, place, outwards).distance,
               rim - std::hypot(double(place.x()), double(place.y())), 1e-5);
-  EXPECT_EQ(normals.untilSharpEdge(triangle, place, outwards, btScalar(0.01)), btScalar(0.01));
+}
+
+TEST(SmoothNormals, ARimIsTheSameFromBothSides) {
+  const Surface surface = cylinder(false);
+  const SmoothNormals normals(surface);
+  const std::size_t top = 2 * kRings * kSegments + 2 * 7 + 1;
+  const btVector3 on_top = placeOn(surface, top);
+  const btVector3 outwards = btVector3(on_top.x(), on_top.y(), 0).normalized();
+  const auto from_top = normals.untilSharpEdge(top, on_top, outwards);
+  ASSERT_TRUE(from_top.found());
+  const auto rim = normals.sharpEdge(from_top);
+  EXPECT_NEAR(rim.from.z(), kHeight, 1e-6);
+  EXPECT_NEAR(rim.to.z(), kHeight, 1e-6);
+  EXPECT_NEAR(rim.from.distance(rim.to), 2 * kRadius * std::sin(M_PI / kSegments), 1e-5);
+  EXPECT_NEAR(rim.inwards[0].dot(outwards), -1, 1e-5);
+  EXPECT_NEAR(rim.inwards[1].z(), -1, 1e-5);
+  const std::size_t side = sideTriangle(kRings - 1, 7);
+  const auto from_side = normals.untilSharpEdge(side, placeOn(surface, side), btVector3(0, 0, 1));
+  ASSERT_TRUE(from_side.found());
+  EXPECT_EQ(normals.sharpEdge(from_side).id, rim.id);
 }
 
 TEST(SmoothNormals, TellWhatIsPastARim) {
@@ -105,7 +125,7 @@ TEST(SmoothNormals, ASeamIsNoEdge) {
   const std::size_t triangle = sideTriangle(1, kSegments - 1) + 1;
   const btVector3 place = placeOn(surface, triangle);
   const btVector3 around(-place.y(), place.x(), 0);
-  EXPECT_EQ(normals.untilSharpEdge(triangle, place, around.normalized(), 10), 10);
+  EXPECT_FALSE(normals.untilSharpEdge(triangle, place, around.normalized()).found());
   EXPECT_FALSE(normals.isPastSharpEdge(triangle, place + around * btScalar(0.1)));
 }
 
