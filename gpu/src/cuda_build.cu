@@ -11,7 +11,7 @@ namespace innersphere::device {
 
 namespace {
 
-constexpr unsigned kBlocks = 4;  ///< on a multiprocessor, at least
+constexpr unsigned kBlocks = 3;  ///< on a multiprocessor, at least; with more of them registers spill
 constexpr unsigned kWarps = kListThreads / kWarp;
 
 template <typename T>
@@ -21,7 +21,7 @@ using BlockScan = cub::BlockScan<T, kListThreads>;
 
 union Shared {
   core::HilbertTable table;
-  core::CellsNear near[kWarps][kWarp];
+  WarpCells cells[kWarps];
   ListInOrder lists[kListThreads / kLanes];
   BlockSum<std::uint64_t>::TempStorage sum;
   BlockScan<std::uint64_t>::TempStorage scan;
@@ -29,10 +29,10 @@ union Shared {
 
 __constant__ core::HilbertTable hilbert_table = core::kHilbertTable;
 
-/// out[i]: the sum of in(0) to in(i - 1). A block takes a run of them.
-template <typename Out, typename In>
-__device__ void sumUp(const cooperative_groups::grid_group& all, const In& in, std::uint64_t count, Out* out,
-                      std::uint64_t* block_sums, Shared& shared) {
+/// Calls out(i, the sum of in(0) to in(i - 1)). A block takes a run of them.
+template <typename In, typename Out>
+__device__ void sumUp(const cooperative_groups::grid_group& all, const In& in, std::uint64_t count,
+                      const Out& out, std::uint64_t* block_sums, Shared& shared) {
   __shared__ std::uint64_t before_block;
   const std::uint64_t run = (count + gridDim.x - 1) / gridDim.x;
   const std::uint64_t begin = min(count, run * blockIdx.x), end = min(count, begin + run);
@@ -51,7 +51,7 @@ __device__ void sumUp(const cooperative_groups::grid_group& all, const In& in, s
     const std::uint64_t i = first + threadIdx.x;
     std::uint64_t here = i < end ? in(i) : 0, total = 0;
     BlockScan<std::uint64_t>(shared.scan).ExclusiveSum(here, here, total);
-    if (i < end) out[i] = static_cast<Out>(before + here);
+    if (i < end) out(i, before + here);
     before += total;
     __syncthreads();
   }
@@ -64,32 +64,42 @@ __global__ void __launch_bounds__(kListThreads, kBlocks)
   const cooperative_groups::grid_group all = cooperative_groups::this_grid();
   const Threads threads{std::uint64_t{blockIdx.x} * kListThreads + threadIdx.x,
                         std::uint64_t{gridDim.x} * kListThreads};
-  core::CellsNear(&near)[kWarp] = shared.near[threadIdx.x / kWarp];
-  const std::uint64_t cell_count = plan.tiers.first[plan.tiers.count];
+  WarpCells& of_warp = shared.cells[threadIdx.x / kWarp];
+  const std::uint64_t cell_count = steps.count ? plan.tiers.first[plan.tiers.count] : 0;
   if (steps.order) {
     for (unsigned i = threadIdx.x; i < sizeof shared.table / sizeof(unsigned); i += kListThreads)
       reinterpret_cast<unsigned*>(&shared.table)[i] = reinterpret_cast<const unsigned*>(&hilbert_table)[i];
     __syncthreads();
-    makeKeys(plan, grid, arrays, shared.table, threads);
+    makeKeys(plan, arrays, shared.table, threads);
     all.sync();
     sumUp(
-        all, [&](std::uint64_t i) { return arrays.bucket_counts[i]; }, plan.buckets + 1, arrays.bucket_starts,
+        all, [&](std::uint64_t i) { return arrays.in_buckets[i]; }, std::uint64_t{plan.buckets.all} + 1,
+        [&](std::uint64_t i, std::uint64_t sum) {
+          arrays.bucket_starts[i] = static_cast<std::uint32_t>(sum);
+        },
         arrays.block_sums, shared);
     all.sync();
-    fillBuckets(plan, arrays, threads);
+    fillBuckets(plan, grid, arrays, cell_count, threads);
     all.sync();
-    orderBuckets(plan, arrays, threads);
+    orderBuckets(plan, grid, arrays, threads);
     all.sync();
-    orderSpheres(plan, grid, arrays, steps.count, near, threads);
+    makeClusters(plan, grid, arrays, steps.count, of_warp, threads);
     if (!steps.count) return;
     all.sync();
     sumUp(
-        all, [&](std::uint64_t i) { return packed(arrays.cell_counts[i]); }, cell_count + 1, arrays.cell_sums,
+        all, [&](std::uint64_t i) { return packed(arrays.cell_counts[i]); }, cell_count + 1,
+        [&](std::uint64_t cell, std::uint64_t sum) {
+          arrays.cell_sums[cell] = sum;
+          const std::uint32_t count = arrays.cell_counts[cell];
+          if (count > 0)
+            arrays.used[sum >> kPlaceBits] = {keyOf(plan.tiers, cell),
+                                              static_cast<std::uint32_t>(placesOf(sum)), count};
+        },
         arrays.block_sums, shared);
     all.sync();
   }
-  const DenseCells cells{{arrays.cell_counts, arrays.cell_sums, cell_count}};
-  fillLists(plan, grid, arrays, cells, near, threads);
+  const DenseCells cells{{arrays.cell_counts, arrays.cell_sums, cell_count}, arrays.used};
+  fillGrid(plan, grid, arrays, cells, of_warp, threads);
   all.sync();
   orderLists(plan, grid, arrays, cells, shared.lists[threadIdx.x / kLanes], threads);
 }
@@ -108,19 +118,21 @@ unsigned mostBlocks() {
 void launchBuild(const BuildPlan& plan, const GridArrays& grid, const Sphere* given, BuildSteps steps,
                  BuildScratch& scratch, cudaStream_t stream) {
   const std::uint32_t spheres = plan.grid.view.count;
-  const std::uint64_t cells = steps.count ? plan.tiers.first[plan.tiers.count] + 1 : 0;
-  const std::uint64_t buckets = plan.buckets + 1, counters = buckets + cells + 1;
-  const unsigned most = mostBlocks();
+  const std::uint64_t cells = steps.count ? plan.tiers.first[plan.tiers.count] : 0;
+  const std::uint64_t buckets = plan.buckets.all + 1;
+  if (scratch.most_blocks == 0) scratch.most_blocks = mostBlocks();
   for (auto& keys : scratch.keys) keys.reserve(spheres);
   for (auto& numbers : scratch.numbers) numbers.reserve(spheres);
-  scratch.sorted.reserve(spheres);
-  scratch.counts.reserve(counters);
+  if (scratch.in_buckets.capacity() < buckets) {
+    scratch.in_buckets.reserve(buckets);
+    INNERSPHERE_CUDA(cudaMemsetAsync(scratch.in_buckets.data(), 0, buckets * sizeof(std::uint32_t), stream));
+  }
+  scratch.counts.reserve(cells + 2);
   scratch.starts.reserve(buckets);
-  scratch.sums.reserve(cells);
-  scratch.block_sums.reserve(most);
+  scratch.sums.reserve(cells + 1);
+  scratch.used.reserve(cells);
+  scratch.block_sums.reserve(scratch.most_blocks);
   scratch.status.reserve(1);
-  std::uint32_t* const counts = scratch.counts.data();
-  if (steps.order) INNERSPHERE_CUDA(cudaMemsetAsync(counts, 0, counters * sizeof(std::uint32_t), stream));
   BuildPlan plan_argument = plan;
   GridArrays grid_argument = grid;
   BuildArrays arrays{given,
@@ -128,18 +140,18 @@ void launchBuild(const BuildPlan& plan, const GridArrays& grid, const Sphere* gi
                      scratch.numbers[0].data(),
                      scratch.keys[1].data(),
                      scratch.numbers[1].data(),
-                     scratch.sorted.data(),
-                     counts,
+                     scratch.in_buckets.data(),
                      scratch.starts.data(),
-                     counts + buckets,
+                     scratch.counts.data(),
                      scratch.sums.data(),
+                     scratch.used.data(),
                      scratch.block_sums.data(),
-                     counts + buckets + cells,
+                     scratch.counts.data() + cells + 1,
                      scratch.status.data()};
   void* arguments[] = {&plan_argument, &grid_argument, &arrays, &steps};
-  const std::uint64_t busy = std::max({std::uint64_t{spheres}, cells, std::uint64_t{kWarp} * plan.jobs.all});
-  const auto blocks =
-      static_cast<unsigned>(std::min<std::uint64_t>(most, (busy + kListThreads - 1) / kListThreads));
+  const std::uint64_t busy = std::max(cells, std::uint64_t{kWarp} * plan.jobs.all + spheres);
+  const auto blocks = static_cast<unsigned>(
+      std::min<std::uint64_t>(scratch.most_blocks, (busy + kListThreads - 1) / kListThreads));
   INNERSPHERE_CUDA(cudaLaunchCooperativeKernel(buildGrid, blocks, kListThreads, arguments, 0, stream));
 }
 

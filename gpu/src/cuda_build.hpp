@@ -22,19 +22,31 @@ struct Jobs {
   unsigned end[core::kMostLevels];  ///< of the jobs of each level and of all above it
   unsigned of_cluster[core::kMostLevels];
   unsigned first_cluster[core::kMostLevels];
-  /// For a tier, by how many levels the cluster's is above the first one that the tier lists.
-  unsigned parts[core::kMostLevels];
+  unsigned in_cluster[core::kMostLevels];  ///< spheres, at most
+  /// Cells near a sphere, at most, by how many levels its own is above the first one that the tier lists.
+  unsigned cells_near[core::kMostLevels];
   unsigned all;
+
+  __host__ __device__ unsigned parts(int level, int above) const {
+    constexpr unsigned kCellsOfAPart = 512;
+    const unsigned full = in_cluster[level] * cells_near[above] / kCellsOfAPart;
+    return full > 1 ? full : 1;
+  }
+};
+
+/// Spheres of one level whose places on the curve have the same upper bits come into one bucket first. Each
+/// level has about as many of them as spheres.
+struct Buckets {
+  std::uint32_t first[core::kMostLevels];
+  int shift[core::kMostLevels];  ///< of a place on the curve
+  std::uint32_t all;
 };
 
 struct BuildPlan {
   core::GridPlan grid;
   Tiers tiers;
   Jobs jobs;
-  /// Spheres whose keys have the same upper bits come into one bucket first. There are about as many of them
-  /// as spheres.
-  int bucket_shift;
-  std::uint32_t buckets;
+  Buckets buckets;
 };
 
 /// Whether all tiers may have a counter for each cell.
@@ -86,14 +98,16 @@ struct BuildScratch {
   DeviceArray<Sphere> given;              ///< in the order of the packing
   DeviceArray<std::uint64_t> keys[2];     ///< of spheres, or of cells
   DeviceArray<std::uint32_t> numbers[2];  ///< that go with them
-  DeviceArray<std::uint32_t> counts;      ///< of buckets of spheres, then of cells; the longest list
+  DeviceArray<std::uint32_t> in_buckets;  ///< spheres; zero before a build and after it
+  DeviceArray<std::uint32_t> counts;      ///< of what cells list; the longest list
   DeviceArray<std::uint32_t> starts;      ///< of buckets, or of cells in what was sorted
-  DeviceArray<std::uint32_t> sorted;      ///< spheres
-  DeviceArray<std::uint64_t> sums;        ///< of what cells list; see packed()
+  DeviceArray<std::uint64_t> sums;        ///< of counts; see packed()
+  DeviceArray<core::Cell> used;           ///< cells with a list
   DeviceArray<std::uint64_t> block_sums;
   DeviceArray<unsigned long long> found;  ///< pairs of a cell and a sphere that it lists
   DeviceArray<std::byte> cub;
   PinnedArray<BuildStatus> status;
+  unsigned most_blocks = 0;  ///< that run side by side
 };
 
 /// What a launch does.

@@ -29,6 +29,12 @@ inline __device__ Sphere load(const Sphere* sphere) {
   return {s.x, s.y, s.z, s.w};
 }
 
+/// Of what the same launch has written.
+inline __device__ Sphere loadNew(const Sphere* sphere) {
+  const float4 s = *reinterpret_cast<const float4*>(sphere);
+  return {s.x, s.y, s.z, s.w};
+}
+
 /// Stays where it stands: to save registers the compiler would have each of several loads wait for the one
 /// before.
 inline __device__ EntryPair load(const EntryPair* pair) {
@@ -50,6 +56,20 @@ template <typename T>
 inline __device__ T maximum(T x) {
   for (unsigned step = 1; step < kWarp; step *= 2) x = max(x, __shfl_xor_sync(kAll, x, step));
   return x;
+}
+
+inline __device__ int maximum(int x) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_max_sync(kAll, x);
+#else
+  return maximum<int>(x);
+#endif
+}
+
+/// By the order of their bits. Of zeros, the one without a sign.
+inline __device__ float maximum(float x) {
+  const auto swapped = [](int bits) { return bits < 0 ? bits ^ 0x7fffffff : bits; };
+  return __int_as_float(swapped(maximum(swapped(__float_as_int(x)))));
 }
 
 /// The sum over this lane and all before it.

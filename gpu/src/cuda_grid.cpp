@@ -8,9 +8,6 @@ namespace innersphere::device {
 
 namespace {
 
-/// Cells of a tier that a warp looks at.
-constexpr double kCellsOfAPart = 1024;
-
 /// Cells near a sphere, at most, if its level is `above` that of the tier's largest walkers, whose diameter
 /// is half a cell.
 double cellsNear(int above) {
@@ -37,24 +34,25 @@ BuildPlan makeBuildPlan(const core::GridPlan& grid) {
     plan.tiers.of[t] = core::makeTier(grid, t);
     plan.tiers.first[t + 1] = plan.tiers.first[t] + plan.tiers.of[t].count;
   }
-  const int bits = grid.keyBits(),
-            bucket_bits = std::min(bits, static_cast<int>(std::bit_width(grid.view.count)));
-  plan.bucket_shift = bits - bucket_bits;
-  plan.buckets = 1u << bucket_bits;
   Jobs& jobs = plan.jobs;
+  constexpr double kMostNear = 1 << 21;  // beyond that parts grow
   for (int above = 0; above < grid.levels; ++above)
-    jobs.parts[above] =
-        static_cast<unsigned>(std::clamp(core::kClusterSize * cellsNear(above) / kCellsOfAPart, 1.0, 1e5));
+    jobs.cells_near[above] = static_cast<unsigned>(std::min(cellsNear(above), kMostNear));
   unsigned clusters[core::kMostLevels] = {}, before = 0;
   for (int level = 0; level < grid.levels; ++level) {
     const unsigned spheres = grid.level_first[level + 1] - grid.level_first[level];
+    const int bits = std::min(3 * grid.curve_bits, static_cast<int>(std::bit_width(spheres)));
+    plan.buckets.first[level] = plan.buckets.all;
+    plan.buckets.shift[level] = 3 * grid.curve_bits - bits;
+    plan.buckets.all += 1u << bits;
+    jobs.in_cluster[level] = std::min(spheres, core::kClusterSize);
     clusters[level] = (spheres + core::kClusterSize - 1) / core::kClusterSize;
     if (spheres > 0 && cellsNear(grid.levelsAbove(level, 0)) >= 0x1p31)
       throw Error(ErrorCode::bad_argument, "the spheres differ too much in size for a device; use fewer");
     jobs.first_cluster[level] = before;
     before += clusters[level];
     for (int t = 0; t < grid.view.tiers && grid.levelsAbove(level, t) >= 0; ++t)
-      jobs.of_cluster[level] += jobs.parts[grid.levelsAbove(level, t)];
+      jobs.of_cluster[level] += jobs.parts(level, grid.levelsAbove(level, t));
   }
   for (int level = grid.levels - 1; level >= 0; --level) {
     jobs.all += clusters[level] * jobs.of_cluster[level];
@@ -115,8 +113,8 @@ void CudaGrid::makeRoom(const BuildStatus& status, std::uint32_t spheres, cudaSt
     throw Error(ErrorCode::bad_argument, "the spheres fill more than 2^32 places in the grid; use fewer");
   if (listed_.capacity() < status.listed) {
     const std::uint64_t room = status.listed + (listed_.capacity() > 0 ? status.listed / 4 : 0);
-    listed_.reserve(room);
     entries_.reserve(room / 2 + entriesOfAll(spheres));
+    listed_.reserve(room);  // last: its capacity stands for both, also where memory does not suffice
   }
   cells_.reserve(tableSizeFor(status.cells));
   INNERSPHERE_CUDA(cudaMemsetAsync(cells_.data(), 0xff, cells_.capacity() * sizeof(core::Cell), stream));

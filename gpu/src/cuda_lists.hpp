@@ -35,13 +35,16 @@ struct CellCounts {
   }
 };
 
+inline __device__ std::uint64_t keyOf(const Tiers& tiers, std::uint64_t cell) {
+  int t = 0;
+  while (cell >= tiers.first[t + 1]) ++t;
+  return tiers.of[t].keyOf(static_cast<std::uint32_t>(cell - tiers.first[t]));
+}
+
 /// A counter for each cell of all tiers. While the lists are filled, the sums of cells move on.
 struct DenseCells : CellCounts {
-  __device__ std::uint64_t keyOf(const Tiers& tiers, std::uint64_t cell) const {
-    int t = 0;
-    while (cell >= tiers.first[t + 1]) ++t;
-    return tiers.of[t].keyOf(static_cast<std::uint32_t>(cell - tiers.first[t]));
-  }
+  const core::Cell* used;  ///< those with a list, by rising key
+
   __device__ core::Cell find(const Tiers& tiers, std::uint64_t key) const {
     constexpr std::uint64_t kMask = (1u << core::kAxisBits) - 1;
     const auto axis = [&](int number) {
@@ -57,7 +60,7 @@ struct DenseCells : CellCounts {
 /// Only cells with a list, by rising key.
 struct SortedCells : CellCounts {
   const std::uint64_t* keys;
-  __device__ std::uint64_t keyOf(const Tiers&, std::uint64_t cell) const { return keys[cell]; }
+
   __device__ core::Cell find(const Tiers&, std::uint64_t key) const {
     std::uint64_t lo = 0;
     for (std::uint64_t hi = cells; lo + 1 < hi;) {
@@ -72,21 +75,12 @@ inline __device__ int hashShift(std::uint64_t cells) {
   return 64 - (63 - __clzll(static_cast<long long>(tableSizeFor(cells))));
 }
 
-/// Puts a cell into the table, by a thread of its own; all lanes call it. `longest`, a list too long for
-/// kLongestInOrder, may be null. With linear probing, a smaller key
-/// goes first and a larger one moves on: whoever comes when, the table is the same.
-template <typename Cells>
-__device__ void insertCell(const BuildPlan& plan, const GridArrays& arrays, const Cells& cells,
-                           std::uint64_t cell, unsigned* longest) {
-  const BuildStatus status = cells.status(0);
-  const std::uint32_t count = cell < cells.cells ? cells.counts[cell] : 0;
-  const std::uint32_t most = maximum(count);
-  if (longest && threadIdx.x % kWarp == 0 && most > kLongestInOrder) atomicMax(longest, most);
-  if (count == 0 || !fits(status, arrays)) return;
+/// Puts one of so many cells into the table. With linear probing, a smaller key goes first and a larger one
+/// moves on: whoever comes when, the table is the same.
+inline __device__ void insertCell(const GridArrays& arrays, std::uint64_t cells, unsigned long long key) {
   core::GridView view{};
-  view.hash_shift = hashShift(status.cells);
-  const std::uint64_t mask = tableSizeFor(status.cells) - 1;
-  unsigned long long key = cells.keyOf(plan.tiers, cell);
+  view.hash_shift = hashShift(cells);
+  const std::uint64_t mask = tableSizeFor(cells) - 1;
   for (std::uint64_t at = core::hashCell(view, key);; at = (at + 1) & mask) {
     const unsigned long long there =
         atomicMin(reinterpret_cast<unsigned long long*>(&arrays.cells[at].key), key);
@@ -105,8 +99,9 @@ inline __device__ CellFrame frameOf(const core::GridView& grid, std::uint64_t ke
 inline __device__ EntryPair entriesOf(const core::GridPlan& plan, const GridArrays& arrays,
                                       const CellFrame& frame, const uint2& places) {
   const auto ball = [&](std::uint32_t place) {
-    return place < plan.view.count ? partnerBall(plan.view, frame, plan.centred(load(arrays.spheres + place)))
-                                   : noBall();
+    return place < plan.view.count
+               ? partnerBall(plan.view, frame, plan.centred(loadNew(arrays.spheres + place)))
+               : noBall();
   };
   return pairOf(ball(places.x), ball(places.y));
 }
@@ -127,27 +122,23 @@ inline __device__ void fillGroup(const GridArrays& arrays, std::uint32_t cluster
   if (lane == 0) arrays.groups[group] = {middle.x, middle.y, middle.z, __double2float_ru(radius)};
 }
 
-/// What follows the lists in Grid::entries, the cells of the table, groups and header: by all threads of a
-/// launch.
+/// Entry `i` of those that follow the lists in Grid::entries.
+inline __device__ void fillEntryOfAll(const core::GridPlan& grid, const GridArrays& arrays,
+                                      std::uint64_t listed, std::uint64_t i) {
+  const auto first = static_cast<std::uint32_t>(2 * i);
+  arrays.entries[listed / 2 + i] = entriesOf(grid, arrays, frameOfAll(grid.view), {first, first + 1});
+}
+
+/// The cells of the table, and the header: by all threads of a launch.
 template <typename Cells>
 __device__ void finishGrid(const BuildPlan& plan, const GridArrays& arrays, const Cells& cells,
                            const BuildStatus& status, std::uint64_t thread, std::uint64_t threads) {
-  const core::GridPlan& grid = plan.grid;
-  const std::uint32_t count = grid.view.count;
-  const CellFrame frame = frameOfAll(grid.view);
-  for (std::uint64_t i = thread; i < entriesOfAll(count); i += threads) {
-    const auto first = static_cast<std::uint32_t>(2 * i);
-    arrays.entries[status.listed / 2 + i] = entriesOf(grid, arrays, frame, {first, first + 1});
-  }
   for (std::uint64_t i = thread; i < tableSizeFor(status.cells); i += threads) {
     const std::uint64_t key = arrays.cells[i].key;
     arrays.cells[i] = key == kNoKey ? core::Cell{0, 0, 0} : cells.find(plan.tiers, key);
   }
-  const std::uint64_t groups = groupCount(grid.view.cluster_count);
-  for (std::uint64_t group = thread / kWarp; group < groups; group += threads / kWarp)
-    fillGroup(arrays, grid.view.cluster_count, group, static_cast<unsigned>(thread % kWarp));
   if (thread != 0) return;
-  core::GridView view = grid.view;
+  core::GridView view = plan.grid.view;
   view.spheres = arrays.spheres;
   view.ids = arrays.ids;
   view.clusters = arrays.clusters;

@@ -140,8 +140,8 @@ void Part::launch() {
   batch_.run = ++run_;
   const Goal goal = want_ == Want::touch ? Goal::touch : want_ == Want::volume ? Goal::volume : Goal::wrench;
   if (device_.time_kernels) INNERSPHERE_CUDA(cudaEventRecord(start_.get(), device_.stream));
-  launchWalk(goal, batch_, single ? queries_.data() : nullptr, most_clusters_, device_.processors,
-             device_.stream);
+  launchWalk(goal, batch_, single ? queries_.data() : nullptr, most_clusters_, most_items_,
+             device_.processors, device_.stream);
   if (device_.time_kernels) INNERSPHERE_CUDA(cudaEventRecord(stop_.get(), device_.stream));
   stage_ = Stage::walk;
 }

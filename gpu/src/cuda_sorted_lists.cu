@@ -27,23 +27,21 @@ __global__ void findPairs(const __grid_constant__ BuildPlan plan, const Sphere* 
   if (number >= plan.jobs.all) return;
   const ClusterJob job = clusterJob(plan, number);
   const Sphere s = lane < job.count ? plan.grid.centred(load(spheres + job.first + lane)) : Sphere{};
-  forCells<std::uint64_t>(plan.tiers, job, s, lane, shared[warp],
-                          [&](const std::uint64_t(&cells)[kTogether], unsigned mask, std::uint32_t place) {
-                            unsigned long long at =
-                                atomicAdd(found, static_cast<unsigned long long>(__popc(mask)));
-                            if (!keys) return;
-                            for (unsigned k = 0; k < kTogether; ++k) {
-                              if ((mask >> k & 1) == 0) continue;
-                              keys[at] = plan.tiers.of[job.tier].keyOf(cells[k]);
-                              numbers[at++] = place;
-                            }
-                          });
+  forCells<std::uint64_t>(
+      plan.tiers, job, s, lane, shared[warp], [&](const SomeCells<std::uint64_t>& some, bool) {
+        unsigned long long at = atomicAdd(found, static_cast<unsigned long long>(__popc(some.mask)));
+        if (!keys) return;
+        forSome(some, [&](unsigned k) {
+          keys[at] = plan.tiers.of[job.tier].keyOf(some.cells[k]);
+          numbers[at++] = some.place;
+        });
+      });
 }
 
 /// A thread takes a cell.
-__global__ void insertCells(const __grid_constant__ BuildPlan plan, const __grid_constant__ GridArrays arrays,
-                            const SortedCells cells) {
-  insertCell(plan, arrays, cells, std::uint64_t{blockIdx.x} * kListThreads + threadIdx.x, nullptr);
+__global__ void insertCells(const __grid_constant__ GridArrays arrays, const SortedCells cells) {
+  const std::uint64_t cell = std::uint64_t{blockIdx.x} * kListThreads + threadIdx.x;
+  if (cell < cells.cells) insertCell(arrays, cells.cells, cells.keys[cell]);
 }
 
 /// A warp takes a cell.
@@ -56,7 +54,7 @@ __global__ void writeLists(const __grid_constant__ BuildPlan plan, const __grid_
   for (std::uint64_t cell = thread / kWarp; cell < cells.cells; cell += threads / kWarp) {
     const std::uint32_t count = cells.counts[cell];
     const std::uint64_t first = placesOf(cells.sums[cell]);
-    const CellFrame frame = frameOf(plan.grid.view, cells.keyOf(plan.tiers, cell));
+    const CellFrame frame = frameOf(plan.grid.view, cells.keys[cell]);
     const auto placeAt = [&](std::uint32_t k) {
       return k < count ? numbers[starts[cell] + k] : plan.grid.view.count;
     };
@@ -66,7 +64,13 @@ __global__ void writeLists(const __grid_constant__ BuildPlan plan, const __grid_
       arrays.entries[first / 2 + k] = entriesOf(plan.grid, arrays, frame, places);
     }
   }
-  finishGrid(plan, arrays, cells, cells.status(0), thread, threads);
+  const BuildStatus status = cells.status(0);
+  for (std::uint64_t i = thread; i < entriesOfAll(plan.grid.view.count); i += threads)
+    fillEntryOfAll(plan.grid, arrays, status.listed, i);
+  const std::uint32_t clusters = plan.grid.view.cluster_count;
+  for (std::uint64_t group = thread / kWarp; group < groupCount(clusters); group += threads / kWarp)
+    fillGroup(arrays, clusters, group, lane);
+  finishGrid(plan, arrays, cells, status, thread, threads);
 }
 
 template <typename T>
@@ -141,7 +145,7 @@ void launchSorted(const BuildPlan& plan, const GridArrays& arrays, const BuildSt
   cells.sums = scratch.sums.data();
   cells.cells = status.cells;
   cells.keys = scratch.keys[1].data();
-  insertCells<<<blocksFor(status.cells), kListThreads, 0, stream>>>(plan, arrays, cells);
+  insertCells<<<blocksFor(status.cells), kListThreads, 0, stream>>>(arrays, cells);
   writeLists<<<blocksFor(kWarp * status.cells), kListThreads, 0, stream>>>(
       plan, arrays, cells, scratch.starts.data(), scratch.numbers[0].data());
   INNERSPHERE_CUDA(cudaGetLastError());

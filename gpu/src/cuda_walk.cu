@@ -304,8 +304,8 @@ __global__ void finishBatch(const __grid_constant__ Batch batch) {
 }
 
 template <Goal goal>
-void launchGoal(const Batch& batch, const Query* single, unsigned most_clusters, unsigned processors,
-                cudaStream_t stream) {
+void launchGoal(const Batch& batch, const Query* single, unsigned most_clusters, std::size_t most_items,
+                unsigned processors, cudaStream_t stream) {
   if (single) {
     const unsigned clusters = single->clusters[0] + single->clusters[1];
     const unsigned blocks = std::min(kSingleBlocks * processors, clusters);
@@ -315,7 +315,9 @@ void launchGoal(const Batch& batch, const Query* single, unsigned most_clusters,
     const unsigned tasks = most_clusters / kTask + 2;  // of both bodies together
     cullClusters<<<dim3(batch.count, (tasks + kCullWarps - 1) / kCullWarps), kCullWarps * kWarp, 0, stream>>>(
         batch);
-    walkBatch<goal><<<kBatchBlocks * processors, kBatchWarps * kWarp, 0, stream>>>(batch);
+    const auto blocks = static_cast<unsigned>(
+        std::min<std::size_t>(kBatchBlocks * processors, (most_items + kBatchWarps - 1) / kBatchWarps));
+    walkBatch<goal><<<blocks, kBatchWarps * kWarp, 0, stream>>>(batch);
     finishBatch<goal><<<(batch.count * kResultWords + kThreads - 1) / kThreads, kThreads, 0, stream>>>(batch);
   }
   INNERSPHERE_CUDA(cudaGetLastError());
@@ -324,11 +326,11 @@ void launchGoal(const Batch& batch, const Query* single, unsigned most_clusters,
 }  // namespace
 
 void launchWalk(Goal goal, const Batch& batch, const Query* single, unsigned most_clusters,
-                unsigned processors, cudaStream_t stream) {
+                std::size_t most_items, unsigned processors, cudaStream_t stream) {
   const auto launch = goal == Goal::touch    ? &launchGoal<Goal::touch>
                       : goal == Goal::volume ? &launchGoal<Goal::volume>
                                              : &launchGoal<Goal::wrench>;
-  launch(batch, single, most_clusters, processors, stream);
+  launch(batch, single, most_clusters, most_items, processors, stream);
 }
 
 }  // namespace innersphere::device
