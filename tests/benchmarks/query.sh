@@ -3,7 +3,7 @@
 #
 #   ./tests/benchmarks/run.sh query FOLDER [MESH=POSES ...]
 #
-# writes query-sweep.md, query-growth.md, query-budget.md, query-peers.md, query-deadline.md and tool-accuracy.md into
+# writes query.md, query-sweep.md, query-growth.md, query-budget.md, query-peers.md, query-deadline.md and tool-accuracy.md into
 # FOLDER (with a GPU also query-memory.md and query-construction.md), and plots. POSES is a CSV table of placements of a
 # copy of MESH with the exact overlaps. Without meshes the project's own solids serve, whose overlaps are sampled.
 set -euo pipefail
@@ -29,6 +29,7 @@ plot() { # NAME SCRIPT: by gnuplot, where it is installed
   fi
 }
 
+"$run" query_benchmark "${device[@]}" --spheres 1000,4000,15000,60000 >"$out/query.md"
 "$run" query_sweep "${@%%=*}" "${device[@]}" --points "$points/sweep" >"$out/query-sweep.md"
 plot sweep
 "$run" query_growth --points "$points/growth" >"$out/query-growth.md"
@@ -38,6 +39,7 @@ plot budget
 "$run" query_peers "$@" >"$out/query-peers.md"
 "$run" query_deadline "${@%%=*}" >"$out/query-deadline.md"
 if [ ${#device[@]} -gt 0 ]; then
+  "$run" query_deadline "${@%%=*}" --backend cuda "${device[@]}" >>"$out/query-deadline.md"
   "$run" query_memory "${device[@]}" >"$out/query-memory.md"
   "$run" query_construction "${device[@]}" >"$out/query-construction.md"
 fi

@@ -37,7 +37,7 @@ class AsynchronousConformance : public Conformance {
 
 TEST_P(AsynchronousConformance, SameBitsAsAtOnce) {
   QueryContext at_once = makeContext(), in_halves = makeContext();
-  for (std::size_t count : {0u, 1u, 60u}) {
+  for (std::size_t count : {std::size_t{0}, std::size_t{1}, cases(60, 6)}) {
     const std::vector<PairQuery> queries = batch(count, 11);
     for (Want want :
          {Want::touch, Want::volume, Want::wrench, Want::contacts_of_a, Want::contacts, Want::pairs}) {
@@ -72,7 +72,7 @@ TEST_P(AsynchronousConformance, SeveralContextsAtATime) {
   std::vector<std::vector<PairQuery>> queries;
   std::vector<QueryContext> contexts;
   for (unsigned i = 0; i < kContexts; ++i) {
-    queries.push_back(batch(50 + 10 * i, i));
+    queries.push_back(batch(cases(50, 3) + cases(10, 1) * i, i));
     contexts.push_back(makeContext());
   }
   const QueryOptions options{Want::contacts, Estimator::raw};
@@ -88,7 +88,7 @@ TEST_P(AsynchronousConformance, SeveralContextsAtATime) {
 
 TEST_P(AsynchronousConformance, ErrorsAreThrownByWait) {
   QueryContext context = makeContext();
-  const std::vector<PairQuery> good = batch(20, 13);
+  const std::vector<PairQuery> good = batch(cases(20, 8), 13);
   QueryResult expected, result;
   context.run(good.data(), good.size(), {}, expected);
   result = expected;
@@ -106,7 +106,7 @@ TEST_P(AsynchronousConformance, OneQueryUnderWay) {
   QueryContext context = makeContext();
   QueryResult result, expected;
   EXPECT_EQ(codeOf([&] { context.wait(result); }), ErrorCode::bad_argument);
-  const std::vector<PairQuery> queries = batch(20, 14);
+  const std::vector<PairQuery> queries = batch(cases(20, 4), 14);
   context.start(queries.data(), queries.size(), {});
   context.start(queries.data(), 1, {});
   EXPECT_EQ(codeOf([&] { context.wait(result); }), ErrorCode::bad_argument);
@@ -116,7 +116,7 @@ TEST_P(AsynchronousConformance, OneQueryUnderWay) {
 }
 
 TEST_P(AsynchronousConformance, MayBeLeftAlone) {
-  const std::vector<PairQuery> queries = batch(200, 15);
+  const std::vector<PairQuery> queries = batch(cases(200, 8), 15);
   for (int i = 0; i < 3; ++i) {
     QueryContext context = makeContext();
     context.start(queries.data(), queries.size(), {Want::contacts, Estimator::raw});
@@ -126,7 +126,7 @@ TEST_P(AsynchronousConformance, MayBeLeftAlone) {
 /// The partners of a large sphere are summed side by side.
 TEST_P(AsynchronousConformance, ContactsOfALargeSphere) {
   Random random(16);
-  std::vector<Sphere> small(9000);
+  std::vector<Sphere> small(cases(9000, 1500));
   for (Sphere& s : small) {
     const auto at = [&] { return static_cast<float>(random.uniform(-1, 1)); };
     s = {at(), at(), at(), 0.01f};

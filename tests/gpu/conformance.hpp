@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "cases.hpp"
 #include "device.hpp"
 #include "innersphere/query.hpp"
 #include "oracle.hpp"

@@ -33,7 +33,7 @@ TEST_P(ContactsConformance, EqualBruteForce) {
   const auto a = makeModel(randomSpheres(300, 0.3, 20, 1), true),
              b = makeModel(randomSpheres(200, 0.3, 20, 2), true);
   Random random(5);
-  for (int pose = 0; pose < 10; ++pose) {
+  for (std::size_t pose = 0; pose < cases(10, 2); ++pose) {
     Scene scene(a, b);
     scene.query.placement_a = randomPlacement(random, 0.3);
     scene.query.placement_b = randomPlacement(random, 0.5, 0.8);

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "cases.hpp"
 #include "core/tier_cells.hpp"
 #include "cuda_grid.hpp"
 #include "device.hpp"
@@ -182,7 +183,7 @@ TEST_F(DeviceGridTest, MemoryOfOtherGridsDoesNotMatter) {
 
 /// Spheres that move a little find room in the memory of the second build.
 TEST_F(DeviceGridTest, BuildingOnceMoreStaysInItsMemory) {
-  Spheres spheres = randomSpheres(20000, 0.1, 30, 1);
+  Spheres spheres = randomSpheres(cases(20000, 2000), 0.1, 30, 1);
   Random random(1);
   CudaGrid grid(0);
   build(grid, spheres);

@@ -56,7 +56,8 @@ TEST_P(LensVolumeConformance, WithinABoundOfLongDouble) {
   std::size_t large = 0, small = 0;
   for (const double ratio : {1.0, 1.0001, 1.5, 10.0, 1e2, 1e3, 1e4, 1e-4}) {
     std::vector<TwoBalls> balls;
-    for (int i = 0; i < 150; ++i) balls.push_back(twoBalls(random, ratio, std::exp(random.uniform(-25, 1))));
+    for (std::size_t i = 0; i < cases(150, 6); ++i)
+      balls.push_back(twoBalls(random, ratio, std::exp(random.uniform(-25, 1))));
     std::vector<PairQuery> queries;
     for (const TwoBalls& pair : balls) queries.push_back(pair.query);
     QueryResult result;
@@ -83,14 +84,14 @@ TEST_P(LensVolumeConformance, WithinABoundOfLongDouble) {
       }
     }
   }
-  EXPECT_GT(large, 200u);
-  EXPECT_GT(small, 200u);
+  EXPECT_GT(large, cases(200, 5));
+  EXPECT_GT(small, cases(200, 5));
 }
 
 /// Bounds around many small spheres are large beside what they touch, and rounded by a part of their size.
 TEST_P(LensVolumeConformance, SmallSpheresThatTouchASmallBody) {
   QueryContext context = makeContext();
-  const Spheres spheres = dust(600, 5);
+  const Spheres spheres = dust(cases(600, 30), 5);
   const auto model = makeModel(spheres);
   const Sphere& grain = spheres.back();
   Random random(6);

@@ -12,7 +12,7 @@ TEST_P(OracleConformance, RandomSetsAtRandomPoses) {
              b = makeModel(randomSpheres(200, 0.25, 50, 2), true);
   Random random(3);
   std::size_t touching = 0;
-  for (int pose = 0; pose < 40; ++pose) {
+  for (std::size_t pose = 0; pose < cases(40, 4); ++pose) {
     Scene scene(a, b);
     scene.query.placement_a = randomPlacement(random, random.uniform(0, 2));
     scene.query.placement_b = randomPlacement(random, random.uniform(0, 1));
@@ -21,7 +21,7 @@ TEST_P(OracleConformance, RandomSetsAtRandomPoses) {
       expectOracle(context, scene.query, estimator);
     touching += context.overlap(scene.query).pair_count > 0;
   }
-  EXPECT_GT(touching, 20u);
+  EXPECT_GT(touching, cases(20, 1));
 }
 
 TEST_P(OracleConformance, LargeSet) {
@@ -38,7 +38,7 @@ TEST_P(OracleConformance, ClusteredSets) {
   QueryContext context = makeContext();
   const auto a = makeModel(clusteredSpheres(400, 8, 1)), b = makeModel(clusteredSpheres(400, 8, 2));
   Random random(3);
-  for (int pose = 0; pose < 10; ++pose) {
+  for (std::size_t pose = 0; pose < cases(10, 2); ++pose) {
     Scene scene(a, b);
     scene.query.placement_b = randomPlacement(random, random.uniform(0, 0.3));
     expectOracle(context, scene.query);

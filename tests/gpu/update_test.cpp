@@ -38,7 +38,7 @@ Overlap overlapOf(QueryContext& context, const CollisionModel& a, const Collisio
 
 TEST_P(UpdateConformance, EqualsAModelMadeThatWay) {
   QueryContext context = makeContext();
-  const Spheres spheres = randomSpheres(2000, 0.2, 30, 1);
+  const Spheres spheres = randomSpheres(cases(2000, 400), 0.2, 30, 1);
   const auto model = makeModel(spheres), other = makeModel(randomSpheres(500, 0.25, 20, 2), true);
   overlapOf(context, *model, *other, Estimator::raw);  // now its grids are there
   overlapOf(context, *model, *other, Estimator::raw, 300);
@@ -154,7 +154,7 @@ TEST_P(UpdateConformance, ManyThreadsMayBeTheFirstToAskAgain) {
   for (const double by : {0.1, -0.1}) {
     const Spheres moved = bent(spheres, by);
     model->update(moved.data(), moved.size());
-    std::vector<Overlap> overlaps(4);
+    std::vector<Overlap> overlaps(cases(4, 2));
     std::vector<std::thread> threads;
     for (Overlap& overlap : overlaps) {
       threads.emplace_back([&] {
