@@ -52,7 +52,7 @@ TEST_P(DeterminismConformance, AnyThreadsAndRuns) {
 /// More than a backend works on at once; and after it one pair, which may come back in another way.
 TEST_P(DeterminismConformance, AnyLengthOfABatch) {
   QueryContext context = makeContext();
-  std::vector<PairQuery> queries(20000);
+  std::vector<PairQuery> queries(cases(100000, 20000));
   const std::size_t near = cases(queries.size(), 30);  // at both ends
   for (std::size_t i = 0; i < queries.size(); ++i) {
     queries[i].a = a.get();
@@ -197,7 +197,7 @@ TEST_P(DeterminismConformance, BackendsAgree) {
 
 TEST_P(DeterminismConformance, ContextsInManyThreadsShareModels) {
   const std::vector<PairQuery> queries = batch(cases(20, 4));
-  std::vector<QueryResult> results(4);
+  std::vector<QueryResult> results(cases(4, 2));
   std::vector<std::thread> threads;  // the first to come builds the grids, and copies them to the device
   for (QueryResult& result : results) {
     threads.emplace_back([&] {
