@@ -175,23 +175,34 @@ struct Testing {
   }
 };
 
-/// Tests a group of each walker.
+/// Tests a group of each walker. Most groups meet none, so those that do are told apart before they are
+/// written: without a branch, which would be foretold badly.
 template <typename Lanes>
 inline bool testGroups(const WalkedGrid& walked, const Walkers& walkers, const Testing& testing,
                        Candidates& candidates, CandidateSink& sink) {
-  alignas(64) std::uint32_t there[Testing::kRoom];  // a bit for each sphere
+  alignas(64) std::uint32_t met[Testing::kRoom], numbers[Testing::kRoom], meeting[Testing::kRoom];
   for (std::uint32_t k = 0; k < testing.count; ++k)
-    there[k] = (1u << std::min<std::uint32_t>(testing.left[k], kLanes)) - 1;
+    met[k] = (1u << std::min<std::uint32_t>(testing.left[k], kLanes)) - 1;  // a bit for each sphere
+  for (std::uint32_t k = 0; k < testing.count; ++k)
+    met[k] &= Lanes::meeting(walkers.lookup(testing.walker[k]), walked.listed.from(testing.first[k]));
+  for (std::uint32_t k = testing.count; k % kLanes != 0; ++k) met[k] = 0;
+  for (std::uint32_t k = 0; k < testing.count; ++k) numbers[k] = k;
+  std::uint32_t groups = 0;
+  for (std::uint32_t k = 0; k < testing.count; k += kLanes) {
+    const std::uint32_t bits = Lanes::bitsOf(met + k);
+    typename Lanes::Kept(bits).copy(numbers + k, meeting + groups);
+    groups += static_cast<std::uint32_t>(std::popcount(bits));
+  }
   std::size_t count = candidates.count;
-  for (std::uint32_t k = 0; k < testing.count; ++k) {
+  for (std::uint32_t g = 0; g < groups; ++g) {
     if (count + kLanes > Candidates::kSize) {
       candidates.count = count;
       if (!sink.take(candidates)) return false;
       count = 0;
     }
-    const std::uint32_t w = testing.walker[k], first = testing.first[k];
-    const std::uint32_t met = Lanes::meeting(walkers.lookup(w), walked.listed.from(first)) & there[k];
-    count = Lanes::append(walkers.self[w], walked.grid.listed + first, met, candidates, count);
+    const std::uint32_t k = meeting[g];
+    count = Lanes::append(walkers.self[testing.walker[k]], walked.grid.listed + testing.first[k], met[k],
+                          candidates, count);
   }
   candidates.count = count;
   return true;
