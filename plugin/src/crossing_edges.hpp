@@ -6,9 +6,9 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// The crossing that is uphill from a gap between two flat faces: of an edge of A with one of B, along the
-/// normal to both, where both solids have nothing further out nearby. False if there is none.
-bool crossingEdges(const PackingBody& a, const PackingBody& b, const Gap& gap, Gauge::Corner& crossing);
+/// See Gauge::crossing().
+bool crossingEdges(const PackingBody& a, const PackingBody& b, const Gap& gap, const btVector3& direction,
+                   Gauge::Corner& crossing);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -253,8 +253,8 @@ Gauge::Reach PackingGauge::reach(const Gap& gap, const btVector3& towards) const
   return {until(a_, gap.triangle_a, gap.on_a), until(b_, gap.triangle_b, gap.on_b - apart())};
 }
 
-bool PackingGauge::crossing(const Gap& gap, Corner& crossing) const {
-  return crossingEdges(a_, b_, gap, crossing);
+bool PackingGauge::crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const {
+  return crossingEdges(a_, b_, gap, direction, crossing);
 }
 
 void PackingGauge::corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,

@@ -56,9 +56,10 @@ class Gauge {
   };
   virtual void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                        std::vector<Corner>& corners) const = 0;
-  /// Where, uphill from a gap between two flat faces, an edge of A crosses one of B, and both solids have
-  /// nothing further out along the normal to both nearby. False if none does.
-  virtual bool crossing(const Gap& gap, Corner& crossing) const = 0;
+  /// Where, not far from a gap between two flat faces, an edge of A crosses one of B, and both solids have
+  /// nothing further out along the normal to both nearby. False if none is found. `direction`: about that in
+  /// which the solids are in contact, from A to B.
+  virtual bool crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const = 0;
   /// How far the sphere of a contact stands out of its solid along `normal` (from A to B), or, where that is
   /// known, towards the other surface. Only differences between spheres of one solid matter [m].
   struct Forward {
@@ -83,7 +84,7 @@ class SurfaceGauge : public Gauge {
   Reach reach(const Gap&, const btVector3&) const override { return {0, BT_LARGE_FLOAT}; }
   void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;
-  bool crossing(const Gap&, Corner&) const override { return false; }
+  bool crossing(const Gap&, const btVector3&, Corner&) const override { return false; }
   Forward forward(std::size_t index, const btVector3& normal) const override;
   std::uint64_t id(std::size_t index) const override { return touches_[index].sphere; }
   bool exactB() const override { return true; }
@@ -105,7 +106,7 @@ class PackingGauge : public Gauge {
   Reach reach(const Gap& gap, const btVector3& towards) const override;
   void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;
-  bool crossing(const Gap& gap, Corner& crossing) const override;
+  bool crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const override;
   Forward forward(std::size_t index, const btVector3& normal) const override;
   std::uint64_t id(std::size_t index) const override;
   bool exactB() const override { return false; }

@@ -128,7 +128,8 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     const btVector3 normal = normals.at(m);
     const bool edge_a = rises(m.gap.normal_a, m.gap.curvature_a, normal),
                edge_b = rises(m.gap.normal_b, m.gap.curvature_b, normal);
-    const bool faces = opposed(m.gap) || m.gap.curvature_a != 0 || m.gap.curvature_b != 0;
+    const bool flat = m.gap.curvature_a == 0 && m.gap.curvature_b == 0;
+    const bool faces = !flat || opposed(m.gap);
     corners.clear();
     if (edge_a != edge_b) gauge.corners(m.index, m.gap, normal, edge_a, corners);
     for (const Gauge::Corner& corner : corners) {
@@ -138,7 +139,8 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     }
     Gauge::Corner crossing;
     const bool crosses =
-        !faces && gauge.crossing(m.gap, crossing) &&
+        flat && m.gap.normal_a.dot(m.gap.normal_b) < kAligned &&
+        gauge.crossing(m.gap, patch.normal, crossing) &&
         (isFound(crossing.id) || add(crossing.gap, crossing.gap.normal_a, crossing.id, Kind::crossing));
     // Beside them the face is less deep, or, where it ends in an arc, not there.
     if (corners.empty() && !crosses && add(m.gap, normal, m.id, faces ? Kind::faces : Kind::edge)) {

@@ -139,7 +139,7 @@ Escape leastEscape(const TestWorld& world) {
 std::vector<Crossing> crossings() {
   std::vector<Crossing> all;
   for (double depth : {0.005, 0.02, 0.05, 0.1, 0.17, 0.25}) {
-    for (double angle : {1.05, 1.3, M_PI / 2, 1.8, 2.09}) {
+    for (double angle : {0.8, 1.05, M_PI / 2, 1.8, 2.4}) {
       for (double lean : {-0.35, -0.15, 0.0, 0.2}) {
         for (double along : {-0.23, 0.0, 0.11, 0.3})
           all.push_back({depth, angle, lean, lean / 2 + 0.07, along, 0.1 - along / 2});
