@@ -1,5 +1,7 @@
 #include "innersphere/batched_dispatcher.hpp"
 
+#include <typeinfo>
+
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
 #include "pair_algorithm.hpp"
@@ -18,6 +20,11 @@ btCollisionObjectWrapper wrapped(const btCollisionObject& object) {
   return {nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1};
 }
 
+bool isKnown(const btBroadphasePair& pair) {
+  return pair.m_algorithm != nullptr && typeid(*pair.m_algorithm) == typeid(PairAlgorithm) &&
+         static_cast<PairAlgorithm&>(*pair.m_algorithm).isKnown();
+}
+
 }  // namespace
 
 void launchBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pairs,
@@ -29,6 +36,7 @@ void launchBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pair
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   for (int i = 0; i < all.size(); ++i) {
     btBroadphasePair& pair = all[i];
+    if (isKnown(pair)) continue;
     const btCollisionObject& a = *objectOf(pair.m_pProxy0);
     const btCollisionObject& b = *objectOf(pair.m_pProxy1);
     if (PackingShape::from(a.getCollisionShape()) == nullptr) continue;
@@ -41,7 +49,7 @@ void launchBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pair
     }
     auto* algorithm = dynamic_cast<PairAlgorithm*>(pair.m_algorithm);
     if (algorithm == nullptr) continue;
-    if (PackingContact* contact = algorithm->contact().announce(wrapped_a, wrapped_b, info.m_timeStep)) {
+    if (PackingContact* contact = algorithm->announce(wrapped_a, wrapped_b, info.m_timeStep)) {
       fresh.push_back(contact);
     }
   }

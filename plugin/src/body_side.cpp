@@ -66,5 +66,10 @@ bool PackingSide::isAlike(const PackingSide& other) const {
          prefix == other.prefix && same(scaling, other.scaling);
 }
 
+bool PackingSide::isUpToDate() const {
+  return margin == packing->getMargin() && prefix == packing->impl().prefix &&
+         same(scaling, packing->impl().scaling);
+}
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

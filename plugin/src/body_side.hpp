@@ -21,6 +21,11 @@ struct BodySide {
     return object == other.object && shape == other.shape && transform == other.transform;
   }
 
+  bool isWhere(const btCollisionObjectWrapper& wrapper) const {
+    return object == wrapper.getCollisionObject() && shape == wrapper.getCollisionShape() &&
+           transform == wrapper.getWorldTransform();
+  }
+
   static constexpr int kMaxNesting = 4;
 
   const btCollisionObject* object;
@@ -40,6 +45,8 @@ struct PackingSide : BodySide {
   bool refresh();
   /// The same but for where it is.
   bool isAlike(const PackingSide& other) const;
+  /// As its shape is now.
+  bool isUpToDate() const;
 
   const PackingShape* packing;
   btVector3 scaling;

@@ -55,10 +55,11 @@ void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector
 }  // namespace
 
 ContactMemory::Age ContactMemory::ageAt(const Placed& now, btScalar size_a, btScalar size_b, btScalar needed,
-                                        btScalar found, btScalar spacing) const {
+                                        btScalar found, btScalar spacing, bool empty) const {
   const btScalar searched = motionBetween(searched_at_, now, size_a, size_b);
   if (searched > (enclosed_ ? btScalar(0) : kMeasureAgain * spacing) || needed + searched > found)
     return Age::stale;
+  if (empty) return Age::current;
   const btScalar measured = motionBetween(measured_at_, now, size_a, size_b);
   return measured > kCarry * spacing ? Age::moved : Age::current;
 }
@@ -88,7 +89,7 @@ void ContactMemory::measuredAt(const Placed& now) {
 void ContactMemory::carryTo(const Placed& now, const PackingShape& a, btScalar spacing) {
   const Placed& then = measured_at_;
   patches = measured_;
-  if (then == now) return;
+  if (patches.empty() || then == now) return;
   const btMatrix3x3 turn_a = now.a.getBasis() * then.a.getBasis().transpose();
   const btMatrix3x3 turn_b = now.b.getBasis() * then.b.getBasis().transpose();
   const btVector3 to_b_then = then.b.getOrigin() - a.impl().toWorld(then.a).getOrigin();

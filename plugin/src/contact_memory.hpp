@@ -29,9 +29,10 @@ class ContactMemory {
     stale,    ///< contact has to be searched for
   };
   /// Contacts up to `needed` [m] apart are wanted now, and were found up to `found`. Sizes [m]: no point of A
-  /// is further than `size_a` from its origin, nor of B than `size_b`. `spacing`: see Measure.
+  /// is further than `size_a` from its origin, nor of B than `size_b`. `spacing`: see Measure. `empty`: there
+  /// is nothing to be measured.
   Age ageAt(const Placed& now, btScalar size_a, btScalar size_b, btScalar needed, btScalar found,
-            btScalar spacing) const;
+            btScalar spacing, bool empty) const;
   /// How much further apart than needed contacts are to be found, so that they are good for later steps.
   static btScalar reserve(btScalar spacing);
 

@@ -33,6 +33,7 @@ class ManifoldSet {
                      const std::vector<ContactPatch>& patches, btManifoldResult* result);
 
   void append(btManifoldArray& manifolds) const;
+  std::size_t size() const { return entries_.size(); }
 
  private:
   struct Entry {

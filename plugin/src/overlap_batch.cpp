@@ -55,46 +55,63 @@ bool measureOnSurfaces(const Bodies& bodies, PackingContact& contact) {
 }  // namespace
 
 void OverlapBatch::setOptions(const ContactOptions& options) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
   finishLaunch();
   if (options.backend != options_.backend) context_.reset();
   options_ = options;
-  for (PackingContact* contact : live_) contact->valid = false;
+  for (PackingContact* contact : live_) {
+    contact->valid = false;
+    contact->look->received = false;
+  }
 }
 
 void OverlapBatch::add(PackingContact* contact) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
+  contact->look = looks_.add(contact->a, contact->b);
   live_.push_back(contact);
 }
 
 void OverlapBatch::remove(PackingContact* contact) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
   finishLaunch();
+  looks_.remove(contact->look);
+  contact->look = &contact->own_look;
   live_.erase(std::remove(live_.begin(), live_.end(), contact), live_.end());
+}
+
+bool OverlapBatch::hasDelivered(PackingContact& contact, const btCollisionObjectWrapper& a,
+                                const btCollisionObjectWrapper& b, btScalar separation) {
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
+  finishLaunch();
+  if (contact.separation != separation || contact.a.nesting < 0 || contact.b.nesting < 0) return false;
+  const auto isHere = [&] { return contact.a.isWhere(a) && contact.b.isWhere(b); };
+  if (!isHere()) {
+    if (!looks_.isDue(*contact.look)) return false;
+    bringUpToDate(contact.time_step);
+    if (!isHere()) return false;
+  }
+  if (!contact.look->received || !contact.valid || !looks_.isFresh(*contact.look) ||
+      !contact.a.isUpToDate() || !contact.b.isUpToDate() || neededSeparation(contact) > contact.needed)
+    return false;
+  looks_.ask(*contact.look);
+  return true;
 }
 
 const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, const PackingSide& a,
                                                       const PackingSide& b, btScalar separation) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
   finishLaunch();
   if (contact.separation != separation) contact.valid = false;
   contact.separation = separation;
   const bool moved = !a.isWhere(contact.a) || !b.isWhere(contact.b);
-  if (moved && looks_.isDue(contact.look)) {
-    lookAtAll(contact.time_step);
-    try {
-      runStale();
-    } catch (const Error&) {
-      // Another pair may be at fault; it will hear of it when it is asked for.
-    }
-  }
+  if (moved && looks_.isDue(*contact.look)) bringUpToDate(contact.time_step);
   if (!isUpToDate(contact, a, b)) updateAlone(contact, a, b);
-  looks_.ask(contact.look);
+  looks_.ask(*contact.look);
   return contact.memory.patches;
 }
 
 Overlap OverlapBatch::volumesOf(const PackingContact& contact) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
   finishLaunch();
   if (contact.valid && !contact.measure->on_surfaces) return contact.overlap;
   return context().overlap(makeQuery(Pass::volumes, contact), {Want::wrench, options_.estimator});
@@ -106,15 +123,13 @@ QueryContext& OverlapBatch::context() {
 }
 
 void OverlapBatch::launch(const std::vector<PackingContact*>& fresh, btScalar time_step) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
   finishLaunch();
-  for (PackingContact* contact : fresh) looks_.ask(contact->look);
+  for (PackingContact* contact : fresh) looks_.ask(*contact->look);
   lookAtAll(time_step);
-  if (stale_.empty()) return;
-  countStale();
-  makeQueries(Pass::surfaces);
+  if (stale_.empty()) return deliver();
   try {
-    if (!queries_.empty()) context().start(queries_.data(), queries_.size(), optionsOf(Pass::surfaces));
+    startStale();
     launched_ = true;
   } catch (const Error&) {
     // No context: each pair hears of it when it is asked for.
@@ -125,18 +140,15 @@ void OverlapBatch::finishLaunch() {
   if (!launched_) return;
   launched_ = false;
   try {
-    if (!queries_.empty()) {
-      context().wait(result_);
-      takeResults(Pass::surfaces);
-    }
-    runFurtherPasses();
+    finishStale();
   } catch (const Error&) {
     // All of them are invalid still, so that each is queried again when it is asked for.
   }
+  deliver();
 }
 
 BatchCount OverlapBatch::count() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
   return count_;
 }
 
@@ -145,9 +157,10 @@ OverlapBatch::Age OverlapBatch::ageOf(const PackingContact& contact, const Packi
   if (!contact.valid || !contact.a.isAlike(a) || !contact.b.isAlike(b)) return Age::stale;
   // Also if the bodies have become faster: contacts are wanted from further away then.
   const Measure& measure = *contact.measure;
+  const bool empty = contact.memory.candidates.indices.empty();
   const Age age = contact.memory.ageAt({a.transform, b.transform}, a.packing->getAngularMotionDisc(),
                                        b.packing->getAngularMotionDisc(), contact.needed, measure.separation,
-                                       measure.spacing);
+                                       measure.spacing, empty);
   const bool same = contact.a.transform == a.transform && contact.b.transform == b.transform;
   const bool keeps = measure.on_surfaces && !contact.deep;
   return keeps || same ? age : Age::stale;
@@ -155,30 +168,54 @@ OverlapBatch::Age OverlapBatch::ageOf(const PackingContact& contact, const Packi
 
 bool OverlapBatch::isUpToDate(const PackingContact& contact, const PackingSide& a,
                               const PackingSide& b) const {
-  return contact.valid && looks_.isFresh(contact.look) && contact.a.isAlike(a) && contact.b.isAlike(b) &&
+  return contact.valid && looks_.isFresh(*contact.look) && contact.a.isAlike(a) && contact.b.isAlike(b) &&
          contact.a.isWhere(a) && contact.b.isWhere(b) && !(neededSeparation(contact) > contact.needed);
 }
 
+void OverlapBatch::bringUpToDate(btScalar time_step) {
+  lookAtAll(time_step);
+  try {
+    runStale();
+  } catch (const Error&) {
+    // Another pair may be at fault; it will hear of it when it is asked for.
+  }
+  deliver();
+}
+
+void OverlapBatch::deliver() {
+  inParallel(live_.size(), [&](std::size_t i) {
+    fetchNext(live_, i);
+    PackingContact& contact = *live_[i];
+    if (!contact.valid || !looks_.isFresh(*contact.look)) return;
+    contact.look->received = contact.separation == 0 &&
+                             contact.receiver.receive(contact.memory.patches, options_, contact.time_step);
+  });
+}
+
 void OverlapBatch::lookAtAll(btScalar time_step) {
-  looks_.begin();
-  inParallel(live_.size(), [&](std::size_t i) { lookAt(*live_[i], time_step); });
+  looks_.begin(time_step);
+  inParallel(live_.size(), [&](std::size_t i) {
+    fetchNext(live_, i);
+    lookAt(*live_[i], time_step);
+  });
   stale_.clear();
   for (PackingContact* contact : live_) {
-    if (looks_.isFresh(contact->look) && contact->age != Age::current) stale_.push_back(contact);
+    if (looks_.isFresh(*contact->look) && contact->age != Age::current) stale_.push_back(contact);
   }
 }
 
 /// Finds out what there is to do for a pair, and does it if it is only to take its contacts along.
 void OverlapBatch::lookAt(PackingContact& contact, btScalar time_step) {
-  if (!looks_.join(contact.look) || !isActive(contact.a, contact.b)) return;
+  if (!looks_.join(*contact.look) || !isActive(contact.a, contact.b)) return;
   PackingSide a = contact.a, b = contact.b;
   if (!a.refresh() || !b.refresh()) return;
-  contact.look.wanted = false;
+  contact.look->wanted = false;
   contact.time_step = time_step;
   place(contact, a, b);
 }
 
 void OverlapBatch::place(PackingContact& contact, const PackingSide& a, const PackingSide& b) {
+  contact.look->received = false;
   contact.needed = neededSeparation(contact);
   contact.age = ageOf(contact, a, b);
   contact.a = a;
@@ -207,13 +244,22 @@ void OverlapBatch::countStale() {
 }
 
 void OverlapBatch::runStale() {
-  countStale();
-  run(Pass::surfaces);
-  runFurtherPasses();
+  startStale();
+  finishStale();
 }
 
-void OverlapBatch::runFurtherPasses() {
-  measureAgain();
+void OverlapBatch::startStale() {
+  countStale();
+  makeQueries(Pass::surfaces);
+  if (!queries_.empty()) context().start(queries_.data(), queries_.size(), optionsOf(Pass::surfaces));
+}
+
+void OverlapBatch::finishStale() {
+  measureAgain();  // while a device works
+  if (!queries_.empty()) {
+    context().wait(result_);
+    takeResults(Pass::surfaces);
+  }
   run(Pass::touch);
   run(Pass::deep);
   run(Pass::volumes);

@@ -9,9 +9,10 @@
 #include "body_side.hpp"
 #include "contact_memory.hpp"
 #include "contact_patch.hpp"
+#include "contact_receiver.hpp"
 #include "innersphere/contact_options.hpp"
 #include "innersphere/query.hpp"
-#include "look_count.hpp"
+#include "look_board.hpp"
 #include "measure.hpp"
 #include "packing_body.hpp"
 
@@ -20,26 +21,30 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// The contact of two packings.
 struct PackingContact {
-  PackingContact(const PackingSide& first, const PackingSide& second) : a(first), b(second) {}
+  PackingContact(const PackingSide& first, const PackingSide& second, ContactReceiver& where_to)
+      : receiver(where_to), a(first), b(second) {}
 
+  // What is read when Bullet asks for the pair comes first: pairs are many and far from each other in memory.
+  ContactReceiver& receiver;
+  Look own_look;
+  Look* look = &own_look;                              ///< the board's once it has been added
+  bool valid = false;                                  ///< what is known of the contact belongs together
+  ContactMemory::Age age = ContactMemory::Age::stale;  ///< what the present launch has to do
+  btScalar separation = 0;                             ///< asked for; see Measure
+  btScalar time_step = 0;                              ///< within which contacts may close [s]
+  btScalar needed = 0;  ///< patches are, or will be, right for gaps up to this [m]
   PackingSide a;
   PackingSide b;
-  btScalar separation = 0;         ///< asked for; see Measure
-  btScalar time_step = 0;          ///< within which contacts may close [s]
   std::optional<Measure> measure;  ///< of the last query
   Placed placed() const { return {a.transform, b.transform}; }
 
-  ContactMemory memory;                                ///< its candidates are indices of contacts
-  std::vector<SphereContact> contacts;                 ///< those that are candidates
-  std::size_t count_a = 0;                             ///< of A's spheres, which come first
-  Overlap overlap;                                     ///< only where depth is not measured on the surfaces
-  bool valid = false;                                  ///< all of the above belongs together
-  ContactMemory::Age age = ContactMemory::Age::stale;  ///< what the present launch has to do
-  bool near = false;                                   ///< enlarged spheres overlap
-  bool touching = false;                               ///< the surfaces are near each other
-  bool deep = false;                                   ///< they are not, and yet the solids overlap
-  btScalar needed = 0;  ///< patches are, or will be, right for gaps up to this [m]
-  Look look;
+  ContactMemory memory;                 ///< its candidates are indices of contacts
+  std::vector<SphereContact> contacts;  ///< those that are candidates
+  std::size_t count_a = 0;              ///< of A's spheres, which come first
+  Overlap overlap;                      ///< only where depth is not measured on the surfaces
+  bool near = false;                    ///< enlarged spheres overlap
+  bool touching = false;                ///< the surfaces are near each other
+  bool deep = false;                    ///< they are not, and yet the solids overlap
 };
 
 /// What a batch has done since it was made.
@@ -49,7 +54,7 @@ struct BatchCount {
   std::size_t measured = 0;  ///< pairs that were measured again without a query
 };
 
-/// Looks at all pairs at once: see LookCount. A look makes one query for all pairs that need one, so that a
+/// Looks at all pairs at once: see LookBoard. A look makes one query for all pairs that need one, so that a
 /// step costs one launch, and one more for each pair that is new. A launch is up to three queries, one after
 /// the other: see Pass. Pairs that have moved less than what a query leaves room for are measured again where
 /// it found contact, and those that have hardly moved at all take their contacts along. Safe to use from
@@ -61,6 +66,11 @@ class OverlapBatch {
 
   void add(PackingContact* contact);
   void remove(PackingContact* contact);
+
+  /// True if the last look, or one that is due now, has handed out the patches of `contact` for two bodies as
+  /// they are now: then there is nothing left to do.
+  bool hasDelivered(PackingContact& contact, const btCollisionObjectWrapper& a,
+                    const btCollisionObjectWrapper& b, btScalar separation);
 
   /// Brings `contact` up to date for two sides and returns its patches. It need not have been added; then it
   /// is queried alone. Throws Error from the query.
@@ -77,18 +87,24 @@ class OverlapBatch {
 
   BatchCount count() const;
 
+  /// What tells whether there is anything to do for a pair.
+  LookBoard& looks() { return looks_; }
+
  private:
   QueryContext& context();
   using Age = ContactMemory::Age;
   Age ageOf(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
   bool isUpToDate(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
+  void bringUpToDate(btScalar time_step);
   void lookAtAll(btScalar time_step);
+  void deliver();
   void lookAt(PackingContact& contact, btScalar time_step);
   void place(PackingContact& contact, const PackingSide& a, const PackingSide& b);
   void updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b);
   void countStale();
   void runStale();
-  void runFurtherPasses();
+  void startStale();
+  void finishStale();
   void finishLaunch();
   enum class Pass {
     surfaces,  ///< spheres enlarged so that they find all contact of the surfaces that they stand for
@@ -106,11 +122,10 @@ class OverlapBatch {
   void takeResult(Pass pass, std::size_t index, PackingContact& contact) const;
   void measureAgain();
 
-  mutable std::mutex mutex_;
   BatchCount count_;
   ContactOptions options_;
   std::unique_ptr<QueryContext> context_;  ///< made by the first query
-  LookCount looks_;
+  LookBoard looks_;
   std::vector<PackingContact*> live_;
   std::vector<PackingContact*> stale_;
   std::vector<PackingContact*> queried_;

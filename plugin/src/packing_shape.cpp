@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <typeinfo>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <LinearMath/btAabbUtil2.h>
@@ -45,6 +46,7 @@ btTransform PackingShape::Impl::toWorld(const btTransform& body) const {
 PackingShape::PackingShape(std::shared_ptr<const CollisionModel> model)
     : impl_(std::make_unique<Impl>(std::move(model))) {
   m_shapeType = kPackingShapeType;
+  noteChange();
 }
 
 PackingShape::~PackingShape() = default;
@@ -59,12 +61,14 @@ const btTransform& PackingShape::principalTransform() const {
 
 const PackingShape* PackingShape::from(const btCollisionShape* shape) {
   if (shape == nullptr || shape->getShapeType() != kPackingShapeType) return nullptr;
+  if (typeid(*shape) == typeid(PackingShape)) return static_cast<const PackingShape*>(shape);
   return dynamic_cast<const PackingShape*>(shape);
 }
 
 void PackingShape::setSphereCount(std::size_t count) {
   const std::size_t all = impl_->packing().spheres.size();
   impl_->prefix = &impl_->solid->prefix(count == 0 ? all : std::min(count, all));
+  noteChange();
 }
 
 std::size_t PackingShape::sphereCount() const {
@@ -84,10 +88,20 @@ void PackingShape::getBoundingSphere(btVector3& centre, btScalar& radius) const 
 }
 
 btScalar PackingShape::getAngularMotionDisc() const {
+  return impl_->disc;
+}
+
+void PackingShape::setMargin(btScalar margin) {
+  btConcaveShape::setMargin(margin);
+  noteChange();
+}
+
+void PackingShape::noteChange() {
   btVector3 centre;
   btScalar radius;
-  getBoundingSphere(centre, radius);
-  return radius + centre.length();
+  PackingShape::getBoundingSphere(centre, radius);
+  impl_->disc = radius + centre.length();
+  ++impl_->version;
 }
 
 btScalar PackingShape::getContactBreakingThreshold(btScalar factor) const {
@@ -106,6 +120,7 @@ void PackingShape::setLocalScaling(const btVector3& scaling) {
                 "mesh instead.");
   }
   impl_->scaling = scaling;
+  noteChange();
 }
 
 const btVector3& PackingShape::getLocalScaling() const {

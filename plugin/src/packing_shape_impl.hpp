@@ -32,6 +32,8 @@ struct PackingShape::Impl {
   std::shared_ptr<const PackedSolid> solid;
   const Prefix* prefix;  ///< that the user chose
   btVector3 scaling{1, 1, 1};
+  btScalar disc = 0;        ///< asked for many times in a step
+  std::size_t version = 0;  ///< rises with each change
   mutable SerializedSpheres serialized;
 };
 

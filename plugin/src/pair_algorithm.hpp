@@ -5,12 +5,11 @@
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 
+#include "pair_contact.hpp"
 #include "registration.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
-
-class PairContact;
 
 class PairAlgorithm : public btCollisionAlgorithm {
  public:
@@ -25,10 +24,18 @@ class PairAlgorithm : public btCollisionAlgorithm {
                                  const btDispatcherInfo& dispatch, btManifoldResult* result) override;
   void getAllContactManifolds(btManifoldArray& manifolds) override;
 
-  PairContact& contact() { return *contact_; }
+  /// See PairContact.
+  PackingContact* announce(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+                           btScalar time_step);
+  /// Whether it has been announced or processed.
+  bool isKnown() const { return place_.board != nullptr; }
 
  private:
+  bool isDone(const btCollisionObjectWrapper& body0, const btCollisionObjectWrapper& body1,
+              const btDispatcherInfo& dispatch, const btManifoldResult& result) const;
+
   std::unique_ptr<PairContact> contact_;
+  PairContact::Place place_;  ///< kept here, too: this is in the cache when Bullet asks for the pair
 };
 
 /// Bullet allocates algorithms from a pool whose elements have a fixed size and does not check in release

@@ -1,6 +1,9 @@
 #include "pair_contact.hpp"
 
+#include <typeinfo>
 #include <utility>
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include "innersphere/error.hpp"
 #include "log.hpp"
@@ -27,6 +30,21 @@ btScalar deepest(const std::vector<ContactPatch>& patches) {
   return depth;
 }
 
+/// Code of the user's that wants to be called by the thread that dispatches, and before the next pair.
+bool hasCallbacks(const btDispatcher& dispatcher) {
+  return static_cast<const btCollisionDispatcher&>(dispatcher).getNearCallback() !=
+             &btCollisionDispatcher::defaultNearCallback ||
+         gContactAddedCallback != nullptr || gContactProcessedCallback != nullptr ||
+         gContactDestroyedCallback != nullptr || gContactStartedCallback != nullptr ||
+         gContactEndedCallback != nullptr ||
+         gCalculateCombinedFrictionCallback != &btManifoldResult::calculateCombinedFriction ||
+         gCalculateCombinedRestitutionCallback != &btManifoldResult::calculateCombinedRestitution ||
+         gCalculateCombinedRollingFrictionCallback != &btManifoldResult::calculateCombinedRollingFriction ||
+         gCalculateCombinedSpinningFrictionCallback != &btManifoldResult::calculateCombinedSpinningFriction ||
+         gCalculateCombinedContactDampingCallback != &btManifoldResult::calculateCombinedContactDamping ||
+         gCalculateCombinedContactStiffnessCallback != &btManifoldResult::calculateCombinedContactStiffness;
+}
+
 /// On B.
 btVector3 impulseOf(const btManifoldPoint& point) {
   return -(point.m_normalWorldOnB * point.m_appliedImpulse +
@@ -49,8 +67,9 @@ PairContact::~PairContact() {
   forget();
 }
 
-void PairContact::process(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+void PairContact::process(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, bool swapped,
                           const btDispatcherInfo& dispatch, btManifoldResult* result) {
+  if (hasReceived(a, b, *result, dispatch.m_timeStep)) return;
   static const std::vector<ContactPatch> kNone;
   const std::vector<ContactPatch>* patches = &kNone;
   look(a, b, closest_ ? btScalar(0) : dispatch.m_timeStep);
@@ -68,11 +87,60 @@ void PairContact::process(const btCollisionObjectWrapper& a, const btCollisionOb
     ManifoldSet::report(*object_a_, *object_b_, origin(), *patches, result);
     return;
   }
-  const ContactLaw law = lawOf(dispatch.m_timeStep);
+  swapped_ = swapped;
+  plain_ = isPlain(a, b, *result);
+  const ContactLaw law = lawOf(options_, dispatch.m_timeStep);
   manifolds_.write(*object_a_, *object_b_, origin(), *patches, law,
                    sweepOf(*object_a_, *object_b_, time_step_), result);
   penalty_ = PenaltyReport();
   if (law.penalty() && patches != &kNone) push(law, dispatch);
+}
+
+PairContact::Place PairContact::place() const {
+  if (closest_) return {};
+  if (packings_) return {&registration_->batch().looks(), packings_->look, swapped_};
+  if (surface_) return {&registration_->surfaces().looks(), surface_->look, swapped_};
+  return {};
+}
+
+/// Bullet asks for the same pair in the same way, and a look at all pairs has done what there was to do.
+bool PairContact::hasReceived(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+                              const btManifoldResult& result, btScalar time_step) {
+  const btScalar separation = result.m_closestPointDistanceThreshold;
+  if (closest_ || typeid(result) != typeid(btManifoldResult) || time_step != time_step_ ||
+      a.getCollisionShape() != shape_a_ || b.getCollisionShape() != shape_b_ ||
+      !isFinite(a.getWorldTransform()) || !isFinite(b.getWorldTransform()))
+    return false;
+  if (packings_) return registration_->batch().hasDelivered(*packings_, a, b, separation);
+  return surface_ && registration_->surfaces().hasDelivered(*surface_, a, b, separation, time_step);
+}
+
+bool PairContact::receive(const std::vector<ContactPatch>& patches, const ContactOptions& options,
+                          btScalar time_step) {
+  if (time_step != time_step_ || options.response == Response::penalty) return false;
+  if (!patches.empty() || manifolds_.size() > 0) {
+    // New manifolds are the dispatcher's, which is not asked by several threads at once.
+    if (!plain_ || hasCallbacks(*dispatcher_) || patches.size() > manifolds_.size()) return false;
+    options_ = options;
+    transform_a_ = object_a_->getWorldTransform();
+    transform_b_ = object_b_->getWorldTransform();
+    const btCollisionObjectWrapper a(nullptr, shape_a_, object_a_, transform_a_, -1, -1);
+    const btCollisionObjectWrapper b(nullptr, shape_b_, object_b_, transform_b_, -1, -1);
+    btManifoldResult result(swapped_ ? &b : &a, swapped_ ? &a : &b);
+    result.setShapeIdentifiersA(-1, -1);
+    result.setShapeIdentifiersB(-1, -1);
+    manifolds_.write(*object_a_, *object_b_, origin(), patches, lawOf(options, time_step),
+                     sweepOf(*object_a_, *object_b_, time_step), &result);
+  }
+  depth_ = deepest(patches);
+  return true;
+}
+
+/// Bullet asks for the pair as it does of itself, and for no child of a compound, which it names in the
+/// points.
+bool PairContact::isPlain(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+                          const btManifoldResult& result) {
+  return a.m_parent == nullptr && b.m_parent == nullptr && typeid(result) == typeid(btManifoldResult);
 }
 
 PackingContact* PairContact::announce(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
@@ -102,7 +170,7 @@ void PairContact::look(const btCollisionObjectWrapper& a, const btCollisionObjec
 bool PairContact::provide(const PackingSide& a, const PackingSide& b) {
   const bool fresh = !packings_;
   if (fresh) {
-    packings_.emplace(a, b);
+    packings_.emplace(a, b, *this);
     if (!closest_) registration_->batch().add(&*packings_);
   }
   packings_->time_step = time_step_;
@@ -119,14 +187,14 @@ const std::vector<ContactPatch>& PairContact::update(const btCollisionObjectWrap
   }
   const BodySide side_b(b);
   if (!surface_) {
-    surface_.emplace(side_a, side_b);
+    surface_.emplace(side_a, side_b, *this);
     if (!closest_) registration_->surfaces().add(&*surface_);
   }
   return registration_->surfaces().update(*surface_, side_a, side_b, separation, time_step_);
 }
 
-ContactLaw PairContact::lawOf(btScalar time_step) const {
-  ContactOptions options = options_;
+ContactLaw PairContact::lawOf(const ContactOptions& chosen, btScalar time_step) const {
+  ContactOptions options = chosen;
   // A law of the user's own on a body takes the place of ours.
   if (hasLawOfItsOwn(*object_a_) || hasLawOfItsOwn(*object_b_)) options.response = Response::rigid;
   if (options.response == Response::penalty && !Penalty::applies(*object_a_, *object_b_))

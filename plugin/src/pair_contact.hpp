@@ -19,16 +19,25 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// A is the body with the packing, or the first of two packings.
-class PairContact {
+class PairContact : public ContactReceiver {
  public:
   /// `closest`: for one closest-point query, without touching the dispatcher's manifolds.
   PairContact(btDispatcher* dispatcher, std::shared_ptr<Registration> registration, bool closest);
-  ~PairContact();
+  ~PairContact() override;
   PairContact(const PairContact&) = delete;
   PairContact& operator=(const PairContact&) = delete;
 
-  void process(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+  /// `swapped`: B is the first body for Bullet.
+  void process(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, bool swapped,
                const btDispatcherInfo& dispatch, btManifoldResult* result);
+
+  /// Where it is on a board of all pairs, if it is.
+  struct Place {
+    LookBoard* board = nullptr;
+    Look* look = nullptr;
+    bool swapped = false;  ///< B is the first body for Bullet
+  };
+  Place place() const;
 
   /// Tells the batch of a pair before it is processed. Returns it if it is one of packings that the batch did
   /// not know.
@@ -42,11 +51,17 @@ class PairContact {
   bool read(PairOverlap& overlap);
 
  private:
+  bool hasReceived(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+                   const btManifoldResult& result, btScalar time_step);
+  bool receive(const std::vector<ContactPatch>& patches, const ContactOptions& options,
+               btScalar time_step) override;
+  static bool isPlain(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+                      const btManifoldResult& result);
   const std::vector<ContactPatch>& update(const btCollisionObjectWrapper& a,
                                           const btCollisionObjectWrapper& b, btScalar separation);
   void look(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btScalar time_step);
   bool provide(const PackingSide& a, const PackingSide& b);
-  ContactLaw lawOf(btScalar time_step) const;
+  ContactLaw lawOf(const ContactOptions& options, btScalar time_step) const;
   void push(const ContactLaw& law, const btDispatcherInfo& dispatch);
   Overlap overlap();
   /// Of A's packing in the world, and where the torque of overlap() acts.
@@ -59,6 +74,8 @@ class PairContact {
   const std::shared_ptr<Registration> registration_;
   const bool closest_;
   bool reported_ = false;
+  bool swapped_ = false;    ///< B is the first body for Bullet
+  bool plain_ = false;      ///< see isPlain()
   ContactOptions options_;  ///< of the last call
   const btCollisionObject* object_a_ = nullptr;
   const btCollisionObject* object_b_ = nullptr;

@@ -16,57 +16,86 @@ btScalar neededSeparation(const SurfacePair& pair, btScalar time_step) {
 }  // namespace
 
 void SurfaceBatch::setOptions(const ContactOptions& options) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
   options_ = options;
-  for (SurfacePair* pair : live_) pair->reached.reset();
+  for (SurfacePair* pair : live_) {
+    pair->reached.reset();
+    pair->look->received = false;
+  }
 }
 
 void SurfaceBatch::add(SurfacePair* pair) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
+  pair->look = looks_.add(pair->a, pair->b);
   live_.push_back(pair);
 }
 
 void SurfaceBatch::remove(SurfacePair* pair) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
+  looks_.remove(pair->look);
+  pair->look = &pair->own_look;
   live_.erase(std::remove(live_.begin(), live_.end(), pair), live_.end());
+}
+
+bool SurfaceBatch::hasDelivered(SurfacePair& pair, const btCollisionObjectWrapper& a,
+                                const btCollisionObjectWrapper& b, btScalar separation, btScalar time_step) {
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
+  if (pair.separation != separation || pair.a.nesting < 0 || pair.b.nesting < 0) return false;
+  const auto isHere = [&] { return pair.a.isWhere(a) && pair.b.isWhere(b); };
+  if (!isHere()) {
+    if (!looks_.isDue(*pair.look)) return false;
+    lookAtAll(time_step);
+    if (!isHere()) return false;
+  }
+  if (!pair.look->received || !looks_.isFresh(*pair.look) || !pair.a.isUpToDate() ||
+      pair.reached != neededSeparation(pair, time_step))
+    return false;
+  looks_.ask(*pair.look);
+  return true;
 }
 
 const std::vector<ContactPatch>& SurfaceBatch::update(SurfacePair& pair, const PackingSide& a,
                                                       const BodySide& b, btScalar separation,
                                                       btScalar time_step) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
   if (pair.separation != separation) pair.reached.reset();
   pair.separation = separation;
   const auto isHere = [&] { return pair.a.isWhere(a) && pair.b.isWhere(b); };
-  if (!isHere() && looks_.isDue(pair.look)) lookAtAll(time_step);
-  const bool up_to_date = looks_.isFresh(pair.look) && pair.a.isAlike(a) && isHere() &&
+  if (!isHere() && looks_.isDue(*pair.look)) lookAtAll(time_step);
+  const bool up_to_date = looks_.isFresh(*pair.look) && pair.a.isAlike(a) && isHere() &&
                           pair.reached == neededSeparation(pair, time_step);
   if (!up_to_date) place(pair, a, b, time_step);
-  looks_.ask(pair.look);
+  looks_.ask(*pair.look);
   return pair.contact.patches();
 }
 
 Overlap SurfaceBatch::volumesOf(SurfacePair& pair) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
   return pair.contact.volumesOf(options_, pair.a.transform, pair.b.transform);
 }
 
 void SurfaceBatch::lookAtAll(btScalar time_step) {
-  looks_.begin();
-  inParallel(live_.size(), [&](std::size_t i) { lookAt(*live_[i], time_step); });
+  looks_.begin(time_step);
+  inParallel(live_.size(), [&](std::size_t i) {
+    fetchNext(live_, i);
+    lookAt(*live_[i], time_step);
+  });
 }
 
 void SurfaceBatch::lookAt(SurfacePair& pair, btScalar time_step) const {
-  if (!looks_.join(pair.look) || !isActive(pair.a, pair.b)) return;
+  if (!looks_.join(*pair.look) || !isActive(pair.a, pair.b)) return;
   PackingSide a = pair.a;
   BodySide b = pair.b;
   if (!a.refresh() || !b.refresh()) return;
-  pair.look.wanted = false;
+  pair.look->wanted = false;
   place(pair, a, b, time_step);
+  pair.look->received =
+      pair.separation == 0 && pair.receiver.receive(pair.contact.patches(), options_, time_step);
 }
 
 void SurfaceBatch::place(SurfacePair& pair, const PackingSide& a, const BodySide& b,
                          btScalar time_step) const {
+  pair.look->received = false;
   pair.a = a;
   pair.b = b;
   const btScalar needed = neededSeparation(pair, time_step);

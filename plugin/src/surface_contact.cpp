@@ -123,7 +123,7 @@ bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, cons
   if (!same) return false;
   const btScalar size_b = other_.isInfinite() ? BT_LARGE_FLOAT : other_.getAngularMotionDisc();
   const ContactMemory::Age age = memory_.ageAt(now, packing_.getAngularMotionDisc(), size_b, separation,
-                                               before->separation, measure.spacing);
+                                               before->separation, measure.spacing, touches_.empty());
   if (age == ContactMemory::Age::stale) return false;
   if (age == ContactMemory::Age::current) {
     memory_.carryTo(now, packing_, measure.spacing);

@@ -179,6 +179,56 @@ TEST_P(Batch, MovesBodiesAsThePlainDispatcherDoes) {
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_LT(found[i].distance(expected[i]), 1e-3) << i;
 }
 
+/// Everything that a solver is told, and what it has found.
+void append(const btPersistentManifold& manifold, std::vector<double>& all) {
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    for (const btVector3* v : {&point.m_localPointA, &point.m_localPointB, &point.m_positionWorldOnA,
+                               &point.m_positionWorldOnB, &point.m_normalWorldOnB})
+      for (int k = 0; k < 3; ++k) all.push_back((*v)[k]);
+    for (const double x :
+         {double(point.m_distance1), double(point.m_combinedFriction), double(point.m_combinedRestitution),
+          double(point.m_combinedContactStiffness1), double(point.m_combinedContactDamping1),
+          double(point.m_appliedImpulse), double(point.m_contactPointFlags), double(point.m_lifeTime)})
+      all.push_back(x);
+  }
+}
+
+/// A look at all pairs writes manifolds with all threads, but where code of the user's has a part in it.
+TEST_P(Batch, ManifoldsAreThoseThatAreWrittenOneByOne) {
+  constexpr int kSteps = 120;
+  const auto contacts = [](DispatcherKind kind, int one_by_one_from) {
+    TestWorld world({}, kind);
+    world.addFloor();
+    const auto shape = cube();
+    for (int i = 0; i < 8; ++i) {
+      btRigidBody& body =
+          world.add(shape, 1 + i % 2,
+                    btVector3(btScalar(0.1 * (i % 3)), btScalar(0.4 * (i % 2)), btScalar(0.6 + 1.02 * i)),
+                    btQuaternion(btVector3(0, 1, 1).normalized(), btScalar(0.3 * i)));
+      body.setRestitution(btScalar(0.2 * (i % 3)));
+      body.setFriction(btScalar(0.3 + 0.1 * i));
+    }
+    std::vector<double> all;
+    for (int step = 0; step < kSteps; ++step) {
+      if (step == one_by_one_from) {
+        world.dispatcher.setNearCallback(
+            [](btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+              btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
+            });
+      }
+      world.run(1.0 / 60);
+      for (int i = 0; i < world.dispatcher.getNumManifolds(); ++i)
+        append(*world.dispatcher.getManifoldByIndexInternal(i), all);
+    }
+    return all;
+  };
+  const std::vector<double> expected = contacts(GetParam(), 0);
+  EXPECT_GT(expected.size(), 10000u);
+  EXPECT_EQ(contacts(GetParam(), kSteps), expected);
+  EXPECT_EQ(contacts(GetParam(), kSteps / 2), expected);
+}
+
 std::string dispatcherName(const testing::TestParamInfo<DispatcherKind>& info) {
   constexpr const char* kNames[] = {"plain", "Mt", "Batched", "BatchedMt"};
   return kNames[static_cast<int>(info.param)];

@@ -15,6 +15,9 @@ struct PackingCollisionAlgorithm {
   /// which Bullet itself walks down to their children. Call it after
   /// btGImpactCollisionAlgorithm::registerAlgorithm, which overwrites every row of its own. Calling it again
   /// replaces the options. Throws Error: bad_argument, no_device.
+  /// Contacts are written to the dispatcher's manifolds by all threads, when Bullet asks for the first pair
+  /// of a step. Where the user has set a near-callback, or any of Bullet's global callbacks of contacts, they
+  /// are written as Bullet asks for them, pair by pair and by the thread that asks, which takes longer.
   static void registerAlgorithm(btCollisionDispatcher* dispatcher, const ContactOptions& options = {});
 
   /// Gives the dispatcher's entries for packings back to its collision configuration. What was kept for them

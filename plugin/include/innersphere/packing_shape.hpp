@@ -48,6 +48,7 @@ class PackingShape : public btConcaveShape {
   void getAabb(const btTransform& t, btVector3& min, btVector3& max) const override;
   void getBoundingSphere(btVector3& centre, btScalar& radius) const override;
   btScalar getAngularMotionDisc() const override;
+  void setMargin(btScalar margin) override;
   btScalar getContactBreakingThreshold(btScalar factor) const override;
   /// About the centre of mass; replaces the scaling before. Uniform and positive only: throws Error
   /// bad_argument otherwise.
@@ -70,6 +71,8 @@ class PackingShape : public btConcaveShape {
   const Impl& impl() const { return *impl_; }
 
  private:
+  void noteChange();
+
   std::unique_ptr<Impl> impl_;
 };
 

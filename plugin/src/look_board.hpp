@@ -1,0 +1,113 @@
+// When all pairs are looked at at once, and what has to be known of them when Bullet asks for one.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "body_side.hpp"
+
+class btRigidBody;
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// A body as it was at the last look.
+class SeenBody {
+ public:
+  explicit SeenBody(const btCollisionObject& object);
+
+  void see();
+  bool isAsSeen(const btCollisionObjectWrapper& wrapper) const;
+
+  const btCollisionObject* object() const { return object_; }
+
+  std::size_t users = 0;  ///< pairs
+
+ private:
+  const btCollisionObject* object_;
+  const btRigidBody* body_;  ///< null if it is none
+  const btCollisionShape* shape_ = nullptr;
+  const PackingShape* packing_ = nullptr;
+  std::size_t version_ = 0;  ///< of the packing shape
+  btTransform transform_;
+  btVector3 velocity_{0, 0, 0};
+  btVector3 spin_{0, 0, 0};
+};
+
+/// What a pair knows of the looks at all pairs.
+struct Look {
+  std::size_t number = 0;       ///< of the last one that it was part of, or that came before it
+  bool wanted = false;          ///< asked for since the last one that it was part of
+  bool received = false;        ///< that one has handed out the pair's contacts
+  const SeenBody* a = nullptr;  ///< null where a shape is the child of a compound
+  const SeenBody* b = nullptr;
+  /// The pair that Bullet asked for a little later last time, and its algorithm: to be fetched ahead.
+  const Look* ahead = nullptr;
+  const void* algorithm_ahead = nullptr;
+};
+
+/// Bullet asks for one pair at a time and does not tell when a step begins. But where a pair has moved since
+/// the last look at all pairs, time has gone on, and another look brings all of them up to date that were
+/// asked for since, with all threads or in one launch. Pairs that are new since the last look, or that it
+/// left out, are brought up to date alone.
+///
+/// Most pairs of a pile do not touch: asking for them costs what it takes to find out that there is nothing
+/// to do. So what that needs is kept here, close together for all pairs.
+class LookBoard {
+ public:
+  std::mutex& mutex() const { return mutex_; }
+
+  Look* add(const BodySide& a, const BodySide& b);
+  void remove(Look* look);
+
+  /// True if a pair needs nothing more in this step: the last look has handed out its contacts, and its
+  /// bodies are as they were then. Locks the mutex. `algorithm`: the pair's.
+  bool isDone(Look& look, const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+              btScalar time_step, const void* algorithm);
+
+  /// Whether a pair that has moved shows that it is time for another look.
+  bool isDue(const Look& look) const { return look.number == number_; }
+  void begin(btScalar time_step);
+  /// True if the pair was asked for: then it is part of the look.
+  bool join(Look& look) const {
+    if (look.wanted) look.number = number_;
+    return look.wanted;
+  }
+  /// Bullet asks for the pair.
+  void ask(Look& look) const {
+    look.wanted = true;
+    look.number = number_;
+  }
+  /// It has been brought up to date in the last look, and not been asked for since.
+  bool isFresh(const Look& look) const { return look.number == number_ && !look.wanted; }
+
+ private:
+  void fetchAhead(Look& look, const void* algorithm);
+  const SeenBody* use(const BodySide& side);
+  void release(const SeenBody* body);
+
+  mutable std::mutex mutex_;
+  std::size_t number_ = 1;
+  btScalar time_step_ = 0;
+  std::deque<Look> looks_;
+  std::array<Look*, 8> asked_{};  ///< last, in turn
+  std::size_t next_ = 0;          ///< of them to be replaced
+  std::vector<Look*> unused_;
+  std::unordered_map<const btCollisionObject*, SeenBody> bodies_;
+};
+
+/// What a pass over all pairs reads first of those that are next: they are far from each other in memory.
+template <typename Pair>
+void fetchNext(const std::vector<Pair*>& pairs, std::size_t i) {
+  constexpr std::size_t kAhead = 4;
+  if (i + 2 * kAhead < pairs.size()) __builtin_prefetch(pairs[i + 2 * kAhead]);
+  if (i + kAhead < pairs.size()) __builtin_prefetch(pairs[i + kAhead]->look);
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
