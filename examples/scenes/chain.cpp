@@ -92,14 +92,10 @@ void buildChainSwing(SceneWorld& world, const SceneOptions& options) {
 
 void buildChainHeavy(SceneWorld& world, const SceneOptions& options) {
   addLinks(world, options, 0, 100 * kDensity);
-  const bool long_steps = options.dt > 0.01;  // at 60 Hz the chain stretches
-  expectNoDeeper(world, 0.05, "half of what a ring of 32 spheres needs to hold it").known_miss =
-      long_steps ? 0.12 : 0;
+  expectNoDeeper(world, 0.05, "half of what a ring of 32 spheres needs to hold it");
   const double low = kSpacing * (kLinks - 1);
-  world
-      .expect({"height of the last link", "m", Truth::Kind::equal, -low, 0.02 * low,
-               "9 (2 R - 2 r) below the first: no link is lost; 2 %", finalCoordinate(kLinks - 1, 2)})
-      .known_miss = long_steps ? 0.45 : 0;
+  world.expect({"height of the last link", "m", Truth::Kind::equal, -low, 0.02 * low,
+                "9 (2 R - 2 r) below the first: no link is lost; 2 %", finalCoordinate(kLinks - 1, 2)});
 }
 
 }  // namespace innersphere::demo

@@ -7,8 +7,13 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Default stiffness in units of m / dt^2.
-constexpr btScalar kStiffness = 64;
+/// Default stiffness in units of m / dt^2, and damping as a multiple of critical damping. Stiffer or less
+/// damped, a stack sways: ten iterations of Bullet's solver do not bring all its contacts to rest. Softer,
+/// chains sink into each other and give back more energy (tests/benchmarks/results/contact-law.md).
+constexpr btScalar kStiffness = 24, kDamping = 4;
+/// Depth at which that stiffness has doubled, in sizes of the smaller body: what carries many times its own
+/// mass needs more than what lies still.
+constexpr btScalar kStiffening = btScalar(0.002);
 /// Contacts deeper than 0.04 m lose their spring to Bullet's split impulse by default; stay above.
 constexpr btScalar kSplitImpulseDepth = btScalar(0.03);
 /// Fastest push of the default law, in sizes of the body per second.
@@ -48,7 +53,8 @@ ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btS
       damping_ratio_(btScalar(options.damping)),
       mass_(reduced_mass > 0 ? reduced_mass : btScalar(1)),
       time_step_(time_step > 0 ? time_step : btScalar(1) / 60),
-      fastest_(kFastest * size) {
+      size_(size) {
+  if (defaultSpring()) damping_ratio_ *= kDamping;
   if (!penalty()) return;
   damping_ratio_ = 1;  // the points' own restitution has a say in it
   if (given_stiffness_ == 0) given_stiffness_ = mass_ / (time_step_ * time_step_ * SIMD_PI * size * size);
@@ -60,7 +66,7 @@ ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std
   for (const ContactPatch& other : patches)
     area += other.area * btMax(btScalar(0), patch.normal.dot(other.normal));
   const btScalar stiffness =
-      given_stiffness_ > 0 ? given_stiffness_ * area : kStiffness * mass_ / (time_step_ * time_step_);
+      defaultSpring() ? kStiffness * mass_ / (time_step_ * time_step_) : given_stiffness_ * area;
   const btScalar share = area > 0 ? patch.area / (area * btScalar(patch.count)) : btScalar(0);
   OfPatch law;
   law.law_ = this;
@@ -79,20 +85,29 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   law.penalty = law_->penalty();
   if (law.penalty) return law;
   law.spring = true;
-  // Fraction of the depth that the solver removes in one step.
-  const btScalar spring = law_->time_step_ * stiffness_;
-  const btScalar rate = spring > 0 ? spring / (spring + damping_) / law_->time_step_ : btScalar(0);
-  if (law_->given_stiffness_ > 0) {
-    // The same force from a smaller depth.
-    if (depth > kSplitImpulseDepth) {
-      law.stiffness *= depth / kSplitImpulseDepth;
-      law.depth = kSplitImpulseDepth;
-    }
-  } else {
+  // Fraction of the depth that the solver removes in a second.
+  const auto rate = [&] {
+    const btScalar spring = law_->time_step_ * law.stiffness;
+    return spring > 0 ? spring / (spring + law.damping) / law_->time_step_ : btScalar(0);
+  };
+  if (law_->defaultSpring()) {
+    const btScalar fastest = kFastest * law_->size_;
+    const auto hold = [&] {
+      if (law.depth * rate() > fastest) law.depth = fastest / rate();
+    };
     law.depth = btMin(depth, kSplitImpulseDepth);
-    if (law.depth * rate > law_->fastest_) law.depth = law_->fastest_ / rate;
+    hold();
+    const btScalar stiffening = 1 + btMax(law.depth, btScalar(0)) / (kStiffening * law_->size_);
+    law.stiffness *= stiffening;
+    law.damping *= btSqrt(stiffening);
+    hold();
+  } else if (depth > kSplitImpulseDepth) {
+    // The same force from a smaller depth.
+    law.stiffness *= depth / kSplitImpulseDepth;
+    law.depth = kSplitImpulseDepth;
   }
-  law.push = btMax(law.depth, btScalar(0)) * rate;
+  law.push = btMax(law.depth, btScalar(0)) * rate();
+  if (law.depth == depth) law.bears = law_->time_step_ * law.stiffness * btMax(depth, btScalar(0));
   return law;
 }
 

@@ -19,6 +19,7 @@ struct PointLaw {
   btScalar stiffness = 0;  ///< [N/m]
   btScalar damping = 0;    ///< [N s/m]
   btScalar push = 0;       ///< speed at which the spring alone would drive the bodies apart [m/s]
+  btScalar bears = 0;      ///< impulse of the spring in a step at rest; 0 if it is held back [N s]
   btScalar time_step = 0;  ///< [s]
 };
 
@@ -26,10 +27,11 @@ struct PointLaw {
 /// solver, exactly a backward-Euler spring-damper: any stiffness is stable.
 ///
 /// With m the reduced mass of the pair, dt the step, and T = sum A max(0, n n') the area that pushes along n:
-///   stiffness along n   K = options.stiffness T;  default: K = 64 m / dt^2, for which a body that lies on a
-///   fixed one under
-///                       gravity g sinks by g dt^2 / 64 (0.04 mm at 1/60 s), whatever its size and mass;
-///   damping along n     C = options.damping 2 sqrt(K m).
+///   stiffness along n   K = options.stiffness T;
+///                       default: K = 24 m / dt^2 (1 + d / (0.002 s)) at the depth d, s the size of the
+///                       smaller body, for which a body that lies on a fixed one under gravity g sinks by
+///                       g dt^2 / 24 (0.1 mm at 1/60 s), whatever its size and mass;
+///   damping along n     C = options.damping 2 sqrt(K m), four times that by default.
 /// Each patch takes the share A / T of both and divides it among its points. The default law drives bodies
 /// that are inside each other apart no faster than half the size of the smaller one in a second.
 class ContactLaw {
@@ -55,12 +57,14 @@ class ContactLaw {
   btScalar penaltyStiffness() const { return given_stiffness_; }
 
  private:
+  bool defaultSpring() const { return response_ == Response::compliant && !(given_stiffness_ > 0); }
+
   Response response_;
   btScalar given_stiffness_;
   btScalar damping_ratio_;
   btScalar mass_;
   btScalar time_step_;
-  btScalar fastest_;
+  btScalar size_;
 };
 
 /// Speed at which two bodies approach each other at a point of the world along `normal`, from a to b [m/s].

@@ -8,6 +8,8 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
+/// Bullet's default, of which the algorithm is not told.
+constexpr btScalar kWarmStarting = btScalar(0.85);
 /// Patches whose normals differ by more than about 45 degrees are not the same patch.
 constexpr btScalar kSamePatch = btScalar(0.7);
 
@@ -96,6 +98,10 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     depth = btMin(btScalar(0), depth + turning * law.time_step * law.time_step / 2);
   }
   if (spring) {
+    // The solver starts with a part of the last impulse. What is short of a load that lies still would make
+    // it sink until its spring has replaced it: where the spring bears more, it starts with all of it.
+    point.m_appliedImpulse =
+        btMax(point.m_appliedImpulse, btMin(point.m_appliedImpulse / kWarmStarting, law.bears));
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;

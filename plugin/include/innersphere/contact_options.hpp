@@ -32,8 +32,9 @@ struct ContactOptions {
   /// Pressure that a metre of overlap causes [N/m^3]: a contact pushes with stiffness times overlap volume,
   /// which the spheres alone decide. 0: a default, which is for
   ///
-  /// Response::compliant: as stiff as the step can resolve, 64 m / dt^2 with m the reduced mass of the pair,
-  /// divided among the points that push the same way: a body that lies still sinks by 0.04 mm at 60 Hz,
+  /// Response::compliant: as stiff as ten iterations of Bullet's solver bring to rest, which is
+  /// 24 m / dt^2 (1 + depth / (0.002 s)) with m the reduced mass of the pair and s the size of the smaller
+  /// body, divided among the points that push the same way: a body that lies still sinks by 0.1 mm at 60 Hz,
   /// whatever its mass. Depth is measured on the solids' surfaces, so bodies meet where they are drawn;
   ///
   /// Response::penalty: m / (dt^2 pi R^2), with R the radius of the smaller body's bounding sphere, which the
@@ -41,9 +42,9 @@ struct ContactOptions {
   ///
   /// Response::rigid has no stiffness.
   double stiffness = 0;
-  /// Fraction of critical damping of a contact: 0 is bouncy, 1 has no rebound from the spring itself.
-  /// Bullet's restitution works on top of it; with Response::penalty a restitution above 0 sets the damping
-  /// in its place, if that is less.
+  /// Of a contact: 0 is bouncy, 1 has no rebound from the spring itself. Fraction of critical damping; of
+  /// four times that for Response::compliant with its default stiffness. Bullet's restitution works on top of
+  /// it; with Response::penalty a restitution above 0 sets the damping in its place, if that is less.
   double damping = 1;
 };
 
