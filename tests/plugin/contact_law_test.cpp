@@ -133,6 +133,27 @@ TEST(ContactLaw, FrictionStopsASlidingBodyAsCoulombSays) {
   }
 }
 
+// A user's callback that gives friction directions and a speed of its own makes a belt of the ground.
+TEST(ContactLaw, ABeltCarriesWhatLiesOnIt) {
+  gContactAddedCallback = [](btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) {
+    point.m_contactPointFlags |= BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
+    point.m_lateralFrictionDir1 = btVector3(1, 0, 0);
+    point.m_lateralFrictionDir2 = btVector3(0, 1, 0);
+    point.m_contactMotion1 = btScalar(0.5);
+    return true;
+  };
+  TestWorld world;
+  world.world.getSolverInfo().m_solverMode |=
+      SOLVER_ENABLE_FRICTION_DIRECTION_CACHING | SOLVER_USE_2_FRICTION_DIRECTIONS;
+  world.addFloor();
+  btRigidBody& cube = world.add(makeShape(latticeBox({1, 1, 1}, 8)), 1, btVector3(0, 0, btScalar(0.5)));
+  cube.setCollisionFlags(cube.getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
+  world.run(2);
+  gContactAddedCallback = nullptr;
+  EXPECT_NEAR(std::abs(double(cube.getLinearVelocity().x())), 0.5, 0.01);
+}
+
 TEST(ContactLaw, RestitutionBounces) {
   TestWorld world;
   world.addFloor().setRestitution(1);
