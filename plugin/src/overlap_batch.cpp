@@ -1,6 +1,7 @@
 #include "overlap_batch.hpp"
 
 #include <algorithm>
+#include <mutex>
 
 #include "in_parallel.hpp"
 #include "innersphere/error.hpp"

@@ -1,6 +1,7 @@
 #include "surface_batch.hpp"
 
 #include <algorithm>
+#include <mutex>
 
 #include "in_parallel.hpp"
 #include "sweep.hpp"

@@ -1,7 +1,6 @@
 // All pairs of a packing and a shape of another kind of one dispatcher, brought up to date together.
 #pragma once
 
-#include <mutex>
 #include <optional>
 #include <vector>
 

@@ -55,6 +55,16 @@ btVector3 placeOn(const Surface& surface, std::size_t triangle) {
   return sum / 3;
 }
 
+/// On the top, and the way from there to the rim.
+struct OnTop {
+  explicit OnTop(const Surface& surface)
+      : place(placeOn(surface, triangle)), outwards(btVector3(place.x(), place.y(), 0).normalized()) {}
+
+  std::size_t triangle = 2 * kRings * kSegments + 2 * 7 + 1;
+  btVector3 place;
+  btVector3 outwards;  ///< unit
+};
+
 TEST(SmoothNormals, ASideGoesOnToTheRims) {
   const Surface surface = cylinder(false);
   const SmoothNormals normals(surface);
@@ -80,27 +90,23 @@ TEST(SmoothNormals, AroundACylinderNothingEnds) {
 TEST(SmoothNormals, ATopEndsAtItsRim) {
   const Surface surface = cylinder(false);
   const SmoothNormals normals(surface);
-  const std::size_t triangle = 2 * kRings * kSegments + 2 * 7 + 1;
-  const btVector3 place = placeOn(surface, triangle);
-  const btVector3 outwards = btVector3(place.x(), place.y(), 0).normalized();
+  const OnTop top(surface);
   const double rim = kRadius * std::cos(M_PI / kSegments);
-  EXPECT_NEAR(normals.untilSharpEdge(triangle, place, outwards).distance,
-              rim - std::hypot(double(place.x()), double(place.y())), 1e-5);
+  EXPECT_NEAR(normals.untilSharpEdge(top.triangle, top.place, top.outwards).distance,
+              rim - std::hypot(double(top.place.x()), double(top.place.y())), 1e-5);
 }
 
 TEST(SmoothNormals, ARimIsTheSameFromBothSides) {
   const Surface surface = cylinder(false);
   const SmoothNormals normals(surface);
-  const std::size_t top = 2 * kRings * kSegments + 2 * 7 + 1;
-  const btVector3 on_top = placeOn(surface, top);
-  const btVector3 outwards = btVector3(on_top.x(), on_top.y(), 0).normalized();
-  const auto from_top = normals.untilSharpEdge(top, on_top, outwards);
+  const OnTop top(surface);
+  const auto from_top = normals.untilSharpEdge(top.triangle, top.place, top.outwards);
   ASSERT_TRUE(from_top.found());
   const auto rim = normals.sharpEdge(from_top);
   EXPECT_NEAR(rim.from.z(), kHeight, 1e-6);
   EXPECT_NEAR(rim.to.z(), kHeight, 1e-6);
   EXPECT_NEAR(rim.from.distance(rim.to), 2 * kRadius * std::sin(M_PI / kSegments), 1e-5);
-  EXPECT_NEAR(rim.inwards[0].dot(outwards), -1, 1e-5);
+  EXPECT_NEAR(rim.inwards[0].dot(top.outwards), -1, 1e-5);
   EXPECT_NEAR(rim.inwards[1].z(), -1, 1e-5);
   const std::size_t side = sideTriangle(kRings - 1, 7);
   const auto from_side = normals.untilSharpEdge(side, placeOn(surface, side), btVector3(0, 0, 1));
