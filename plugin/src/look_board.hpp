@@ -101,13 +101,5 @@ class LookBoard {
   std::unordered_map<const btCollisionObject*, SeenBody> bodies_;
 };
 
-/// What a pass over all pairs reads first of those that are next: they are far from each other in memory.
-template <typename Pair>
-void fetchNext(const std::vector<Pair*>& pairs, std::size_t i) {
-  constexpr std::size_t kAhead = 4;
-  if (i + 2 * kAhead < pairs.size()) __builtin_prefetch(pairs[i + 2 * kAhead]);
-  if (i + kAhead < pairs.size()) __builtin_prefetch(pairs[i + kAhead]->look);
-}
-
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -60,16 +60,16 @@ void OverlapBatch::setOptions(const ContactOptions& options) {
   finishLaunch();
   if (options.backend != options_.backend) context_.reset();
   options_ = options;
-  for (PackingContact* contact : live_) {
-    contact->valid = false;
-    contact->look->received = false;
-  }
+  live_.forEach([](PackingContact& contact) {
+    contact.valid = false;
+    contact.look->received = false;
+  });
 }
 
 void OverlapBatch::add(PackingContact* contact) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
   contact->look = looks_.add(contact->a, contact->b);
-  live_.push_back(contact);
+  live_.add(contact);
 }
 
 void OverlapBatch::remove(PackingContact* contact) {
@@ -77,7 +77,7 @@ void OverlapBatch::remove(PackingContact* contact) {
   finishLaunch();
   looks_.remove(contact->look);
   contact->look = &contact->own_look;
-  live_.erase(std::remove(live_.begin(), live_.end(), contact), live_.end());
+  live_.remove(contact);
 }
 
 bool OverlapBatch::hasDelivered(PackingContact& contact, const btCollisionObjectWrapper& a,
@@ -184,9 +184,7 @@ void OverlapBatch::bringUpToDate(btScalar time_step) {
 }
 
 void OverlapBatch::deliver() {
-  inParallel(live_.size(), [&](std::size_t i) {
-    fetchNext(live_, i);
-    PackingContact& contact = *live_[i];
+  live_.forEachInParallel([&](PackingContact& contact) {
     if (!contact.valid || !looks_.isFresh(*contact.look)) return;
     contact.look->received = contact.separation == 0 &&
                              contact.receiver.receive(contact.memory.patches, options_, contact.time_step);
@@ -195,14 +193,11 @@ void OverlapBatch::deliver() {
 
 void OverlapBatch::lookAtAll(btScalar time_step) {
   looks_.begin(time_step);
-  inParallel(live_.size(), [&](std::size_t i) {
-    fetchNext(live_, i);
-    lookAt(*live_[i], time_step);
-  });
+  live_.forEachInParallel([&](PackingContact& contact) { lookAt(contact, time_step); });
   stale_.clear();
-  for (PackingContact* contact : live_) {
-    if (looks_.isFresh(*contact->look) && contact->age != Age::current) stale_.push_back(contact);
-  }
+  live_.forEach([&](PackingContact& contact) {
+    if (looks_.isFresh(*contact.look) && contact.age != Age::current) stale_.push_back(&contact);
+  });
 }
 
 /// Finds out what there is to do for a pair, and does it if it is only to take its contacts along.

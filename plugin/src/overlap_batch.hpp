@@ -14,12 +14,13 @@
 #include "look_board.hpp"
 #include "measure.hpp"
 #include "packing_body.hpp"
+#include "pair_list.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// The contact of two packings.
-struct PackingContact {
+struct PackingContact : ListedPair {
   PackingContact(const PackingSide& first, const PackingSide& second, ContactReceiver& where_to)
       : receiver(where_to), a(first), b(second) {}
 
@@ -125,7 +126,7 @@ class OverlapBatch {
   ContactOptions options_;
   std::unique_ptr<QueryContext> context_;  ///< made by the first query
   LookBoard looks_;
-  std::vector<PackingContact*> live_;
+  PairList<PackingContact> live_;
   std::vector<PackingContact*> stale_;
   std::vector<PackingContact*> queried_;
   std::vector<PairQuery> queries_;

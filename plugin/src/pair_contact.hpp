@@ -19,7 +19,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// A is the body with the packing, or the first of two packings.
-class PairContact : public ContactReceiver {
+class PairContact : public ContactReceiver, public ListedPair {
  public:
   /// `closest`: for one closest-point query, without touching the dispatcher's manifolds.
   PairContact(btDispatcher* dispatcher, std::shared_ptr<Registration> registration, bool closest);

@@ -9,14 +9,15 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include "innersphere/contact_options.hpp"
-#include "live_pairs.hpp"
 #include "overlap_batch.hpp"
+#include "pair_list.hpp"
 #include "step_count.hpp"
 #include "surface_batch.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+class PairContact;
 class Registration;
 
 /// An entry of a dispatcher's table.
@@ -55,7 +56,8 @@ class Registration : public std::enable_shared_from_this<Registration> {
   OverlapBatch& batch() { return batch_; }
   SurfaceBatch& surfaces() { return surfaces_; }
   StepCount& steps() { return steps_; }
-  LivePairs& pairs() { return pairs_; }
+  /// That Bullet has algorithms for.
+  SharedPairList<PairContact>& pairs() { return pairs_; }
 
  private:
   mutable std::mutex mutex_;
@@ -63,7 +65,7 @@ class Registration : public std::enable_shared_from_this<Registration> {
   OverlapBatch batch_;
   SurfaceBatch surfaces_;
   StepCount steps_;
-  LivePairs pairs_;
+  SharedPairList<PairContact> pairs_;
   std::deque<CreateFunc> create_funcs_;
 };
 

@@ -1,9 +1,7 @@
 #include "surface_batch.hpp"
 
-#include <algorithm>
 #include <mutex>
 
-#include "in_parallel.hpp"
 #include "sweep.hpp"
 
 namespace innersphere {
@@ -19,23 +17,23 @@ btScalar neededSeparation(const SurfacePair& pair, btScalar time_step) {
 void SurfaceBatch::setOptions(const ContactOptions& options) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
   options_ = options;
-  for (SurfacePair* pair : live_) {
-    pair->reached.reset();
-    pair->look->received = false;
-  }
+  live_.forEach([](SurfacePair& pair) {
+    pair.reached.reset();
+    pair.look->received = false;
+  });
 }
 
 void SurfaceBatch::add(SurfacePair* pair) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
   pair->look = looks_.add(pair->a, pair->b);
-  live_.push_back(pair);
+  live_.add(pair);
 }
 
 void SurfaceBatch::remove(SurfacePair* pair) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
   looks_.remove(pair->look);
   pair->look = &pair->own_look;
-  live_.erase(std::remove(live_.begin(), live_.end(), pair), live_.end());
+  live_.remove(pair);
 }
 
 bool SurfaceBatch::hasDelivered(SurfacePair& pair, const btCollisionObjectWrapper& a,
@@ -77,10 +75,7 @@ Overlap SurfaceBatch::volumesOf(SurfacePair& pair) {
 
 void SurfaceBatch::lookAtAll(btScalar time_step) {
   looks_.begin(time_step);
-  inParallel(live_.size(), [&](std::size_t i) {
-    fetchNext(live_, i);
-    lookAt(*live_[i], time_step);
-  });
+  live_.forEachInParallel([&](SurfacePair& pair) { lookAt(pair, time_step); });
 }
 
 void SurfaceBatch::lookAt(SurfacePair& pair, btScalar time_step) const {

@@ -8,12 +8,13 @@
 #include "contact_receiver.hpp"
 #include "innersphere/contact_options.hpp"
 #include "look_board.hpp"
+#include "pair_list.hpp"
 #include "surface_contact.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-struct SurfacePair {
+struct SurfacePair : ListedPair {
   SurfacePair(const PackingSide& packing, const BodySide& other, ContactReceiver& where_to)
       : receiver(where_to), a(packing), b(other), contact(*packing.packing, *other.shape) {}
 
@@ -57,7 +58,7 @@ class SurfaceBatch {
 
   ContactOptions options_;
   LookBoard looks_;
-  std::vector<SurfacePair*> live_;
+  PairList<SurfacePair> live_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

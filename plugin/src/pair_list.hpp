@@ -1,0 +1,89 @@
+// Pairs that come and go.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <mutex>
+#include <vector>
+
+#include "in_parallel.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+struct ListedPair {
+  std::size_t list_index = 0;  ///< in the PairList that it is in
+};
+
+/// In the order in which they came. One that goes leaves a gap, and gaps are closed when they are more than
+/// half of the list: so each costs the same, however many there are and whichever goes first.
+template <typename Pair>
+class PairList {
+ public:
+  void add(Pair* pair) {
+    pair->list_index = pairs_.size();
+    pairs_.push_back(pair);
+  }
+  void remove(Pair* pair) {
+    pairs_[pair->list_index] = nullptr;
+    if (2 * ++gaps_ > pairs_.size()) closeGaps();
+  }
+
+  template <typename Visit>
+  void forEach(const Visit& visit) const {
+    for (Pair* pair : pairs_) {
+      if (pair != nullptr) visit(*pair);
+    }
+  }
+  /// With all threads.
+  template <typename Visit>
+  void forEachInParallel(const Visit& visit) const {
+    inParallel(pairs_.size(), [&](std::size_t i) {
+      fetchNext(i);
+      if (pairs_[i] != nullptr) visit(*pairs_[i]);
+    });
+  }
+
+ private:
+  void closeGaps() {
+    pairs_.erase(std::remove(pairs_.begin(), pairs_.end(), nullptr), pairs_.end());
+    for (std::size_t i = 0; i < pairs_.size(); ++i) pairs_[i]->list_index = i;
+    gaps_ = 0;
+  }
+  /// What a visit reads first: pairs are far from each other in memory.
+  void fetchNext(std::size_t i) const {
+    constexpr std::size_t kAhead = 4;
+    if (i + 2 * kAhead < pairs_.size()) __builtin_prefetch(pairs_[i + 2 * kAhead]);
+    if (i + kAhead >= pairs_.size()) return;
+    if (const Pair* next = pairs_[i + kAhead]) __builtin_prefetch(next->look);
+  }
+
+  std::vector<Pair*> pairs_;  ///< null: a gap
+  std::size_t gaps_ = 0;
+};
+
+/// One that several threads may use at once.
+template <typename Pair>
+class SharedPairList {
+ public:
+  void add(Pair* pair) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    pairs_.add(pair);
+  }
+  void remove(Pair* pair) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    pairs_.remove(pair);
+  }
+  template <typename Visit>
+  void forEach(const Visit& visit) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    pairs_.forEach(visit);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  PairList<Pair> pairs_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
