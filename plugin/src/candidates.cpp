@@ -12,7 +12,7 @@ namespace {
 /// Directions in which the outermost contacts of a patch are measured, sectors in which those that stand out
 /// most of each solid are, and how many of the most facing and of the others.
 constexpr int kDirections = 8;
-constexpr int kSectors = 8;
+constexpr std::size_t kSectors = 8;
 constexpr std::size_t kFacing = 6;
 constexpr std::size_t kOthers = 6;
 /// In units of the spacing: how much less deep than the deepest a contact may be.
@@ -39,24 +39,48 @@ void dropFar(const PatchContacts& from, std::vector<std::size_t>& near) {
              near.end());
 }
 
+struct Furthest {
+  std::size_t index = 0;
+  btScalar distance = -BT_LARGE_FLOAT;
+
+  void update(std::size_t i, btScalar d) {
+    if (d > distance) *this = {i, d};
+  }
+};
+
+/// Those that span the patch.
+void pickOutermost(const PatchContacts& from, const std::vector<std::size_t>& near,
+                   std::vector<std::size_t>& picked) {
+  std::array<btVector3, kDirections> directions;
+  for (int k = 0; k < kDirections; ++k) {
+    const btScalar angle = btScalar(k) * SIMD_2_PI / kDirections;
+    directions[k] = from.moments.tangent[0] * btCos(angle) + from.moments.tangent[1] * btSin(angle);
+  }
+  std::array<Furthest, kDirections> furthest;
+  for (std::size_t i : near) {
+    const btVector3 centroid = toBullet(from.contacts[i].centroid);
+    for (int k = 0; k < kDirections; ++k) furthest[k].update(i, directions[k].dot(centroid));
+  }
+  for (const Furthest& f : furthest) picked.push_back(f.index);
+}
+
+/// The eighth of the plane that a place is in, in any order.
+std::size_t sectorOf(btScalar u, btScalar v) {
+  return (u < 0 ? 1 : 0) + (v < 0 ? 2 : 0) + (btFabs(u) < btFabs(v) ? 4 : 0);
+}
+
 /// Where solids are bumpy, a corner or a foot stands out, and small spheres in it.
 void pickForward(const PatchContacts& from, const std::vector<std::size_t>& near,
                  std::vector<std::size_t>& picked) {
-  struct Best {
-    std::size_t index = 0;
-    btScalar distance = -BT_LARGE_FLOAT;
-  };
-  std::array<Best, 2 * kSectors> best;
+  std::array<Furthest, 2 * kSectors> furthest;
   for (std::size_t i : near) {
     const btVector3 side = toBullet(from.contacts[i].centroid) - from.moments.centre;
-    const btScalar angle = btAtan2(side.dot(from.moments.tangent[1]), side.dot(from.moments.tangent[0]));
-    const int sector = static_cast<int>((angle + SIMD_PI) / SIMD_2_PI * kSectors) % kSectors;
+    const std::size_t sector = sectorOf(side.dot(from.moments.tangent[0]), side.dot(from.moments.tangent[1]));
     const Gauge::Forward forward = from.gauge.forward(i, from.moments.normal);
-    Best& b = best[2 * sector + (forward.of_a ? 0 : 1)];
-    if (forward.distance > b.distance) b = {i, forward.distance};
+    furthest[2 * sector + (forward.of_a ? 0 : 1)].update(i, forward.distance);
   }
-  for (const Best& b : best) {
-    if (b.distance > -BT_LARGE_FLOAT) picked.push_back(b.index);
+  for (const Furthest& f : furthest) {
+    if (f.distance > -BT_LARGE_FLOAT) picked.push_back(f.index);
   }
 }
 
@@ -65,6 +89,20 @@ void pickForward(const PatchContacts& from, const std::vector<std::size_t>& near
 void turn(const btMatrix3x3& by, Candidates& candidates) {
   for (Candidates::OfPatch& patch : candidates.patches) patch.normal = by * patch.normal;
   for (Candidates::Line& line : candidates.lines) line.direction = by * line.direction;
+}
+
+void dropUnmeasured(Candidates& candidates) {
+  std::size_t kept = 0, k = 0;
+  for (Candidates::OfPatch& patch : candidates.patches) {
+    for (; k < patch.end; ++k) {
+      if (candidates.lines[k].direction.isZero()) continue;
+      candidates.indices[kept] = candidates.indices[k];
+      candidates.lines[kept++] = candidates.lines[k];
+    }
+    patch.end = kept;
+  }
+  candidates.indices.resize(kept);
+  candidates.lines.resize(kept);
 }
 
 void pickCandidates(const PatchContacts& from, Candidates& candidates) {
@@ -80,14 +118,7 @@ void pickCandidates(const PatchContacts& from, Candidates& candidates) {
   for (std::size_t i : near) {
     if (isOld(from, from.gauge.id(i))) picked.push_back(i);
   }
-  for (int k = 0; k < kDirections; ++k) {
-    const btScalar angle = btScalar(k) * SIMD_2_PI / kDirections;
-    const btVector3 direction =
-        from.moments.tangent[0] * btCos(angle) + from.moments.tangent[1] * btSin(angle);
-    const auto along = [&](std::size_t i) { return direction.dot(toBullet(from.contacts[i].centroid)); };
-    picked.push_back(*std::max_element(near.begin(), near.end(),
-                                       [&](std::size_t i, std::size_t j) { return along(i) < along(j); }));
-  }
+  pickOutermost(from, near, picked);
   for (std::size_t k = 0; k < kOthers; ++k) picked.push_back(near[k * near.size() / kOthers]);
   pickForward(from, near, picked);
   const auto facing = [&](std::size_t i) { return from.moments.normal.dot(toBullet(from.contacts[i].area)); };

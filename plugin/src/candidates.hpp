@@ -41,6 +41,9 @@ struct PatchContacts {
 /// Turns all directions.
 void turn(const btMatrix3x3& by, Candidates& candidates);
 
+/// Leaves those that have been measured once, and were near enough to be measured again.
+void dropUnmeasured(Candidates& candidates);
+
 /// Appends some contacts of a patch: those of the step before, those that span the patch, those that stand
 /// out or face the other body most, and some of the others.
 void pickCandidates(const PatchContacts& from, Candidates& candidates);

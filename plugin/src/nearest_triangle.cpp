@@ -1,46 +1,48 @@
 #include "nearest_triangle.hpp"
 
-#include "vec.hpp"
-
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Triangles whose nearest points differ by less than this fraction of the distance share them.
-constexpr btScalar kSame = btScalar(1e-5);
 constexpr btScalar kOver = btScalar(0.966);  // cos 15 degrees
+
+/// Of a triangle. C. Ericson, Real-Time Collision Detection, 5.1.5; as Bullet has it, which keeps more of it.
+btVector3 nearestPoint(const btVector3* corners, const btVector3& point) {
+  const btVector3 &a = corners[0], &b = corners[1], &c = corners[2];
+  const btVector3 ab = b - a, ac = c - a;
+  const btVector3 ap = point - a;
+  const btScalar d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const btVector3 bp = point - b;
+  const btScalar d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const btScalar vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  const btVector3 cp = point - c;
+  const btScalar d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const btScalar vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const btScalar va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  const btScalar denominator = 1 / (va + vb + vc);
+  return a + ab * (vb * denominator) + ac * (vc * denominator);
+}
 
 }  // namespace
 
-btScalar NearestTriangle::distance2(const TriangleTree::Box& box) const {
-  btScalar sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const btScalar outside = btMax(btMax(box.min[k] - point_[k], point_[k] - box.max[k]), btScalar(0));
-    sum += outside * outside;
-  }
-  return sum;
-}
-
-btScalar NearestTriangle::farthest2() const {
-  return best2_ * (1 + kSame);
-}
-
 btScalar NearestTriangle::test(std::size_t t) {
-  btVector3 v[3];
-  for (int k = 0; k < 3; ++k) v[k] = toBullet(surface_.vertices[surface_.triangles[t][k]]);
-  const btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
-  if (!(normal.length2() > 0)) return farthest2();
-  btSubSimplexClosestResult closest;
-  closest.reset();
-  solver_.closestPtPointTriangle(point_, v[0], v[1], v[2], closest);
-  const btVector3 offset = point_ - closest.m_closestPointOnSimplex;
+  const btVector3& face = triangles_.face(t);
+  if (face.isZero()) return farthest2();
+  const btVector3 offset = point_ - nearestPoint(triangles_.corners(t), point_);
   const btScalar length2 = offset.length2();
   if (length2 > farthest2()) return farthest2();
   // Of those that share the nearest point, the one seen from the steepest angle tells inside from outside.
-  const btVector3 face = normal.normalized();
   const btScalar height = offset.dot(face);
   const bool shared = found_ && length2 >= best2_ * (1 - kSame);
-  if (!shared || btFabs(height) > btFabs(height_)) {
+  const bool steeper =
+      btFabs(height) > btFabs(height_) || (btFabs(height) == btFabs(height_) && t < triangle_);
+  if (!shared || steeper) {
     height_ = height;
     face_ = face;
     triangle_ = t;

@@ -1,25 +1,25 @@
 // The nearest point of a solid's surface.
 #pragma once
 
-#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
+#include <LinearMath/btVector3.h>
 
 #include "innersphere/bullet_precision.hpp"
-#include "innersphere/geometry.hpp"
+#include "smooth_normals.hpp"
 #include "triangle_tree.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Of the triangles that it is shown, in the surface's frame. Refers to the surface: it must stay.
+/// Of the triangles that it is shown, in the surface's frame. Refers to them: they must stay.
 class NearestTriangle {
  public:
   /// Triangles further away from `point` than `reach` do not count.
-  NearestTriangle(const Surface& surface, const btVector3& point, btScalar reach)
-      : surface_(surface), point_(point), best2_(reach * reach) {}
+  NearestTriangle(const SmoothNormals& triangles, const btVector3& point, btScalar reach)
+      : triangles_(triangles), point_(point), best2_(reach * reach) {}
 
-  /// Squares of distances from the point: of a box, and that beyond which nothing is looked for.
-  btScalar distance2(const TriangleTree::Box& box) const;
-  btScalar farthest2() const;
+  /// Squares of distances from the point: of boxes, and that beyond which nothing is looked for.
+  TriangleTree::Lanes distances2(const TriangleTree::Boxes& boxes) const;
+  btScalar farthest2() const { return best2_ * (1 + kSame); }
   /// Shows it a triangle; farthest2() thereafter.
   btScalar test(std::size_t triangle);
 
@@ -34,7 +34,10 @@ class NearestTriangle {
   bool beside() const;
 
  private:
-  const Surface& surface_;
+  /// Triangles whose nearest points differ by less than this fraction of the distance share them.
+  static constexpr btScalar kSame = btScalar(1e-5);
+
+  const SmoothNormals& triangles_;
   const btVector3 point_;
   btScalar best2_;
   bool found_ = false;
@@ -42,8 +45,18 @@ class NearestTriangle {
   btVector3 face_{0, 0, 0};
   std::size_t triangle_ = 0;
   btVector3 offset_{0, 0, 0};
-  btVoronoiSimplexSolver solver_;
 };
+
+inline TriangleTree::Lanes NearestTriangle::distances2(const TriangleTree::Boxes& boxes) const {
+  TriangleTree::Lanes sum{};
+  for (int k = 0; k < 3; ++k) {
+    const float at = static_cast<float>(point_[k]);
+    const TriangleTree::Lanes outside = TriangleTree::greater(boxes.min[k] - at, at - boxes.max[k]);
+    const TriangleTree::Lanes gap = TriangleTree::greater(outside, TriangleTree::Lanes{});
+    sum += gap * gap;
+  }
+  return sum;
+}
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -130,8 +130,10 @@ bool measurePatches(Candidates& candidates, const Gauge& gauge, const Measure& m
   static thread_local std::vector<MeasuredPoint> found;
   collectIds(patches, old_ids);
   found.clear();
+  const bool first_time = candidates.lines.empty();
   for (std::size_t p = 0; p < candidates.patches.size(); ++p)
     measurePoints(candidates, p, gauge, measure.separation, found);
+  if (first_time) dropUnmeasured(candidates);
   keepLeastWaysOut(measure.spacing, found);
   selectPatches(found, old_ids, measure.spacing, patches);
   return std::any_of(found.begin(), found.end(),

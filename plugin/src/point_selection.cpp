@@ -35,30 +35,33 @@ bool isFreedBy(const MeasuredPoint& other, const MeasuredPoint& point, btScalar 
 
 class Selection {
  public:
+  /// `worth`: room for a number of each point.
   Selection(const std::vector<ContactPoint>& found, const std::vector<std::uint64_t>& old_ids,
-            btScalar spacing, ContactPatch& patch)
-      : found_(found), old_ids_(old_ids), spacing_(spacing), patch_(patch) {}
+            btScalar spacing, ContactPatch& patch, std::vector<btScalar>& worth)
+      : found_(found), old_ids_(old_ids), spacing_(spacing), patch_(patch), worth_(worth) {}
 
   void run() {
     patch_.count = 0;
-    const auto deepest = [&](const ContactPoint& point) {
+    const auto deepest = [&](std::size_t i) {
+      const ContactPoint& point = found_[i];
       const int steps = point.id == kDeepestId ? 2 : isOld(point) ? 1 : 0;
       return point.depth + btScalar(steps) * kKeepDepth * spacing_;
     };
-    const auto farthest = [&](const ContactPoint& point) {
-      return worth(point) * point.on_b.distance(at(0));
-    };
-    const auto largest = [&](const ContactPoint& point) {
-      return worth(point) * btFabs(area(at(0), at(1), point.on_b));
+    const auto farthest = [&](std::size_t i) { return worth_[i] * found_[i].on_b.distance(at(0)); };
+    const auto largest = [&](std::size_t i) {
+      return worth_[i] * btFabs(area(at(0), at(1), found_[i].on_b));
     };
     // The fourth widens the triangle across one of its sides.
-    const auto widest = [&](const ContactPoint& point) {
+    const auto widest = [&](std::size_t k) {
       const btScalar turn = area(at(0), at(1), at(2)) < 0 ? btScalar(-1) : btScalar(1);
       btScalar most = 0;
-      for (int i = 0; i < 3; ++i) most = btMax(most, -turn * area(at(i), at((i + 1) % 3), point.on_b));
-      return worth(point) * most;
+      for (int i = 0; i < 3; ++i) most = btMax(most, -turn * area(at(i), at((i + 1) % 3), found_[k].on_b));
+      return worth_[k] * most;
     };
-    if (take(deepest) && take(farthest) && take(largest)) take(widest);
+    if (!take(deepest)) return;
+    worth_.clear();
+    for (const ContactPoint& point : found_) worth_.push_back(worth(point));
+    if (take(farthest) && take(largest)) take(widest);
   }
 
  private:
@@ -66,11 +69,11 @@ class Selection {
   bool take(const Score& score) {
     const ContactPoint* best = nullptr;
     btScalar best_score = 0;
-    for (const ContactPoint& point : found_) {
-      if (!apart(point)) continue;
-      const btScalar s = score(point);
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (!apart(found_[i])) continue;
+      const btScalar s = score(i);
       if (best == nullptr || s > best_score) {
-        best = &point;
+        best = &found_[i];
         best_score = s;
       }
     }
@@ -101,6 +104,7 @@ class Selection {
   const std::vector<std::uint64_t>& old_ids_;
   btScalar spacing_;
   ContactPatch& patch_;
+  std::vector<btScalar>& worth_;
 };
 
 std::vector<std::vector<ContactPoint>> roomForGroups() {
@@ -127,6 +131,7 @@ void keepLeastWaysOut(btScalar spacing, std::vector<MeasuredPoint>& found) {
 void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uint64_t>& old_ids,
                    btScalar spacing, std::vector<ContactPatch>& patches) {
   static thread_local std::vector<std::vector<ContactPoint>> groups = roomForGroups();
+  static thread_local std::vector<btScalar> worth;
   for (std::vector<ContactPoint>& group : groups) group.clear();
   patches.clear();
   std::sort(found.begin(), found.end(), [](const MeasuredPoint& a, const MeasuredPoint& b) {
@@ -152,7 +157,7 @@ void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uin
   for (std::size_t g = 0; g < patches.size(); ++g) {
     patches[g].normal.normalize();
     patches[g].centre /= patches[g].area;
-    Selection(groups[g], old_ids, spacing, patches[g]).run();
+    Selection(groups[g], old_ids, spacing, patches[g], worth).run();
   }
 }
 

@@ -40,7 +40,8 @@ class SmoothNormals {
     btScalar bulge;    ///< how far the curved surface stands out of the triangle there [m]
   };
   Place at(std::size_t triangle, const Crossing& crossing) const;
-  /// Of the triangle itself: unit, out of the solid.
+  const btVector3* corners(std::size_t triangle) const { return facets_[triangle].corners; }
+  /// Of the triangle itself: unit, out of the solid; zero if it has no area.
   const btVector3& face(std::size_t triangle) const { return facets_[triangle].face; }
   /// Whether a sharp edge lies between a triangle and a point over its plane, not far away.
   bool isPastSharpEdge(std::size_t triangle, const btVector3& point) const;
@@ -67,17 +68,17 @@ class SmoothNormals {
   btScalar curvature(std::size_t triangle) const { return facets_[triangle].curvature; }
 
  private:
-  /// A triangle. Its edge k goes from corner k to the next.
-  struct Facet {
+  /// A triangle. Its edge k goes from corner k to the next. What a line asks for first comes first.
+  struct alignas(64) Facet {
     btVector3 corners[3];
-    btVector3 inwards[3];  ///< along the triangle, from edge k; their products are weights [1/m]
-    btVector3 normals[3];  ///< of the curved surface at the corners
-    btVector3 face;        ///< unit; zero if the triangle has no area
-    btScalar curvature;
-    btScalar bulges[3];       ///< of the edges, at weights of 1 of both ends [m]
+    btVector3 face;           ///< unit; zero if the triangle has no area
+    btVector3 inwards[3];     ///< along the triangle, from edge k; their products are weights [1/m]
     std::uint32_t across[3];  ///< triangles beyond the edges; see kSharp
     std::uint32_t to_sharp;   ///< how many edges lead across a sharp one, at least; a few more than looked at
                               ///< if none is near
+    btVector3 normals[3];     ///< of the curved surface at the corners
+    btScalar bulges[3];       ///< of the edges, at weights of 1 of both ends [m]
+    btScalar curvature;
   };
   void setCorners(const Surface& surface);
   void setNormals(const Surface& surface);

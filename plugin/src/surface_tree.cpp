@@ -1,7 +1,9 @@
 #include "surface_tree.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 
@@ -12,31 +14,35 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-constexpr btScalar kNowhere = SIMD_INFINITY;
+using Lanes = TriangleTree::Lanes;
+constexpr float kFar = std::numeric_limits<float>::infinity();
 /// Rays that are flatter to a triangle meet it itself, not the curved surface that it stands for.
 constexpr btScalar kShared = btScalar(1e-5);
 constexpr btScalar kGrazing = btScalar(0.1);
 
-/// How far along a ray its part inside of a box begins.
+/// How far along a ray its parts inside of boxes begin.
 class EntersAt {
  public:
-  EntersAt(const btVector3& from, const btVector3& direction) : from_(from) {
-    // Large, but finite: times nothing it is nothing.
-    for (int k = 0; k < 3; ++k)
-      inverse_[k] = 1 / std::copysign(btMax(btFabs(direction[k]), btScalar(1e-20)), direction[k]);
-  }
-  btScalar operator()(const TriangleTree::Box& box) const {
-    btScalar enter = 0, leave = kNowhere;
+  EntersAt(const btVector3& from, const btVector3& direction) {
     for (int k = 0; k < 3; ++k) {
-      const btScalar a = (box.min[k] - from_[k]) * inverse_[k], b = (box.max[k] - from_[k]) * inverse_[k];
-      enter = btMax(enter, btMin(a, b));
-      leave = btMin(leave, btMax(a, b));
+      from_[k] = static_cast<float>(from[k]);
+      // Large, but finite: times nothing it is nothing.
+      inverse_[k] =
+          static_cast<float>(1 / std::copysign(btMax(btFabs(direction[k]), btScalar(1e-20)), direction[k]));
     }
-    return enter <= leave ? enter : kNowhere;
+  }
+  Lanes operator()(const TriangleTree::Boxes& boxes) const {
+    Lanes enter{}, leave = enter + kFar;
+    for (int k = 0; k < 3; ++k) {
+      const Lanes a = (boxes.min[k] - from_[k]) * inverse_[k], b = (boxes.max[k] - from_[k]) * inverse_[k];
+      enter = TriangleTree::greater(enter, TriangleTree::lesser(a, b));
+      leave = TriangleTree::lesser(leave, TriangleTree::greater(a, b));
+    }
+    return enter <= leave ? enter : Lanes{} + kFar;
   }
 
  private:
-  btVector3 from_, inverse_;
+  std::array<float, 3> from_, inverse_;
 };
 
 /// What the curved surface is like where its triangle is hit.
@@ -61,11 +67,14 @@ SurfaceTree::SurfaceTree(const Surface& surface) : surface_(surface), tree_(surf
 
 void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3& min,
                                    const btVector3& max) const {
-  const auto apart = [&](const TriangleTree::Box& box) {
-    for (int k = 0; k < 3; ++k) {
-      if (box.max[k] < min[k] || box.min[k] > max[k]) return kNowhere;
+  const auto apart = [&](const TriangleTree::Boxes& boxes) {
+    Lanes distances{};
+    for (std::size_t lane = 0; lane < TriangleTree::kWidth; ++lane) {
+      for (int k = 0; k < 3; ++k) {
+        if (boxes.max[k][lane] < min[k] || boxes.min[k][lane] > max[k]) distances[lane] = kFar;
+      }
     }
-    return btScalar(0);
+    return distances;
   };
   tree_.search(0, apart, [&](std::uint32_t t) {
     btVector3 corners[3];
@@ -122,9 +131,9 @@ bool SurfaceTree::sharpEdge(std::size_t triangle, const btVector3& point, const 
 }
 
 bool SurfaceTree::nearest(const btVector3& point, btScalar reach, Nearest& result) const {
-  NearestTriangle search(surface_, point, reach);
+  NearestTriangle search(normals(), point, reach);
   tree_.search(
-      search.farthest2(), [&](const TriangleTree::Box& box) { return search.distance2(box); },
+      search.farthest2(), [&](const TriangleTree::Boxes& boxes) { return search.distances2(boxes); },
       [&](std::uint32_t t) { return search.test(t); });
   if (!search.found()) return false;
   result = {search.distance(), search.normal(), search.triangle(), search.beside()};

@@ -14,32 +14,43 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A binary tree of boxes in the surface's frame, which one walk searches: for the first triangle on a ray,
-/// the nearest to a point, or all in a box. Const members are safe to call from several threads at once.
+/// A tree of boxes in the surface's frame, which one walk searches: for the first triangle on a ray, the
+/// nearest to a point, or all in a box. Const members are safe to call from several threads at once.
 class TriangleTree {
  public:
   explicit TriangleTree(const Surface& surface);
 
-  struct Box {
-    std::array<float, 3> min, max;
+  /// One number of each of a node's children, side by side: one instruction looks at all of them.
+  static constexpr std::size_t kWidth = 4;
+  using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
+  static Lanes lesser(Lanes a, Lanes b) { return a < b ? a : b; }
+  static Lanes greater(Lanes a, Lanes b) { return a > b ? a : b; }
+  struct Boxes {
+    Lanes min[3], max[3];  ///< x, y, z
   };
-  /// Visits triangles, those in nearer boxes first. bound(box) is how far away the triangles in a box are at
-  /// least, visit(triangle) returns how far away further ones may be to be visited still; `farthest`: the
-  /// first ones. Distances in any unit.
+  /// Visits triangles, those in nearer boxes first. bound(boxes) tells in Lanes how far away the triangles in
+  /// each box are at least, visit(triangle) returns how far away further ones may be to be visited still;
+  /// `farthest`: the first ones. Distances in any unit.
   template <typename Bound, typename Visit>
   void search(btScalar farthest, const Bound& bound, const Visit& visit) const;
 
  private:
-  /// Nodes follow their parents: the first child at once, the second where the parent says.
-  struct Node {
-    Box box;
-    std::uint32_t first;  ///< of its triangles, or its second child
-    std::uint32_t count;  ///< of triangles; 0 if it has children
+  struct Child {
+    std::uint32_t first;  ///< of its triangles, or its node
+    std::uint32_t count;  ///< of triangles, or kInner
   };
-  /// Halves are of equal size, so that no tree is deeper.
-  static constexpr std::size_t kMaxDepth = 32;
+  static constexpr std::uint32_t kInner = ~std::uint32_t(0);
+  struct Node {
+    Boxes boxes;
+    std::array<Child, kWidth> children;
+  };
+  /// Children are of equal size, so that no tree is deeper.
+  static constexpr std::size_t kMaxDepth = 16;
 
-  void build(const Surface& surface, std::size_t first, std::size_t end);
+  std::uint32_t build(const Surface& surface, std::size_t first, std::size_t end);
+  std::size_t halve(const Surface& surface, std::size_t first, std::size_t end);
+  void enclose(const Surface& surface, std::size_t first, std::size_t end, std::size_t child,
+               Boxes& boxes) const;
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> triangles_;
@@ -48,25 +59,30 @@ class TriangleTree {
 template <typename Bound, typename Visit>
 void TriangleTree::search(btScalar farthest, const Bound& bound, const Visit& visit) const {
   struct Entry {
-    std::uint32_t node;
+    Child child;
     btScalar distance;
   };
-  std::array<Entry, kMaxDepth + 1> stack;
+  std::array<Entry, (kWidth - 1) * kMaxDepth + 1> stack;
   std::size_t count = 0;
-  if (!nodes_.empty()) stack[count++] = {0, bound(nodes_[0].box)};
+  if (!nodes_.empty()) stack[count++] = {{0, kInner}, 0};
   while (count > 0) {
     const Entry entry = stack[--count];
     if (!(entry.distance <= farthest)) continue;
-    const Node& node = nodes_[entry.node];
-    if (node.count > 0) {
-      for (std::uint32_t i = 0; i < node.count; ++i) farthest = visit(triangles_[node.first + i]);
+    if (entry.child.count != kInner) {
+      for (std::uint32_t i = 0; i < entry.child.count; ++i)
+        farthest = visit(triangles_[entry.child.first + i]);
       continue;
     }
-    Entry near{entry.node + 1, bound(nodes_[entry.node + 1].box)};
-    Entry far{node.first, bound(nodes_[node.first].box)};
-    if (far.distance < near.distance) std::swap(near, far);
-    if (far.distance <= farthest) stack[count++] = far;
-    if (near.distance <= farthest) stack[count++] = near;
+    const Node& node = nodes_[entry.child.first];
+    const Lanes distances = bound(node.boxes);
+    const std::size_t bottom = count;
+    for (std::size_t k = kWidth; k-- > 0;) {
+      if (!(distances[k] <= farthest)) continue;
+      // The nearest is on top.
+      std::size_t at = count++;
+      for (; at > bottom && stack[at - 1].distance < distances[k]; --at) stack[at] = stack[at - 1];
+      stack[at] = {node.children[k], btScalar(distances[k])};
+    }
   }
 }
 
