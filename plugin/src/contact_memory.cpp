@@ -8,7 +8,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// In units of the spacing: bodies that have moved less since a search have the same candidates for contacts,
-constexpr btScalar kMeasureAgain = btScalar(0.25);
+constexpr btScalar kMeasureAgain = btScalar(0.5);
 /// and less since they were measured, the same contacts. The error is of second order: a hundredth of this.
 constexpr btScalar kCarry = btScalar(0.02);
 /// A body that is held from sides more than 107 degrees apart is enclosed.

@@ -77,7 +77,7 @@ TEST_F(Coherence, ABallThatMovesMoreIsSearched) {
   addUpper(makeShape(singleBall(kRadius)));
   place(btVector3(0, 0, btScalar(0.5 + kRadius)));
   const BatchCount before = count();
-  for (int i = 1; i <= 4; ++i) place(btVector3(btScalar(0.5 * i * spacing), 0, btScalar(0.5 + kRadius)));
+  for (int i = 1; i <= 4; ++i) place(btVector3(btScalar(0.6 * i * spacing), 0, btScalar(0.5 + kRadius)));
   EXPECT_EQ(count().pairs, before.pairs + 4);
 }
 
