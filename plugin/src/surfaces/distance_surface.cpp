@@ -53,6 +53,7 @@ bool DistanceSurface::touchOne(const PackingBody& body, const btTransform& world
 bool DistanceSurface::boxIsAsBefore(const btCollisionShape& shape) {
   btVector3 min, max;
   shape.getAabb(btTransform::getIdentity(), min, max);
+  min[3] = max[3] = 0;  // == compares it, and some of Bullet's shapes do not set it
   const bool same = min == box_min_ && max == box_max_;
   box_min_ = min;
   box_max_ = max;

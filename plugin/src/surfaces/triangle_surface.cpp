@@ -7,6 +7,7 @@
 // pair lives, so that small spheres which have gone through are pushed back the right way.
 #include <algorithm>
 #include <array>
+#include <mutex>
 #include <tuple>
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -94,9 +95,23 @@ class Collector : public btTriangleCallback {
   btVoronoiSimplexSolver solver_;
 };
 
+/// Whether several threads may ask for triangles at once: a GImpact mesh notes who reads it, and what a
+/// user's own shape does is not known.
+bool isSharable(const btConcaveShape& mesh) {
+  switch (mesh.getShapeType()) {
+    case TRIANGLE_MESH_SHAPE_PROXYTYPE:
+    case SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE:
+    case MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE:
+    case TERRAIN_SHAPE_PROXYTYPE:
+      return true;
+    default:
+      return false;
+  }
+}
+
 class TriangleSurface : public OtherSurface {
  public:
-  explicit TriangleSurface(const btConcaveShape& mesh) : mesh_(mesh) {}
+  explicit TriangleSurface(const btConcaveShape& mesh) : mesh_(mesh), sharable_(isSharable(mesh)) {}
 
   void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override {
     static thread_local std::vector<Candidate> candidates;
@@ -128,6 +143,9 @@ class TriangleSurface : public OtherSurface {
     btTransformAabb(min * body.scale() - slack, max * body.scale() + slack, 0, packing_to_mesh, min, max);
     const btTransform mesh_to_packing = packing_to_mesh.inverse();
     Collector collector(body, mesh_to_packing, candidates);
+    static std::mutex mutex;
+    std::unique_lock<std::mutex> lock(mutex, std::defer_lock);
+    if (!sharable_) lock.lock();
     mesh_.processAllTriangles(&collector, min, max);
   }
 
@@ -214,6 +232,7 @@ class TriangleSurface : public OtherSurface {
   }
 
   const btConcaveShape& mesh_;
+  const bool sharable_;
   int side_ = 0;
 };
 
