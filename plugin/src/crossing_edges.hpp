@@ -1,13 +1,14 @@
 // Where sharp edges of two solids cross.
 #pragma once
 
+#include "edged_solid.hpp"
 #include "gauge.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// See Gauge::crossing().
-bool crossingEdges(const PackingBody& a, const PackingBody& b, const Gap& gap, const btVector3& direction,
+/// See Gauge::crossing(). Positions are relative to A's origin, axes of the world.
+bool crossingEdges(const EdgedSolid& a, const EdgedSolid& b, const Gap& gap, const btVector3& direction,
                    Gauge::Corner& crossing);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

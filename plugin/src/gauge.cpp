@@ -24,7 +24,7 @@ struct SurfacePoint {
   btVector3 normal{0, 0, 0};  ///< unit, out of the solid
   btScalar facing = 0;        ///< cosine between the triangle's normal and the ray
   btScalar curvature = 0;     ///< [1/m]
-  std::size_t triangle = 0;
+  std::size_t triangle = Gap::kNone;
 };
 
 /// In the frame of a surface.
@@ -140,7 +140,15 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   const btVector3 from = a_.centreOf(touch.sphere) + touch.aside + shift;
   const btVector3 towards_b = -touch.normal;
   SurfacePoint on_a;
-  if (!leave(a_, from, towards_b, 2 * (radius + a_.slack), gap.triangle_a, on_a)) return false;
+  const bool leaves = leave(a_, from, towards_b, 2 * (radius + a_.slack), gap.triangle_a, on_a);
+  if (on_a.triangle == Gap::kNone && gap.triangle_a != Gap::kNone) {
+    // Deep in A: it is some other face that is near.
+    const EdgedSolid a(a_, {0, 0, 0});
+    on_a.triangle = gap.triangle_a;
+    on_a.at = a.middle(gap.triangle_a);
+    on_a.normal = a.face(gap.triangle_a);
+    on_a.curvature = a.surface->normals().curvature(gap.triangle_a) / a.scale;
+  }
   gap.on_a = on_a.at;
   gap.normal_a = on_a.normal;
   gap.curvature_a = on_a.curvature;
@@ -148,7 +156,7 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   gap.on_b = from + towards_b * touch.distance;
   gap.normal_b = towards_b;
   gap.curvature_b = touch.curvature;
-  return true;
+  return leaves;
 }
 
 bool SurfaceGauge::nearest(std::size_t index, btVector3& direction, Gap& gap) const {
@@ -181,6 +189,16 @@ void SurfaceGauge::corners(std::size_t index, const Gap& gap, const btVector3& n
                   corner.gap.on_a = at;
                   if (nearest < BT_LARGE_FLOAT) corners.push_back(corner);
                 });
+}
+
+bool SurfaceGauge::crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const {
+  EdgedSolid b;
+  Gap start = gap;
+  // Seen from outside.
+  const btVector3 place = gap.on_b - gap.normal_b * a_.slack;
+  if (!other_.facets(a_, world_, b) || !b.nearestTriangle(place, start.triangle_b)) return false;
+  crossing.is_alone = btFabs(b.face(start.triangle_b).dot(gap.normal_b)) < kSameFace;
+  return crossingEdges({a_, {0, 0, 0}}, b, start, direction, crossing);
 }
 
 Gauge::Forward SurfaceGauge::forward(std::size_t index, const btVector3&) const {
@@ -254,7 +272,7 @@ Gauge::Reach PackingGauge::reach(const Gap& gap, const btVector3& towards) const
 }
 
 bool PackingGauge::crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const {
-  return crossingEdges(a_, b_, gap, direction, crossing);
+  return crossingEdges({a_, {0, 0, 0}}, {b_, apart()}, gap, direction, crossing);
 }
 
 void PackingGauge::corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,

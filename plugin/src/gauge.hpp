@@ -34,7 +34,8 @@ class Gauge {
   /// At contact `index` of the list that the gauge was made for, along `direction` from A to B (a shape that
   /// is no packing chooses its own), with the line moved sideways by `shift`. False if the line does not pass
   /// both surfaces near there. The triangles that `gap` comes with, or those around them, are taken if the
-  /// line passes them; all are looked at only where they are kNone, or missed.
+  /// line passes them; all are looked at only where they are kNone, or missed. Where B is no packing, the gap
+  /// then holds a face of A all the same: that by which the line leaves A sideways, or one near the sphere.
   virtual bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                        Gap& gap) const = 0;
   /// The direction from A to B in which the sphere of a contact is nearest to the other solid's surface.
@@ -51,8 +52,10 @@ class Gauge {
   /// point of the face that it is over.
   struct Corner {
     Gap gap;
-    std::uint64_t id = 0;  ///< no sphere has it
-    bool is_peak = true;   ///< the surface does not rise on from it
+    std::uint64_t id = 0;   ///< no sphere has it
+    bool is_peak = true;    ///< the surface does not rise on from it
+    bool is_alone = false;  ///< a crossing, and the gap that it was found from lies at an edge of B: its
+                            ///< corners are over no face
   };
   virtual void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                        std::vector<Corner>& corners) const = 0;
@@ -76,7 +79,10 @@ class Gauge {
 /// Contacts of a packing with a shape of another kind; `touches` are parallel to the contacts.
 class SurfaceGauge : public Gauge {
  public:
-  SurfaceGauge(const PackingBody& a, const std::vector<Touch>& touches) : a_(a), touches_(touches) {}
+  /// `world`: where the other shape is.
+  SurfaceGauge(const PackingBody& a, OtherSurface& other, const btTransform& world,
+               const std::vector<Touch>& touches)
+      : a_(a), other_(other), world_(world), touches_(touches) {}
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
                Gap& gap) const override;
   bool nearest(std::size_t index, btVector3& direction, Gap& gap) const override;
@@ -84,13 +90,15 @@ class SurfaceGauge : public Gauge {
   Reach reach(const Gap&, const btVector3&) const override { return {0, BT_LARGE_FLOAT}; }
   void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;
-  bool crossing(const Gap&, const btVector3&, Corner&) const override { return false; }
+  bool crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const override;
   Forward forward(std::size_t index, const btVector3& normal) const override;
   std::uint64_t id(std::size_t index) const override { return touches_[index].sphere; }
   bool exactB() const override { return true; }
 
  private:
   const PackingBody& a_;
+  OtherSurface& other_;
+  const btTransform& world_;
   const std::vector<Touch>& touches_;
 };
 

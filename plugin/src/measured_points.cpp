@@ -62,11 +62,14 @@ bool measureAgain(const Gauge& gauge, const Candidates::Line& line, Measured& m)
   return true;
 }
 
+bool isFlat(const Measured& m) {
+  return m.gap.curvature_a == 0 && m.gap.curvature_b == 0;
+}
+
 /// Too far apart for a contact, until the candidates are searched again. On flat surfaces it is of use all
 /// the same: it tells where faces end.
 bool isFar(const Measured& m, btScalar separation) {
-  const bool curved = m.gap.curvature_a != 0 || m.gap.curvature_b != 0;
-  return curved && (m.gap.on_a - m.gap.on_b).dot(m.direction) < -separation;
+  return !isFlat(m) && (m.gap.on_a - m.gap.on_b).dot(m.direction) < -separation;
 }
 
 /// Whether a corner of a surface is deeper than the place where it was measured.
@@ -84,10 +87,11 @@ btScalar shareOfA(const Gap& gap, const btVector3& normal) {
 
 void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, btScalar separation,
                    std::vector<MeasuredPoint>& found) {
-  static thread_local std::vector<Measured> measured;
+  static thread_local std::vector<Measured> measured, sideways;
   static thread_local std::vector<Gauge::Corner> corners;
   const Candidates::OfPatch& patch = candidates.patches[p];
   measured.clear();
+  sideways.clear();
   const bool again = patch.end <= candidates.lines.size();
   Candidates::Line deepest_line;
   std::size_t deepest = 0;
@@ -98,9 +102,14 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     m.id = gauge.id(m.index);
     const bool found = again ? measureAgain(gauge, candidates.lines[k], m) : measure(gauge, patch.normal, m);
     if (!again) candidates.lines.emplace_back();
-    if (!found) continue;
-    measured.push_back(m);
     const Candidates::Line line{m.direction, m.gap.triangle_a, m.gap.triangle_b};
+    if (!found) {
+      if (!gauge.exactB() || m.gap.triangle_a == Gap::kNone) continue;
+      sideways.push_back(m);
+      candidates.lines[k] = line;
+      continue;
+    }
+    measured.push_back(m);
     const btScalar depth = (m.gap.on_a - m.gap.on_b).dot(m.direction);
     if (measured.size() == 1 || depth > most) {
       most = depth;
@@ -124,29 +133,35 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   const auto isFound = [&](std::uint64_t id) {
     return std::any_of(found.begin(), found.end(), [&](const MeasuredPoint& f) { return f.point.id == id; });
   };
+  const auto addCrossing = [&](const Measured& m, Gauge::Corner& crossing) {
+    return gauge.crossing(m.gap, patch.normal, crossing) &&
+           (isFound(crossing.id) || add(crossing.gap, crossing.gap.normal_a, crossing.id, Kind::crossing));
+  };
   for (const Measured& m : measured) {
     const btVector3 normal = normals.at(m);
     const bool edge_a = rises(m.gap.normal_a, m.gap.curvature_a, normal),
                edge_b = rises(m.gap.normal_b, m.gap.curvature_b, normal);
-    const bool flat = m.gap.curvature_a == 0 && m.gap.curvature_b == 0;
+    const bool flat = isFlat(m);
     const bool faces = !flat || opposed(m.gap);
     corners.clear();
     if (edge_a != edge_b) gauge.corners(m.index, m.gap, normal, edge_a, corners);
+    Gauge::Corner crossing;
+    const bool crosses = flat && m.gap.normal_a.dot(m.gap.normal_b) < kAligned && addCrossing(m, crossing);
+    if (crosses && crossing.is_alone) corners.clear();
     for (const Gauge::Corner& corner : corners) {
       if (!isFound(corner.id))
         add(corner.gap, edge_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id,
             corner.is_peak ? Kind::corner : Kind::edge);
     }
-    Gauge::Corner crossing;
-    const bool crosses =
-        flat && m.gap.normal_a.dot(m.gap.normal_b) < kAligned &&
-        gauge.crossing(m.gap, patch.normal, crossing) &&
-        (isFound(crossing.id) || add(crossing.gap, crossing.gap.normal_a, crossing.id, Kind::crossing));
     // Beside them the face is less deep, or, where it ends in an arc, not there.
     if (corners.empty() && !crosses && add(m.gap, normal, m.id, faces ? Kind::faces : Kind::edge)) {
       found.back().point.curvature_a = m.gap.curvature_a;
       found.back().point.curvature_b = m.gap.curvature_b;
     }
+  }
+  for (const Measured& m : sideways) {
+    Gauge::Corner crossing;
+    if (isFlat(m)) addCrossing(m, crossing);
   }
   for (std::size_t i = first; i < found.size(); ++i) {
     found[i].area = patch.area / btScalar(found.size() - first);

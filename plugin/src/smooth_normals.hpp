@@ -43,6 +43,10 @@ class SmoothNormals {
   const btVector3* corners(std::size_t triangle) const { return facets_[triangle].corners; }
   /// Of the triangle itself: unit, out of the solid; zero if it has no area.
   const btVector3& face(std::size_t triangle) const { return facets_[triangle].face; }
+  btVector3 middle(std::size_t triangle) const {
+    const Facet& facet = facets_[triangle];
+    return (facet.corners[0] + facet.corners[1] + facet.corners[2]) / 3;
+  }
   /// Whether a sharp edge lies between a triangle and a point over its plane, not far away.
   bool isPastSharpEdge(std::size_t triangle, const btVector3& point) const;
   /// The sharp edge in which the surface ends.

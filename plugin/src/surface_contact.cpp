@@ -92,7 +92,7 @@ void SurfaceContact::update(const ContactOptions& options, const btTransform& pa
   if (measure.on_surfaces) {
     caps(a.slack);
     assert(contacts.size() == touches_.size());  // the gauge counts on it
-    const SurfaceGauge gauge(a, touches_);
+    const SurfaceGauge gauge(a, *surface_, other, touches_);
     findCandidates(contacts, gauge, measure.spacing, packing.getBasis(), patches, memory_.candidates);
     const bool near = measurePatches(memory_.candidates, gauge, measure, patches);
     if (!near) caps(0);
@@ -130,7 +130,8 @@ bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, cons
   } else {
     if (!surface_->touchAgain(a, now.b, touches_)) return false;
     memory_.turnTo(now);
-    const bool near = measurePatches(memory_.candidates, SurfaceGauge(a, touches_), *before, memory_.patches);
+    const SurfaceGauge gauge(a, *surface_, now.b, touches_);
+    const bool near = measurePatches(memory_.candidates, gauge, *before, memory_.patches);
     const auto cuts = [&](const Touch& touch) {
       return touch.distance < a.radiusOf(touch.sphere) + a.margin;
     };

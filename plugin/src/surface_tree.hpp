@@ -54,9 +54,9 @@ class SurfaceTree {
   /// False if the surface is further away from `point` than `reach`.
   bool nearest(const btVector3& point, btScalar reach, Nearest& result) const;
 
- private:
   const SmoothNormals& normals() const;
 
+ private:
   const Surface& surface_;
   TriangleTree tree_;
   Lazy<SmoothNormals> normals_;

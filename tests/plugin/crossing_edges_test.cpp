@@ -5,155 +5,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "innersphere/packer.hpp"
-#include "innersphere/solids.hpp"
+#include "crossing_cubes.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
 namespace innersphere::test {
 namespace {
 
-/// Each triangle in four.
-Surface cut(const Surface& surface) {
-  Surface result;
-  std::map<std::array<float, 3>, std::uint32_t> known;
-  const auto vertex = [&](const std::array<float, 3>& place) {
-    const auto [at, fresh] = known.try_emplace(place, static_cast<std::uint32_t>(known.size()));
-    if (fresh) result.vertices.push_back(place);
-    return at->second;
-  };
-  for (const auto& t : surface.triangles) {
-    std::uint32_t corners[3], middles[3];
-    for (int k = 0; k < 3; ++k) {
-      const auto &p = surface.vertices[t[k]], &q = surface.vertices[t[(k + 1) % 3]];
-      corners[k] = vertex(p);
-      middles[k] = vertex({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2});
-    }
-    for (int k = 0; k < 3; ++k) result.triangles.push_back({corners[k], middles[k], middles[(k + 2) % 3]});
-    result.triangles.push_back({middles[0], middles[1], middles[2]});
-  }
-  return result;
-}
-
-/// A cube of 1 m: spheres on a grid, the same with edges in four pieces, or packed as many as `kind` says.
-std::shared_ptr<PackingShape> makeCube(const std::string& kind) {
-  if (kind == "lattice") return makeShape(latticeBox({1, 1, 1}, 8));
-  if (kind == "cut") {
-    Packing lattice = latticeBox({1, 1, 1}, 8);
-    lattice.surface = cut(cut(lattice.surface));
-    return makeShape(lattice);
-  }
-  static std::map<std::string, Packing> packings;
-  Packing& packing = packings[kind];
-  if (packing.spheres.empty()) {
-    PackOptions options;
-    options.spheres = std::stoul(kind);
-    packing = pack(*makeBox({1, 1, 1}), options);
-  }
-  return makeShape(packing);
-}
-
-/// How the lowest edge of a cube crosses the highest of another, both about level.
-struct Crossing {
-  double depth;                     ///< [m]
-  double angle;                     ///< between the edges [rad]
-  double lean_upper, lean_lower;    ///< of the diagonals that stand on the edges [rad]
-  double along_upper, along_lower;  ///< from the middles of the edges [m]
-};
-
-struct Cubes {
-  btTransform upper, lower;
-};
-
-/// The upper cube's edge lies along x.
-Cubes place(const Crossing& c) {
-  const btVector3 lowest(btScalar(c.along_upper), btScalar(-0.5), btScalar(-0.5));
-  const btVector3 highest(btScalar(c.along_lower), btScalar(0.5), btScalar(0.5));
-  const btVector3 x(1, 0, 0), z(0, 0, 1);
-  const btMatrix3x3 upper(btQuaternion(x, btScalar(M_PI / 4 + c.lean_upper)));
-  const btMatrix3x3 lower(btQuaternion(z, btScalar(c.angle)) *
-                          btQuaternion(x, btScalar(M_PI / 4 + c.lean_lower)));
-  return {btTransform(upper, z * btScalar(-c.depth) - upper * lowest),
-          btTransform(lower, -(lower * highest))};
-}
-
-/// The shortest way that takes the upper cube out of the lower one, by the theorem of separating axes.
-struct Escape {
-  double depth = 1e9;  ///< [m], negative if the cubes are apart
-  double next = 1e9;   ///< along the second best axis
-  bool between_edges = false;
-  std::array<double, 3> direction{};  ///< unit
-};
-
-Escape leastEscape(const Cubes& cubes) {
-  using Vector = std::array<double, 3>;
-  const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
-  const auto axisOf = [](const btTransform& cube, int i) {
-    const btVector3 axis = cube.getBasis().getColumn(i);
-    return Vector{axis.x(), axis.y(), axis.z()};
-  };
-  Vector apart;
-  for (int i = 0; i < 3; ++i)
-    apart[i] = double(cubes.upper.getOrigin()[i]) - double(cubes.lower.getOrigin()[i]);
-  Escape best;
-  const auto test = [&](Vector axis, bool between_edges) {
-    const double length = std::sqrt(dot(axis, axis));
-    if (length < 1e-3) return;
-    const double sign = dot(axis, apart) < 0 ? -1 : 1;
-    for (double& x : axis) x *= sign / length;
-    double depth = -dot(axis, apart);
-    for (int i = 0; i < 3; ++i)
-      depth +=
-          (std::fabs(dot(axis, axisOf(cubes.upper, i))) + std::fabs(dot(axis, axisOf(cubes.lower, i)))) / 2;
-    best.next = std::min(best.next, std::max(depth, best.depth));
-    if (depth < best.depth) {
-      best.depth = depth;
-      best.between_edges = between_edges;
-      best.direction = axis;
-    }
-  };
-  for (int i = 0; i < 3; ++i) {
-    test(axisOf(cubes.upper, i), false);
-    test(axisOf(cubes.lower, i), false);
-    for (int j = 0; j < 3; ++j) {
-      const Vector a = axisOf(cubes.upper, i), b = axisOf(cubes.lower, j);
-      test({a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}, true);
-    }
-  }
-  return best;
-}
-
 /// Of the body that was added last, and the one before.
 Escape leastEscape(const TestWorld& world) {
   const std::size_t count = world.bodies.size();
   return leastEscape(
-      {world.bodies[count - 1]->getWorldTransform(), world.bodies[count - 2]->getWorldTransform()});
-}
-
-std::vector<Crossing> crossings() {
-  std::vector<Crossing> all;
-  for (double depth : {0.005, 0.02, 0.05, 0.1, 0.17, 0.25}) {
-    for (double angle : {0.8, 1.05, M_PI / 2, 1.8, 2.4}) {
-      for (double lean : {-0.35, -0.15, 0.0, 0.2}) {
-        for (double along : {-0.23, 0.0, 0.11, 0.3})
-          all.push_back({depth, angle, lean, lean / 2 + 0.07, along, 0.1 - along / 2});
-      }
-    }
-  }
-  return all;
-}
-
-std::string describe(const Crossing& c) {
-  std::ostringstream text;
-  text << c.depth << " deep at " << c.angle << " rad, leaning " << c.lean_upper << " and " << c.lean_lower
-       << " rad, " << c.along_upper << " and " << c.along_lower << " from the middle";
-  return text.str();
+      Cubes{world.bodies[count - 1]->getWorldTransform(), world.bodies[count - 2]->getWorldTransform()});
 }
 
 class CrossingEdges : public testing::TestWithParam<std::string> {

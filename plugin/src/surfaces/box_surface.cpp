@@ -35,6 +35,8 @@ class BoxSurface : public DistanceSurface {
     return true;
   }
 
+  const btPolyhedralConvexShape* polyhedron() const override { return &box_; }
+
   const btBoxShape& box_;
 };
 

@@ -31,6 +31,10 @@ class ConvexSurface : public DistanceSurface {
 
   btScalar lowerBound(const btVector3& p) const override { return boxDistance(convex_, p); }
 
+  const btPolyhedralConvexShape* polyhedron() const override {
+    return dynamic_cast<const btPolyhedralConvexShape*>(&convex_);
+  }
+
   const btConvexShape& convex_;
 };
 

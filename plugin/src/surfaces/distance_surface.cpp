@@ -8,6 +8,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 void DistanceSurface::touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) {
+  facets_.expire();
   const btTransform to_shape = world.inverseTimes(body.world);
   const btScalar scale = body.scale();
   const auto near = [&](const btVector3& min, const btVector3& max) {
@@ -48,6 +49,13 @@ bool DistanceSurface::touchOne(const PackingBody& body, const btTransform& world
     });
   }
   return true;
+}
+
+bool DistanceSurface::facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) {
+  const btPolyhedralConvexShape* const shape = polyhedron();
+  if (shape == nullptr) return false;
+  if (facets_.isExpired()) facets_.setHull(*shape);
+  return facets_.place(world, body.origin(), solid);
 }
 
 bool DistanceSurface::boxIsAsBefore(const btCollisionShape& shape) {

@@ -3,6 +3,7 @@
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 
+#include "surfaces/facets.hpp"
 #include "surfaces/other_surface.hpp"
 
 namespace innersphere {
@@ -12,6 +13,7 @@ class DistanceSurface : public OtherSurface {
  public:
   void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override;
   bool touchAgain(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) final;
+  bool facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) final;
 
  protected:
   struct Nearest {
@@ -25,6 +27,8 @@ class DistanceSurface : public OtherSurface {
   virtual bool nearest(const btVector3& p, Nearest& nearest) const = 0;
   /// At most the distance of p, and cheaper; only its comparison with a radius matters.
   virtual btScalar lowerBound(const btVector3& p) const;
+  /// Null if it is none.
+  virtual const btPolyhedralConvexShape* polyhedron() const { return nullptr; }
   /// Whether the bounding box of a shape is what it was at the last call. What moves less than the box shows
   /// is not noticed before the bodies move.
   bool boxIsAsBefore(const btCollisionShape& shape);
@@ -37,6 +41,7 @@ class DistanceSurface : public OtherSurface {
 
   btVector3 box_min_{0, 0, 0};
   btVector3 box_max_{0, 0, 0};
+  Facets facets_;
 };
 
 // One maker a kind; each in its own file.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "edged_solid.hpp"
 #include "packing_body.hpp"
 
 namespace innersphere {
@@ -38,6 +39,9 @@ class OtherSurface {
   /// Renews touches, of the same spheres, for where the bodies are now; they may be beyond reach by then.
   /// False if that cannot be done.
   virtual bool touchAgain(const PackingBody&, const btTransform&, std::vector<Touch>&) { return false; }
+
+  /// Its flat faces, those near the last touches at least, relative to body.origin(). False if it has none.
+  virtual bool facets(const PackingBody&, const btTransform&, EdgedSolid&) { return false; }
 };
 
 /// The surface of `shape`, or null for a shape without one (fluids, invalid types). The shape must outlive

@@ -115,6 +115,7 @@ class TriangleSurface : public OtherSurface {
 
   void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override {
     static thread_local std::vector<Candidate> candidates;
+    facets_.expire();
     candidates.clear();
     collect(body, world, candidates);
     if (candidates.empty()) return;
@@ -122,6 +123,7 @@ class TriangleSurface : public OtherSurface {
       return std::tie(a.sphere, a.distance, a.order) < std::tie(b.sphere, b.distance, b.order);
     });
     if (side_ == 0) side_ = sideOf(body, candidates);
+    setNear(body, world, candidates);
 
     for (auto first = candidates.begin(); first != candidates.end();) {
       auto last = std::find_if(first, candidates.end(),
@@ -131,7 +133,23 @@ class TriangleSurface : public OtherSurface {
     }
   }
 
+  bool facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) override {
+    if (facets_.isExpired()) {
+      const std::unique_lock<std::mutex> lock = turnToRead();
+      facets_.setMesh(mesh_, near_min_, near_max_);
+    }
+    solid.inside_out = side_ < 0;
+    return facets_.place(world, body.origin(), solid);
+  }
+
  private:
+  std::unique_lock<std::mutex> turnToRead() const {
+    static std::mutex mutex;
+    std::unique_lock<std::mutex> lock(mutex, std::defer_lock);
+    if (!sharable_) lock.lock();
+    return lock;
+  }
+
   void collect(const PackingBody& body, const btTransform& world, std::vector<Candidate>& candidates) const {
     const btVector3 slack(body.largestExcess(), body.largestExcess(), body.largestExcess());
     const btTransform shape_to_packing = body.shape().solid->frame.from_packing;
@@ -143,10 +161,21 @@ class TriangleSurface : public OtherSurface {
     btTransformAabb(min * body.scale() - slack, max * body.scale() + slack, 0, packing_to_mesh, min, max);
     const btTransform mesh_to_packing = packing_to_mesh.inverse();
     Collector collector(body, mesh_to_packing, candidates);
-    static std::mutex mutex;
-    std::unique_lock<std::mutex> lock(mutex, std::defer_lock);
-    if (!sharable_) lock.lock();
+    const std::unique_lock<std::mutex> lock = turnToRead();
     mesh_.processAllTriangles(&collector, min, max);
+  }
+
+  void setNear(const PackingBody& body, const btTransform& world, const std::vector<Candidate>& candidates) {
+    btVector3 min = candidates[0].point, max = min;
+    btScalar reach = 0;
+    for (const Candidate& c : candidates) {
+      min.setMin(c.point);
+      max.setMax(c.point);
+      reach = btMax(reach, body.reach(c.sphere));
+    }
+    btTransformAabb(min * body.scale(), max * body.scale(), reach, world.inverseTimes(body.world), near_min_,
+                    near_max_);
+    near_min_[3] = near_max_[3] = 0;  // == compares it
   }
 
   /// +1 if the body is on the side that the triangles' winding calls outside, -1 on the other. Large spheres
@@ -172,7 +201,7 @@ class TriangleSurface : public OtherSurface {
     const btScalar same = btScalar(1e-4) * body.prefix->median_radius;
     for (const Candidate* c = first; c != last; ++c) {
       const btVector3 direction = body.world.getBasis() * c->direction;
-      if (known(direction)) continue;
+      if (known(direction) || (!c->interior && isNearerBeside(c, first, same))) continue;
       const Corner corner = cornerAt(c, first, last, same);
       const bool rim = !c->interior && corner.triangles == 1;
       if (rim && c != first) continue;
@@ -201,6 +230,18 @@ class TriangleSurface : public OtherSurface {
     for (const Candidate* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o)
       test(*(o - 1));
     for (const Candidate* o = c + 1; o != last && o->distance - c->distance <= tolerance; ++o) test(*o);
+  }
+
+  static bool hasCorner(const Candidate& c, const btVector3& point, btScalar same) {
+    return std::any_of(c.corners.begin(), c.corners.end(),
+                       [&](const btVector3& corner) { return corner.distance2(point) < same * same; });
+  }
+
+  /// Whether a nearest point is a corner of a triangle that comes nearer elsewhere.
+  static bool isNearerBeside(const Candidate* c, const Candidate* first, btScalar same) {
+    return std::any_of(first, c, [&](const Candidate& other) {
+      return c->distance - other.distance > same && hasCorner(other, c->point, same);
+    });
   }
 
   struct Corner {
@@ -234,6 +275,9 @@ class TriangleSurface : public OtherSurface {
   const btConcaveShape& mesh_;
   const bool sharable_;
   int side_ = 0;
+  btVector3 near_min_{0, 0, 0};  ///< where the last search met the mesh, in its frame
+  btVector3 near_max_{0, 0, 0};
+  Facets facets_;
 };
 
 }  // namespace
