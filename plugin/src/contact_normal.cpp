@@ -75,8 +75,10 @@ ContactNormal::ContactNormal(const std::vector<Measured>& measured, const Gauge&
 btVector3 ContactNormal::at(const Measured& m) const {
   const btVector3 &a = m.gap.normal_a, &b = m.gap.normal_b;
   if (opposed(m.gap)) return mean(m.gap, face_a_);
-  if (flat_a_ != flat_b_) return flat_a_ ? a : b;
+  const bool one_is_flat = flat_a_ != flat_b_;
+  if (one_is_flat && gauge_->exactB()) return flat_a_ ? a : b;
   if (const std::optional<bool> on_a = isFaceOfA(m.gap, *gauge_)) return *on_a ? a : b;
+  if (one_is_flat) return flat_a_ ? a : b;
   const btVector3& nearest = a.dot(m.direction) > b.dot(m.direction) ? a : b;
   const bool edges = !flat_a_ && nearest.dot(m.direction) < kFace;
   return edges ? m.direction : nearest;

@@ -14,6 +14,7 @@ struct Measured {
   btVector3 direction{0, 0, 0};  ///< of the line, unit, from A to B
   std::size_t index = 0;         ///< of the contact
   std::uint64_t id = 0;          ///< of the sphere
+  bool starts_climb = false;     ///< to the top of a hill, see climb
 };
 
 /// The surfaces lie on each other: their normals differ by less than 20 degrees.

@@ -14,7 +14,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// Bullet keeps four points in a manifold.
 constexpr int kPatchPoints = 4;
 
-/// Id of the deepest point between curved surfaces; no sphere has it.
+/// Id of the deepest point between curved surfaces, and before it those of the next three; no sphere has
+/// them.
 constexpr std::uint64_t kDeepestId = ~std::uint64_t(0);
 
 /// A point of contact. Axes of the world, positions relative to the origin of A's packing.

@@ -13,6 +13,13 @@ constexpr btScalar kWarmStarting = btScalar(0.85);
 /// Patches whose normals differ by more than about 45 degrees are not the same patch.
 constexpr btScalar kSamePatch = btScalar(0.7);
 
+/// Friction that used less than this share of what its cone allows (squared) has held.
+constexpr btScalar kHeld = btScalar(0.98);
+/// What is left of a slip after a step in which it did not hold.
+constexpr btScalar kKeptSliding = btScalar(0.9);
+/// A slip of more than this share of the threshold at which Bullet drops contacts is given up.
+constexpr btScalar kFarthestSlip = btScalar(0.2);
+
 using PointIndices = std::array<int, kPatchPoints>;
 
 struct NewPoint {
@@ -21,7 +28,25 @@ struct NewPoint {
   btVector3 normal{0, 0, 0};   ///< from A to B
   btVector3 on_b{0, 0, 0};     ///< in the world
   btVector3 local_a{0, 0, 0};  ///< the point on A, in the frame of A's object
+  btVector3 slip{0, 0, 0};     ///< of A on B, while friction could have held them
 };
+
+/// How far A has slipped on B although friction held them at this point. The cached point carries it from
+/// step to step, as the distance of its two places along the surface: Bullet's friction knows no more than
+/// speeds, and what ten iterations leave of them adds up to bodies that creep. Where friction slides, the
+/// slip is forgotten step by step; at once, the body would jerk.
+btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, const btCollisionObject& b,
+                 const btVector3& normal, btScalar farthest) {
+  const btScalar most = cached.m_combinedFriction * cached.m_appliedImpulse;
+  if (!(most > 0)) return btVector3(0, 0, 0);
+  const btScalar first = cached.m_appliedImpulseLateral1, second = cached.m_appliedImpulseLateral2;
+  const bool held = first * first + second * second < kHeld * most * most;
+  const btVector3 apart =
+      a.getWorldTransform() * cached.m_localPointA - b.getWorldTransform() * cached.m_localPointB;
+  const btVector3 slip = apart - normal * normal.dot(apart);
+  if (slip.length2() > farthest * farthest) return btVector3(0, 0, 0);
+  return held ? slip : slip * kKeptSliding;
+}
 
 /// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.
 PointIndices matchPoints(const btPersistentManifold& manifold, const NewPoint* points, int count) {
@@ -66,8 +91,9 @@ btManifoldPoint* pointAt(btPersistentManifold& manifold, const btVector3& on_b) 
   return nullptr;
 }
 
-/// Stiffness, damping and the depth they act on, unless the user has set a law of their own, through the
-/// bodies or in a material callback. The callback has seen the true depth.
+/// Stiffness, damping and the depth they act on, and the slip that friction is to undo, unless the user has
+/// set a law of their own, through the bodies or in a material callback. The callback has seen the true
+/// depth.
 void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObject& a,
             const btCollisionObject& b) {
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
@@ -106,9 +132,16 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     point.m_combinedContactDamping1 = law.damping;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   }
-  if (depth == from.depth) return;
+  // Directions of the user's own may be those of a belt that moves what lies on it.
+  constexpr int kUsersFriction =
+      BT_CONTACT_FLAG_FRICTION_ANCHOR | BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
+  const bool driven_apart = law.depth < from.depth;
+  const bool held = !driven_apart && !from.slip.isZero() && (point.m_contactPointFlags & kUsersFriction) == 0;
+  if (held) point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
+  if (depth == from.depth && !held) return;
   point.m_distance1 = -depth;
   point.m_positionWorldOnA = from.on_b + from.normal * depth;
+  if (held) point.m_positionWorldOnA += from.slip;
   point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
 }
 
@@ -131,14 +164,15 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const bt
   PointIndices match = matchPoints(manifold, points.data(), count);
   removeUnmatched(manifold, match);
   for (int i = 0; i < count; ++i) {
-    const NewPoint& point = points[i];
+    NewPoint& point = points[i];
     // Bullet keeps impulses and lifetime of the cached point nearest to the new one: move the match there
     // first.
     btVector3 before(0, 0, 0);
     if (match[i] >= 0) {
-      btVector3& cached = manifold.getContactPoint(match[i]).m_localPointA;
-      before = cached;
-      cached = point.local_a;
+      btManifoldPoint& cached = manifold.getContactPoint(match[i]);
+      point.slip = slipOf(cached, a, b, point.normal, kFarthestSlip * manifold.getContactBreakingThreshold());
+      before = cached.m_localPointA;
+      cached.m_localPointA = point.local_a;
     }
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
     if (btManifoldPoint* added = pointAt(manifold, point.on_b)) {

@@ -18,6 +18,8 @@ constexpr btScalar kAligned = btScalar(0.996);
 constexpr btScalar kParallel = btScalar(0.99996);
 /// A face that leans more than this does not lie flat on the other: a corner is deeper [rad].
 constexpr btScalar kLeans = btScalar(5e-3);
+/// What there is room for from the start: few patches have more measurements, and need memory again.
+constexpr std::size_t kUsualMeasured = 128;
 
 /// Then along the normal that the surfaces show.
 void align(const Gauge& gauge, Measured& m) {
@@ -72,6 +74,10 @@ bool isFar(const Measured& m, btScalar separation) {
   return !isFlat(m) && (m.gap.on_a - m.gap.on_b).dot(m.direction) < -separation;
 }
 
+Candidates::Line lineOf(const Measured& m) {
+  return {m.direction, m.gap.triangle_a, m.gap.triangle_b};
+}
+
 /// Whether a corner of a surface is deeper than the place where it was measured.
 bool rises(const btVector3& face, btScalar curvature, const btVector3& normal) {
   return curvature == 0 && face.distance2(normal) > kLeans * kLeans;
@@ -88,39 +94,37 @@ btScalar shareOfA(const Gap& gap, const btVector3& normal) {
 void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, btScalar separation,
                    std::vector<MeasuredPoint>& found) {
   static thread_local std::vector<Measured> measured, sideways;
+  static thread_local std::vector<std::size_t> places;  // of the measured, among the candidates
   static thread_local std::vector<Gauge::Corner> corners;
   const Candidates::OfPatch& patch = candidates.patches[p];
-  measured.clear();
-  sideways.clear();
+  for (std::vector<Measured>* list : {&measured, &sideways}) {
+    list->clear();
+    list->reserve(kUsualMeasured);
+  }
+  places.clear();
+  places.reserve(kUsualMeasured);
   const bool again = patch.end <= candidates.lines.size();
-  Candidates::Line deepest_line;
-  std::size_t deepest = 0;
-  btScalar most = 0;
   for (std::size_t k = p == 0 ? 0 : candidates.patches[p - 1].end; k < patch.end; ++k) {
     Measured m;
     m.index = candidates.indices[k];
     m.id = gauge.id(m.index);
     const bool found = again ? measureAgain(gauge, candidates.lines[k], m) : measure(gauge, patch.normal, m);
     if (!again) candidates.lines.emplace_back();
-    const Candidates::Line line{m.direction, m.gap.triangle_a, m.gap.triangle_b};
     if (!found) {
       if (!gauge.exactB() || m.gap.triangle_a == Gap::kNone) continue;
       sideways.push_back(m);
-      candidates.lines[k] = line;
+      candidates.lines[k] = lineOf(m);
       continue;
     }
     measured.push_back(m);
-    const btScalar depth = (m.gap.on_a - m.gap.on_b).dot(m.direction);
-    if (measured.size() == 1 || depth > most) {
-      most = depth;
-      deepest = k;
-      deepest_line = line;
-    }
-    if (again || !isFar(m, separation)) candidates.lines[k] = line;
+    places.push_back(k);
+    if (again || !isFar(m, separation)) candidates.lines[k] = lineOf(m);
   }
-  // From there the climb to the deepest point starts.
-  if (!measured.empty()) candidates.lines[deepest] = deepest_line;
-  climb(gauge, measured);
+  climb(gauge, separation, measured);
+  // From there the climbs start again.
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (measured[i].starts_climb) candidates.lines[places[i]] = lineOf(measured[i]);
+  }
   const ContactNormal normals(measured, gauge);
   const std::size_t first = found.size();
   using Kind = MeasuredPoint::Kind;

@@ -130,6 +130,7 @@ bool measurePatches(Candidates& candidates, const Gauge& gauge, const Measure& m
   static thread_local std::vector<MeasuredPoint> found;
   collectIds(patches, old_ids);
   found.clear();
+  found.reserve(2 * kUsualCandidates);
   const bool first_time = candidates.lines.empty();
   for (std::size_t p = 0; p < candidates.patches.size(); ++p)
     measurePoints(candidates, p, gauge, measure.separation, found);
