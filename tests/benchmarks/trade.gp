@@ -8,7 +8,7 @@ rows(condition) = "< awk -F, '!/^#/ && ".condition."' '".table."'"
 along(condition) = "< awk -F, '!/^#/ && ".condition."' '".table."' | sort -t, -k4,4n -k8,8n"
 have(condition) = system("awk -F, '!/^#/ && ".condition."' '".table."' | wc -l") > 0
 label(n) = n >= 1024 ? sprintf("%dk", int(n / 1024)) : sprintf("%d", n)
-within(x) = x < 1.2e-3 ? 1.2e-3 : x > 90 ? 90 : x  # what is out of range is drawn at the edge
+within(x) = x < 1.2e-3 ? 1.2e-3 : x > 100 ? 100 : x  # what is out of range is drawn near the edge
 
 packing = "#c0392b"; rigid = "#8e44ad"; penalty = "#e67e22"; gimpact = "#2980b9"; spheres = "#7f8c8d"; convex = "#27ae60"
 set terminal pngcairo noenhanced size 1200,790 font "sans,11" lw 1.5
@@ -30,14 +30,19 @@ if (picture eq "scenes") {
     set ylabel "error, %"
     set xlabel "processor time of a step at 240 steps/s, ms"
     if (i == 3) { set key bottom right } else { unset key }
-    set yrange [1e-3:100]
-    set xrange [0.01:100]
+    set yrange [5e-4:300]
+    set xrange [0.02:20]
+    # Points of kept contacts lie on each other: only the fewest and the most spheres have labels.
+    few = system("awk -F, '".is." && $3 == \"packing\" { print $4 }' '".table."' | sort -n | head -n 1") + 0
+    most = system("awk -F, '".is." && $3 == \"packing\" { print $4 }' '".table."' | sort -n | tail -n 1") + 0
+    below = i == 1 ? -0.9 : 0.9
     plot along(is.' && $3 == "packing" && $5 == "compliant"') using ($12/1e3):(within($10)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
-      "" using ($12/1e3):(within($10)):(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      "" using ($12/1e3):($4 == few ? within($10) : NaN):(label($4)) with labels offset 0.6,below font ",9" tc rgb packing notitle, \
+      "" using ($12/1e3):($4 == most ? within($10) : NaN):(label($4)) with labels offset -0.6,0.9 font ",9" tc rgb packing notitle, \
       along(is.' && $3 == "packing" && $5 == "rigid"') using ($12/1e3):(within($10)) with linespoints pt 5 lc rgb rigid title "packing, rigid", \
       along(is.' && $3 == "packing" && $5 == "penalty"') using ($12/1e3):(within($10)) with linespoints pt 9 lc rgb penalty title "packing, penalty", \
       rows(is.' && $3 == "gimpact"') using ($12/1e3):(within($10)) with points pt 13 ps 2.2 lc rgb gimpact title "GImpact mesh", \
-      "" using ($12/1e3):(within($10)):(sprintf("%d tri", $4)) with labels offset 0,0.9 font ",9" tc rgb gimpact notitle, \
+      "" using ($12/1e3):(within($10)):(sprintf("%d tri", $4)) with labels offset 0,-1.1 font ",9" tc rgb gimpact notitle, \
       along(is.' && $3 == "spheres"') using ($12/1e3):(within($10)) with linespoints pt 6 dt 2 lc rgb spheres title "btCompoundShape of spheres", \
       "" using ($12/1e3):(within($10)):(label($4)) with labels offset 0,-0.9 font ",9" tc rgb spheres notitle, \
       along(is.' && $3 == "convex"') using ($12/1e3):(within($10)) with linespoints pt 4 dt 2 lc rgb convex title "btCompoundShape of hulls", \
@@ -69,22 +74,23 @@ if (picture eq "rates") {
     set ylabel "error, %"
     set xlabel "processor time of a simulated second, ms"
     if (i == 1) { set key top right } else { unset key }
-    set yrange [1e-3:100]
+    set yrange [5e-4:300]
     x(us, rate) = us * rate / 1e3
     plot along(is.' && $3 == "packing" && $5 == "compliant" && $4 == 1024') using (x($12, $8)):(within($10)) with linespoints pt 7 lw 2 lc rgb packing title "packing, compliant", \
-      "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      "" using (x($12, $8)):($8 == 60 ? within($10) : NaN):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      "" using (x($12, $8)):($8 == 60 ? NaN : within($10)):(sprintf("%d", $8)) with labels left offset 0.9,0 font ",9" tc rgb packing notitle, \
       along(is.' && $3 == "packing" && $5 == "rigid" && $4 == 1024') using (x($12, $8)):(within($10)) with linespoints pt 5 lc rgb rigid title "packing, rigid", \
-      "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels offset 0,-0.9 font ",9" tc rgb rigid notitle, \
+      "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels right offset -0.9,0 font ",9" tc rgb rigid notitle, \
       along(is.' && $3 == "gimpact"') using (x($12, $8)):(within($10)) with linespoints pt 13 ps 1.5 lc rgb gimpact title "GImpact mesh", \
       "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb gimpact notitle, \
       along(is.' && $3 == "spheres" && $4 == 256') using (x($12, $8)):(within($10)) with linespoints pt 6 dt 2 lc rgb spheres title "btCompoundShape of 256 spheres", \
-      "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels offset 0,0.9 font ",9" tc rgb spheres notitle
+      "" using (x($12, $8)):(within($10)):(sprintf("%d", $8)) with labels right offset -0.3,0.7 font ",9" tc rgb spheres notitle
   }
   unset multiplot
 }
 
 if (picture eq "volume" || picture eq "direction") {
-  names = system("awk -F, '$1 ~ /^overlap-/ && $1 != \"overlap-ball\" { print $1 }' '".table."' | uniq | tr '\\n' ' '")
+  names = system("awk -F, '$1 ~ /^overlap-/ && $1 != \"overlap-ball\" && !seen[$1]++ { print $1 }' '".table."' | tr '\\n' ' '")
   set multiplot layout 2,(words(names) + 1) / 2 title picture eq "volume" ? "Error of the overlap volume over the time of a query, where 2 % of a solid is shared" : "Error of the direction of the push over the time of collision detection, where 2 % of a solid is shared" font ",14"
   do for [i=1:words(names)] {
     is = '$1 == "'.word(names, i).'" && $2 == "'.picture.'" && $7 == "cpu"'
@@ -95,14 +101,15 @@ if (picture eq "volume" || picture eq "direction") {
     if (i == 1) { set key bottom left } else { unset key }
     if (picture eq "volume") {
       set yrange [0.03:150]
+      set xrange [1:1000]
       plot along(is.' && $6 == "volume-true"') using 12:10 with linespoints pt 7 lw 2 lc rgb packing title "packing, volume-true radii", \
-        "" using 12:10:(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+        "" using 12:10:(label($4)) with labels left offset 0.6,0.4 font ",9" tc rgb packing notitle, \
         along(is.' && $6 == "raw"') using 12:10 with linespoints pt 7 dt 2 lc rgb penalty title "packing, as packed (the paper)", \
         (have(onCuda) ? along(onCuda) : along(is.' && $6 == "none"')) using 12:10 with linespoints pt 7 lc rgb "black" title (have(onCuda) ? "packing, CUDA" : "")
     } else {
       set yrange [0.03:100]
       plot along(is.' && $6 == "volume-true"') using 12:10 with linespoints pt 7 lw 2 lc rgb packing title "packing, gradient of the volume", \
-        "" using 12:10:(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+        "" using 12:10:(label($4)) with labels left offset 0.6,0.4 font ",9" tc rgb packing notitle, \
         along(is.' && $6 == "raw"') using 12:10 with linespoints pt 7 dt 2 lc rgb penalty title "packing, force of the paper", \
         rows(is.' && $3 == "gimpact"') using 12:10 with points pt 13 ps 2.2 lc rgb gimpact title "GImpact mesh", \
         along(is.' && $3 == "spheres"') using 12:10 with linespoints pt 6 dt 2 lc rgb spheres title "compound of spheres", \
@@ -123,10 +130,13 @@ if (picture eq "pressure") {
     set title body
     if (!have(is)) { continue }
     set yrange [0.01:500]
+    set xrange [5:500]
+    sunk(x) = x > 0.03 ? x : 0.03  # what is more exact is drawn near the edge
     if (body eq "box") { set key top right } else { unset key }
-    plot along(is.' && $6 == "volume-true"') using 12:(($10 > 0.012 ? $10 : 0.012)) with linespoints pt 7 lw 2 lc rgb packing title "volume-true radii", \
-      "" using 12:(($10 > 0.012 ? $10 : 0.012)):(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
-      along(is.' && $6 == "raw"') using 12:(($10 > 0.012 ? $10 : 0.012)) with linespoints pt 7 dt 2 lc rgb penalty title "as packed (the paper)"
+    plot along(is.' && $6 == "volume-true"') using 12:(sunk($10)) with linespoints pt 7 lw 2 lc rgb packing title "volume-true radii", \
+      "" using 12:($4 == 256 ? NaN : sunk($10)):(label($4)) with labels offset 0,0.9 font ",9" tc rgb packing notitle, \
+      "" using 12:($4 == 256 ? sunk($10) : NaN):(label($4)) with labels offset 0,-0.9 font ",9" tc rgb packing notitle, \
+      along(is.' && $6 == "raw"') using 12:(sunk($10)) with linespoints pt 7 dt 2 lc rgb penalty title "as packed (the paper)"
   }
   unset multiplot
 }
