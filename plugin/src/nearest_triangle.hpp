@@ -1,7 +1,7 @@
 // The nearest point of a solid's surface.
 #pragma once
 
-#include <LinearMath/btVector3.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
 #include "innersphere/bullet_precision.hpp"
 #include "smooth_normals.hpp"
@@ -45,6 +45,7 @@ class NearestTriangle {
   btVector3 face_{0, 0, 0};
   std::size_t triangle_ = 0;
   btVector3 offset_{0, 0, 0};
+  btVoronoiSimplexSolver solver_;
 };
 
 inline TriangleTree::Lanes NearestTriangle::distances2(const TriangleTree::Boxes& boxes) const {
