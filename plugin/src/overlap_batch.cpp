@@ -70,6 +70,10 @@ void OverlapBatch::add(PackingContact* contact) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
   contact->look = looks_.add(contact->a, contact->b);
   live_.add(contact);
+  // Any number of them may turn stale in one step, which should not allocate then.
+  stale_.reserve(live_.capacity());
+  queried_.reserve(live_.capacity());
+  queries_.reserve(live_.capacity());
 }
 
 void OverlapBatch::remove(PackingContact* contact) {

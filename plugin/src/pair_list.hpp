@@ -29,6 +29,9 @@ class PairList {
     if (2 * ++gaps_ > pairs_.size()) closeGaps();
   }
 
+  /// At least how many there are; it grows by multiples.
+  std::size_t capacity() const { return pairs_.capacity(); }
+
   template <typename Visit>
   void forEach(const Visit& visit) const {
     for (Pair* pair : pairs_) {
