@@ -4,6 +4,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
+#include "in_parallel.hpp"
 #include "pair_algorithm.hpp"
 #include "pair_contact.hpp"
 #include "registration.hpp"
@@ -20,40 +21,82 @@ btCollisionObjectWrapper wrapped(const btCollisionObject& object) {
   return {nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1};
 }
 
-bool isKnown(const btBroadphasePair& pair) {
-  return pair.m_algorithm != nullptr && typeid(*pair.m_algorithm) == typeid(PairAlgorithm) &&
-         static_cast<PairAlgorithm&>(*pair.m_algorithm).isKnown();
+/// Nowhere if the pair is none of ours, or new.
+PairContact::Place placeOf(const btBroadphasePair& pair) {
+  if (pair.m_algorithm == nullptr || typeid(*pair.m_algorithm) != typeid(PairAlgorithm)) return {};
+  return static_cast<PairAlgorithm&>(*pair.m_algorithm).place();
+}
+
+/// Null if it is no new pair of packings that may collide.
+PackingContact* announce(btCollisionDispatcher& dispatcher, btBroadphasePair& pair, btScalar time_step) {
+  const btCollisionObject& a = *objectOf(pair.m_pProxy0);
+  const btCollisionObject& b = *objectOf(pair.m_pProxy1);
+  if (PackingShape::from(a.getCollisionShape()) == nullptr) return nullptr;
+  if (PackingShape::from(b.getCollisionShape()) == nullptr) return nullptr;
+  if (!dispatcher.needsCollision(&a, &b)) return nullptr;
+  const btCollisionObjectWrapper wrapped_a = wrapped(a), wrapped_b = wrapped(b);
+  if (pair.m_algorithm == nullptr) {
+    pair.m_algorithm = dispatcher.findAlgorithm(&wrapped_a, &wrapped_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+  }
+  auto* algorithm = dynamic_cast<PairAlgorithm*>(pair.m_algorithm);
+  return algorithm == nullptr ? nullptr : algorithm->announce(wrapped_a, wrapped_b, time_step);
+}
+
+/// What Bullet would do for the pairs, but for those that are done.
+void collide(btCollisionDispatcher& dispatcher, Registration& registration, btBroadphasePairArray& pairs,
+             const std::vector<PairContact::Place>& places, const btDispatcherInfo& info) {
+  static thread_local std::vector<char> kept;
+  std::vector<char>& done = kept;  // of this thread, also for the others
+  const std::size_t count = places.size();
+  const auto pairAt = [&](std::size_t i) -> btBroadphasePair& { return pairs[static_cast<int>(i)]; };
+  // A device works on while Bullet collides bodies that are no packings.
+  for (std::size_t i = 0; i < count; ++i) {
+    if (places[i].look == nullptr) dispatcher.getNearCallback()(pairAt(i), dispatcher, info);
+  }
+  registration.batch().finish();
+  for (LookBoard* board : {&registration.batch().looks(), &registration.surfaces().looks()}) board->check();
+  done.resize(count);
+  inParallel(count, [&](std::size_t i) {
+    done[i] = places[i].look != nullptr && places[i].board->isDone(*places[i].look, info.m_timeStep);
+  });
+  for (std::size_t i = 0; i < count; ++i) {
+    if (places[i].look == nullptr) continue;
+    btBroadphasePair& pair = pairAt(i);
+    if (!done[i]) {
+      dispatcher.getNearCallback()(pair, dispatcher, info);
+    } else if (dispatcher.needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1))) {
+      places[i].board->ask(*places[i].look);
+    }
+  }
 }
 
 }  // namespace
 
-void launchBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pairs,
-                 const btDispatcherInfo& info) {
-  const std::shared_ptr<Registration> registration = Registration::find(&dispatcher);
-  if (!registration) return;
+bool collideBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pairs,
+                  const btDispatcherInfo& info, bool as_bullet_does) {
   static thread_local std::vector<PackingContact*> fresh;
-  fresh.clear();
+  static thread_local std::vector<PairContact::Place> kept;
+  std::vector<PairContact::Place>& places = kept;  // of this thread, also for the others
+  const std::shared_ptr<Registration> registration = Registration::find(&dispatcher);
+  if (!registration) return false;
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
-  for (int i = 0; i < all.size(); ++i) {
-    btBroadphasePair& pair = all[i];
-    if (isKnown(pair)) continue;
-    const btCollisionObject& a = *objectOf(pair.m_pProxy0);
-    const btCollisionObject& b = *objectOf(pair.m_pProxy1);
-    if (PackingShape::from(a.getCollisionShape()) == nullptr) continue;
-    if (PackingShape::from(b.getCollisionShape()) == nullptr) continue;
-    if (!dispatcher.needsCollision(&a, &b)) continue;
-    const btCollisionObjectWrapper wrapped_a = wrapped(a), wrapped_b = wrapped(b);
-    if (pair.m_algorithm == nullptr) {
-      pair.m_algorithm =
-          dispatcher.findAlgorithm(&wrapped_a, &wrapped_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
-    }
-    auto* algorithm = dynamic_cast<PairAlgorithm*>(pair.m_algorithm);
-    if (algorithm == nullptr) continue;
-    if (PackingContact* contact = algorithm->announce(wrapped_a, wrapped_b, info.m_timeStep)) {
-      fresh.push_back(contact);
-    }
+  places.resize(static_cast<std::size_t>(all.size()));
+  inParallel(places.size(), [&](std::size_t i) { places[i] = placeOf(all[static_cast<int>(i)]); });
+  fresh.clear();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i].look != nullptr) continue;
+    btBroadphasePair& pair = all[static_cast<int>(i)];
+    if (PackingContact* contact = announce(dispatcher, pair, info.m_timeStep)) fresh.push_back(contact);
+    places[i] = placeOf(pair);
   }
   registration->batch().launch(fresh, info.m_timeStep);
+  registration->surfaces().launch(info.m_timeStep);
+  if (!as_bullet_does || info.m_deterministicOverlappingPairs ||
+      info.m_dispatchFunc != btDispatcherInfo::DISPATCH_DISCRETE ||
+      dispatcher.getNearCallback() != &btCollisionDispatcher::defaultNearCallback)
+    return false;
+  collide(dispatcher, *registration, all, places, info);
+  return true;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

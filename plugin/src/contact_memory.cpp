@@ -2,6 +2,7 @@
 
 #include "deepest_point.hpp"
 #include "packing_shape_impl.hpp"
+#include "sweep.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -11,16 +12,15 @@ namespace {
 constexpr btScalar kMeasureAgain = btScalar(0.5);
 /// and less since they were measured, the same contacts. The error is of second order: a hundredth of this.
 constexpr btScalar kCarry = btScalar(0.02);
+/// In units of what a gap is wider than needed: where that is more, as it does not matter how wide it is.
+constexpr btScalar kCarryGap = btScalar(0.25);
 /// A body that is held from sides more than 107 degrees apart is enclosed.
 constexpr btScalar kEnclosed = btScalar(-0.3);
 
 /// Of a body of this size, as seen from a frame.
 btScalar motionIn(const btTransform& frame_before, const btTransform& before, const btTransform& frame_now,
                   const btTransform& now, btScalar size) {
-  const btTransform was = frame_before.inverseTimes(before), is = frame_now.inverseTimes(now);
-  btScalar turned2 = 0;  // a turn by t changes the axes by 2 sqrt(2) sin(t / 2)
-  for (int i = 0; i < 3; ++i) turned2 += is.getBasis()[i].distance2(was.getBasis()[i]);
-  return is.getOrigin().distance(was.getOrigin()) + size * btSqrt(turned2 / 2);
+  return wayOf(frame_before.inverseTimes(before), frame_now.inverseTimes(now), size);
 }
 
 /// An upper bound for how far a place on one body moves, as seen from the other, where both reach: that is
@@ -61,11 +61,17 @@ ContactMemory::Age ContactMemory::ageAt(const Placed& now, btScalar size_a, btSc
     return Age::stale;
   if (empty) return Age::current;
   const btScalar measured = motionBetween(measured_at_, now, size_a, size_b);
-  return measured > kCarry * spacing ? Age::moved : Age::current;
+  const btScalar carried = btMax(kCarry * spacing, kCarryGap * (gap_ - needed));
+  return measured > carried ? Age::moved : Age::current;
 }
 
 btScalar ContactMemory::reserve(btScalar spacing) {
   return kMeasureAgain * spacing;
+}
+
+btScalar ContactMemory::leeway(const Placed& now, btScalar size_a, btScalar size_b, btScalar spacing) const {
+  if (!candidates.indices.empty()) return -1;
+  return reserve(spacing) - motionBetween(searched_at_, now, size_a, size_b);
 }
 
 void ContactMemory::searchedAt(const Placed& now) {
@@ -81,9 +87,13 @@ void ContactMemory::turnTo(const Placed& now) {
   turn(now.a.getBasis() * measured_at_.a.getBasis().transpose(), candidates);
 }
 
-void ContactMemory::measuredAt(const Placed& now) {
+void ContactMemory::measuredAt(const Placed& now, btScalar found) {
   measured_at_ = now;
   measured_ = patches;
+  gap_ = found;
+  for (const ContactPatch& patch : patches) {
+    for (int i = 0; i < patch.count; ++i) gap_ = btMin(gap_, -patch.points[i].depth);
+  }
 }
 
 void ContactMemory::carryTo(const Placed& now, const PackingShape& a, btScalar spacing) {

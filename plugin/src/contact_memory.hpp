@@ -36,12 +36,16 @@ class ContactMemory {
   /// How much further apart than needed contacts are to be found, so that they are good for later steps.
   static btScalar reserve(btScalar spacing);
 
+  /// How far bodies without candidates may move on until contact has to be searched for again [m]. Negative
+  /// if there are candidates.
+  btScalar leeway(const Placed& now, btScalar size_a, btScalar size_b, btScalar spacing) const;
+
   /// candidates have been found anew.
   void searchedAt(const Placed& now);
   /// Turns the candidates along, to be measured again.
   void turnTo(const Placed& now);
-  /// patches have been measured.
-  void measuredAt(const Placed& now);
+  /// patches have been measured, with all contacts up to `found` [m] apart.
+  void measuredAt(const Placed& now, btScalar found);
   /// Moves the patches along: each contact has a point that moves with A and one that moves with B, and rolls
   /// on where surfaces are curved. A's is the packing that positions are relative to the origin of.
   void carryTo(const Placed& now, const PackingShape& a, btScalar spacing);
@@ -55,6 +59,7 @@ class ContactMemory {
   /// now there, so that contact is searched for whenever they move.
   bool enclosed_ = false;
   Placed measured_at_;
+  btScalar gap_ = 0;  ///< the narrowest there [m]; negative: overlap
   std::vector<ContactPatch> measured_;
 };
 

@@ -5,17 +5,29 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-SeenBody::SeenBody(const btCollisionObject& object) : object_(&object), body_(btRigidBody::upcast(&object)) {
+SeenBody::SeenBody(const btCollisionObject& object)
+    : object_(&object),
+      body_(btRigidBody::upcast(&object)),
+      transform_(object.getWorldTransform()),
+      motion_(object) {
   see();
 }
 
 void SeenBody::see() {
-  if (shape_ != object_->getCollisionShape()) {
+  changed_ = shape_ != object_->getCollisionShape();
+  if (changed_) {
     shape_ = object_->getCollisionShape();
     packing_ = PackingShape::from(shape_);
   }
-  if (packing_ != nullptr) version_ = packing_->impl().version;
-  transform_ = object_->getWorldTransform();
+  if (packing_ != nullptr) {
+    changed_ = changed_ || version_ != packing_->impl().version;
+    version_ = packing_->impl().version;
+  }
+  active_ = object_->isActive();
+  motion_ = Motion(*object_);
+  const btTransform& now = object_->getWorldTransform();
+  if (!(now == transform_)) way_ += wayOf(transform_, now, motion_.size);
+  transform_ = now;
   if (body_ == nullptr) return;
   velocity_ = body_->getLinearVelocity();
   spin_ = body_->getAngularVelocity();
@@ -23,8 +35,15 @@ void SeenBody::see() {
 
 bool SeenBody::isAsSeen(const btCollisionObjectWrapper& wrapper) const {
   return wrapper.getCollisionObject() == object_ && wrapper.getCollisionShape() == shape_ &&
-         wrapper.getWorldTransform() == transform_ &&
-         (packing_ == nullptr || packing_->impl().version == version_) &&
+         isAsSeen(wrapper.getWorldTransform());
+}
+
+void SeenBody::check() {
+  still_ = object_->getCollisionShape() == shape_ && isAsSeen(object_->getWorldTransform());
+}
+
+bool SeenBody::isAsSeen(const btTransform& transform) const {
+  return transform == transform_ && (packing_ == nullptr || packing_->impl().version == version_) &&
          (body_ == nullptr ||
           (body_->getLinearVelocity() == velocity_ && body_->getAngularVelocity() == spin_));
 }
@@ -51,12 +70,16 @@ void LookBoard::remove(Look* look) {
 const SeenBody* LookBoard::use(const BodySide& side) {
   if (side.nesting != 0) return nullptr;
   SeenBody& body = bodies_.try_emplace(side.object, *side.object).first->second;
-  ++body.users;
+  if (body.users++ == 0) seen_.add(&body);
   return &body;
 }
 
 void LookBoard::release(const SeenBody* body) {
-  if (body != nullptr && --bodies_.at(body->object()).users == 0) bodies_.erase(body->object());
+  if (body == nullptr) return;
+  SeenBody& used = bodies_.at(body->object());
+  if (--used.users > 0) return;
+  seen_.remove(&used);
+  bodies_.erase(body->object());
 }
 
 bool LookBoard::isDone(Look& look, const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
@@ -68,6 +91,15 @@ bool LookBoard::isDone(Look& look, const btCollisionObjectWrapper& a, const btCo
     return false;
   ask(look);
   return true;
+}
+
+void LookBoard::check() {
+  seen_.forEachInParallel([](SeenBody& body) { body.check(); });
+}
+
+bool LookBoard::isDone(const Look& look, btScalar time_step) const {
+  return look.received && isFresh(look) && time_step == time_step_ && look.a != nullptr &&
+         look.b != nullptr && look.a->isStill() && look.b->isStill();
 }
 
 /// Bullet asks for pairs in nearly the same order in each step, which is not that of their places in memory.
@@ -82,10 +114,33 @@ void LookBoard::fetchAhead(Look& look, const void* algorithm) {
   next_ = (next_ + 1) % asked_.size();
 }
 
+void LookBoard::calm(Look& look, btScalar leeway, btScalar within) const {
+  look.calm = look.a != nullptr && look.b != nullptr && leeway > 0;
+  if (!look.calm) return;
+  look.calm_to = look.a->way() + look.b->way() + leeway;
+  look.calm_within = within;
+}
+
+bool LookBoard::staysCalm(Look& look) const {
+  if (!look.calm) return false;
+  const SeenBody &a = *look.a, &b = *look.b;
+  look.calm = (a.isActive() || b.isActive()) && !a.hasChanged() && !b.hasChanged() &&
+              a.way() + b.way() <= look.calm_to &&
+              sweepOf(a.motion(), b.motion(), time_step_) <= look.calm_within;
+  if (look.calm) look.wanted = false;
+  return look.calm;
+}
+
+void LookBoard::follow(const Look& look, BodySide& a, BodySide& b) {
+  if (!look.calm) return;
+  a.transform = look.a->transform();
+  b.transform = look.b->transform();
+}
+
 void LookBoard::begin(btScalar time_step) {
   ++number_;
   time_step_ = time_step;
-  for (auto& [object, body] : bodies_) body.see();
+  seen_.forEachInParallel([](SeenBody& body) { body.see(); });
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

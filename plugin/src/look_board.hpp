@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "body_side.hpp"
+#include "pair_list.hpp"
+#include "sweep.hpp"
 
 class btRigidBody;
 
@@ -23,12 +25,25 @@ class SeenBody {
 
   void see();
   bool isAsSeen(const btCollisionObjectWrapper& wrapper) const;
+  /// Notes whether it is still as it was seen.
+  void check();
+  bool isStill() const { return still_; }
 
   const btCollisionObject* object() const { return object_; }
+  const btTransform& transform() const { return transform_; }
+  const Motion& motion() const { return motion_; }
+  bool isActive() const { return active_; }
+  /// It has got another shape, or its packing has been changed, since the look before.
+  bool hasChanged() const { return changed_; }
+  /// No point of it has gone further since it was seen first [m].
+  double way() const { return way_; }
 
-  std::size_t users = 0;  ///< pairs
+  std::size_t users = 0;       ///< pairs
+  std::size_t list_index = 0;  ///< see PairList
 
  private:
+  bool isAsSeen(const btTransform& transform) const;
+
   const btCollisionObject* object_;
   const btRigidBody* body_;  ///< null if it is none
   const btCollisionShape* shape_ = nullptr;
@@ -37,6 +52,11 @@ class SeenBody {
   btTransform transform_;
   btVector3 velocity_{0, 0, 0};
   btVector3 spin_{0, 0, 0};
+  Motion motion_;
+  double way_ = 0;
+  bool active_ = true;
+  bool changed_ = true;
+  bool still_ = true;
 };
 
 /// What a pair knows of the looks at all pairs.
@@ -44,11 +64,17 @@ struct Look {
   std::size_t number = 0;       ///< of the last one that it was part of, or that came before it
   bool wanted = false;          ///< asked for since the last one that it was part of
   bool received = false;        ///< that one has handed out the pair's contacts
+  bool calm = false;            ///< there are none, and will be none for a while: see LookBoard::calm()
+  btScalar calm_within = 0;     ///< as long as the bodies come no nearer than this in a step [m],
+  double calm_to = 0;           ///< until they have gone this far, both ways together [m]
   const SeenBody* a = nullptr;  ///< null where a shape is the child of a compound
   const SeenBody* b = nullptr;
   /// The pair that Bullet asked for a little later last time, and its algorithm: to be fetched ahead.
   const Look* ahead = nullptr;
   const void* algorithm_ahead = nullptr;
+
+  /// What is known of the pair does not hold any more.
+  void reset() { received = calm = false; }
 };
 
 /// Bullet asks for one pair at a time and does not tell when a step begins. But where a pair has moved since
@@ -70,6 +96,10 @@ class LookBoard {
   bool isDone(Look& look, const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
               btScalar time_step, const void* algorithm);
 
+  /// The same for many pairs, by all threads and without the mutex, after check() and before anything moves.
+  void check();
+  bool isDone(const Look& look, btScalar time_step) const;
+
   /// Whether a pair that has moved shows that it is time for another look.
   bool isDue(const Look& look) const { return look.number == number_; }
   void begin(btScalar time_step);
@@ -78,6 +108,13 @@ class LookBoard {
     if (look.wanted) look.number = number_;
     return look.wanted;
   }
+  /// Notes that a pair has no contacts, and will have none until its bodies have moved on by `leeway`, as
+  /// long as they come no nearer than `within` in a step [m].
+  void calm(Look& look, btScalar leeway, btScalar within) const;
+  /// Whether that holds in this look, which the pair is part of: then there is nothing to do for it.
+  bool staysCalm(Look& look) const;
+  /// Takes the two sides of a pair that stayed calm to where they were in the last look.
+  static void follow(const Look& look, BodySide& a, BodySide& b);
   /// Bullet asks for the pair.
   void ask(Look& look) const {
     look.wanted = true;
@@ -99,6 +136,7 @@ class LookBoard {
   std::size_t next_ = 0;          ///< of them to be replaced
   std::vector<Look*> unused_;
   std::unordered_map<const btCollisionObject*, SeenBody> bodies_;
+  PairList<SeenBody> seen_;  ///< the same, to go through
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,6 +1,7 @@
 #include "overlap_batch.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
 
 #include "in_parallel.hpp"
@@ -62,7 +63,7 @@ void OverlapBatch::setOptions(const ContactOptions& options) {
   options_ = options;
   live_.forEach([](PackingContact& contact) {
     contact.valid = false;
-    contact.look->received = false;
+    contact.look->reset();
   });
 }
 
@@ -88,6 +89,7 @@ bool OverlapBatch::hasDelivered(PackingContact& contact, const btCollisionObject
                                 const btCollisionObjectWrapper& b, btScalar separation) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
   finishLaunch();
+  LookBoard::follow(*contact.look, contact.a, contact.b);
   if (contact.separation != separation || contact.a.nesting < 0 || contact.b.nesting < 0) return false;
   const auto isHere = [&] { return contact.a.isWhere(a) && contact.b.isWhere(b); };
   if (!isHere()) {
@@ -106,6 +108,7 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
                                                       const PackingSide& b, btScalar separation) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
   finishLaunch();
+  LookBoard::follow(*contact.look, contact.a, contact.b);
   if (contact.separation != separation) contact.valid = false;
   contact.separation = separation;
   const bool moved = !a.isWhere(contact.a) || !b.isWhere(contact.b);
@@ -115,9 +118,10 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
   return contact.memory.patches;
 }
 
-Overlap OverlapBatch::volumesOf(const PackingContact& contact) {
+Overlap OverlapBatch::volumesOf(PackingContact& contact) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
   finishLaunch();
+  LookBoard::follow(*contact.look, contact.a, contact.b);
   if (contact.valid && !contact.measure->on_surfaces) return contact.overlap;
   return context().overlap(makeQuery(Pass::volumes, contact), {Want::wrench, options_.estimator});
 }
@@ -132,13 +136,18 @@ void OverlapBatch::launch(const std::vector<PackingContact*>& fresh, btScalar ti
   finishLaunch();
   for (PackingContact* contact : fresh) looks_.ask(*contact->look);
   lookAtAll(time_step);
-  if (stale_.empty()) return deliver();
+  if (stale_.empty()) return;
   try {
     startStale();
     launched_ = true;
   } catch (const Error&) {
     // No context: each pair hears of it when it is asked for.
   }
+}
+
+void OverlapBatch::finish() {
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
+  finishLaunch();
 }
 
 void OverlapBatch::finishLaunch() {
@@ -187,35 +196,54 @@ void OverlapBatch::bringUpToDate(btScalar time_step) {
   deliver();
 }
 
+/// What the stale pairs of a look have got.
 void OverlapBatch::deliver() {
-  live_.forEachInParallel([&](PackingContact& contact) {
-    if (!contact.valid || !looks_.isFresh(*contact.look)) return;
-    contact.look->received = contact.separation == 0 &&
-                             contact.receiver.receive(contact.memory.patches, options_, contact.time_step);
-  });
+  inParallel(stale_.size(), [&](std::size_t i) { handOut(*stale_[i]); });
+}
+
+void OverlapBatch::handOut(PackingContact& contact) const {
+  Look& look = *contact.look;
+  if (!contact.valid || !looks_.isFresh(look)) return;
+  look.received = contact.separation == 0 &&
+                  contact.receiver.receive(contact.memory.patches, options_, contact.time_step);
+  const Measure& measure = *contact.measure;
+  if (!look.received || !measure.on_surfaces || contact.deep) return;
+  const btScalar leeway = contact.memory.leeway(contact.placed(), contact.a.packing->getAngularMotionDisc(),
+                                                contact.b.packing->getAngularMotionDisc(), measure.spacing);
+  looks_.calm(look, leeway, measure.separation - ContactMemory::reserve(measure.spacing));
 }
 
 void OverlapBatch::lookAtAll(btScalar time_step) {
   looks_.begin(time_step);
-  live_.forEachInParallel([&](PackingContact& contact) { lookAt(contact, time_step); });
-  stale_.clear();
-  live_.forEach([&](PackingContact& contact) {
-    if (looks_.isFresh(*contact.look) && contact.age != Age::current) stale_.push_back(&contact);
+  std::atomic<std::size_t> count{0};
+  stale_.resize(live_.size());
+  live_.forEachInParallel([&](PackingContact& contact) {
+    if (!looks_.join(*contact.look) || looks_.staysCalm(*contact.look)) return;
+    if (!lookAt(contact, time_step)) stale_[count++] = &contact;
+  });
+  stale_.resize(count);
+  // In their own order, whichever thread came first.
+  std::sort(stale_.begin(), stale_.end(), [](const PackingContact* one, const PackingContact* other) {
+    return one->list_index < other->list_index;
   });
 }
 
-/// Finds out what there is to do for a pair, and does it if it is only to take its contacts along.
-void OverlapBatch::lookAt(PackingContact& contact, btScalar time_step) {
-  if (!looks_.join(*contact.look) || !isActive(contact.a, contact.b)) return;
+/// Finds out what there is to do for a pair, and does it if it is only to take its contacts along. False if
+/// there is more to do.
+bool OverlapBatch::lookAt(PackingContact& contact, btScalar time_step) const {
+  if (!isActive(contact.a, contact.b)) return true;
   PackingSide a = contact.a, b = contact.b;
-  if (!a.refresh() || !b.refresh()) return;
+  if (!a.refresh() || !b.refresh()) return true;
   contact.look->wanted = false;
   contact.time_step = time_step;
   place(contact, a, b);
+  if (contact.age != Age::current) return false;
+  handOut(contact);
+  return true;
 }
 
-void OverlapBatch::place(PackingContact& contact, const PackingSide& a, const PackingSide& b) {
-  contact.look->received = false;
+void OverlapBatch::place(PackingContact& contact, const PackingSide& a, const PackingSide& b) const {
+  contact.look->reset();
   contact.needed = neededSeparation(contact);
   contact.age = ageOf(contact, a, b);
   contact.a = a;
@@ -374,7 +402,7 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
     contact.overlap = result_.overlaps[index];
   }
   memory.searchedAt(contact.placed());
-  memory.measuredAt(contact.placed());
+  memory.measuredAt(contact.placed(), measure.separation);
   contact.valid = true;
 }
 
@@ -385,7 +413,7 @@ void OverlapBatch::measureAgain() {
     if (contact.age == Age::stale) return;
     contact.memory.turnTo(contact.placed());
     contact.touching = measureOnSurfaces(Bodies(contact), contact);
-    contact.memory.measuredAt(contact.placed());
+    contact.memory.measuredAt(contact.placed(), contact.measure->separation);
     contact.valid = true;
   });
 }

@@ -78,12 +78,14 @@ class OverlapBatch {
                                           btScalar separation);
 
   /// What two packings share as they were in the last update of `contact`. Throws Error from the query.
-  Overlap volumesOf(const PackingContact& contact);
+  Overlap volumesOf(PackingContact& contact);
 
   /// Looks at all pairs now that will be asked for in this step: those that were in the step before, and
   /// `fresh` ones. Errors wait until update() asks for the pair.
   /// A device works on while Bullet collides other pairs: the first one that is asked for waits for it.
   void launch(const std::vector<PackingContact*>& fresh, btScalar time_step);
+  /// Waits for it.
+  void finish();
 
   BatchCount count() const;
 
@@ -98,8 +100,9 @@ class OverlapBatch {
   void bringUpToDate(btScalar time_step);
   void lookAtAll(btScalar time_step);
   void deliver();
-  void lookAt(PackingContact& contact, btScalar time_step);
-  void place(PackingContact& contact, const PackingSide& a, const PackingSide& b);
+  void handOut(PackingContact& contact) const;
+  bool lookAt(PackingContact& contact, btScalar time_step) const;
+  void place(PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
   void updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b);
   void countStale();
   void runStale();

@@ -27,8 +27,8 @@ class PairAlgorithm : public btCollisionAlgorithm {
   /// See PairContact.
   PackingContact* announce(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
                            btScalar time_step);
-  /// Whether it has been announced or processed.
-  bool isKnown() const { return place_.board != nullptr; }
+  /// Nowhere if it has neither been announced nor processed.
+  const PairContact::Place& place() const { return place_; }
 
  private:
   bool isDone(const btCollisionObjectWrapper& body0, const btCollisionObjectWrapper& body1,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "in_parallel.hpp"
@@ -29,7 +30,9 @@ class PairList {
     if (2 * ++gaps_ > pairs_.size()) closeGaps();
   }
 
-  /// At least how many there are; it grows by multiples.
+  /// At least how many there are.
+  std::size_t size() const { return pairs_.size(); }
+  /// What it has room for; grows by multiples.
   std::size_t capacity() const { return pairs_.capacity(); }
 
   template <typename Visit>
@@ -48,6 +51,14 @@ class PairList {
   }
 
  private:
+  template <typename P>
+  static constexpr auto hasLook(int) -> decltype(std::declval<P>().look, bool()) {
+    return true;
+  }
+  template <typename P>
+  static constexpr bool hasLook(...) {
+    return false;
+  }
   void closeGaps() {
     pairs_.erase(std::remove(pairs_.begin(), pairs_.end(), nullptr), pairs_.end());
     for (std::size_t i = 0; i < pairs_.size(); ++i) pairs_[i]->list_index = i;
@@ -57,8 +68,10 @@ class PairList {
   void fetchNext(std::size_t i) const {
     constexpr std::size_t kAhead = 4;
     if (i + 2 * kAhead < pairs_.size()) __builtin_prefetch(pairs_[i + 2 * kAhead]);
-    if (i + kAhead >= pairs_.size()) return;
-    if (const Pair* next = pairs_[i + kAhead]) __builtin_prefetch(next->look);
+    if constexpr (hasLook<Pair>(0)) {
+      const Pair* next = i + kAhead < pairs_.size() ? pairs_[i + kAhead] : nullptr;
+      if (next != nullptr) __builtin_prefetch(next->look);
+    }
   }
 
   std::vector<Pair*> pairs_;  ///< null: a gap

@@ -19,7 +19,7 @@ void SurfaceBatch::setOptions(const ContactOptions& options) {
   options_ = options;
   live_.forEach([](SurfacePair& pair) {
     pair.reached.reset();
-    pair.look->received = false;
+    pair.look->reset();
   });
 }
 
@@ -39,6 +39,7 @@ void SurfaceBatch::remove(SurfacePair* pair) {
 bool SurfaceBatch::hasDelivered(SurfacePair& pair, const btCollisionObjectWrapper& a,
                                 const btCollisionObjectWrapper& b, btScalar separation, btScalar time_step) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
+  LookBoard::follow(*pair.look, pair.a, pair.b);
   if (pair.separation != separation || pair.a.nesting < 0 || pair.b.nesting < 0) return false;
   const auto isHere = [&] { return pair.a.isWhere(a) && pair.b.isWhere(b); };
   if (!isHere()) {
@@ -53,10 +54,16 @@ bool SurfaceBatch::hasDelivered(SurfacePair& pair, const btCollisionObjectWrappe
   return true;
 }
 
+void SurfaceBatch::launch(btScalar time_step) {
+  const std::lock_guard<std::mutex> lock(looks_.mutex());
+  lookAtAll(time_step);
+}
+
 const std::vector<ContactPatch>& SurfaceBatch::update(SurfacePair& pair, const PackingSide& a,
                                                       const BodySide& b, btScalar separation,
                                                       btScalar time_step) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
+  LookBoard::follow(*pair.look, pair.a, pair.b);
   if (pair.separation != separation) pair.reached.reset();
   pair.separation = separation;
   const auto isHere = [&] { return pair.a.isWhere(a) && pair.b.isWhere(b); };
@@ -70,16 +77,24 @@ const std::vector<ContactPatch>& SurfaceBatch::update(SurfacePair& pair, const P
 
 Overlap SurfaceBatch::volumesOf(SurfacePair& pair) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
+  LookBoard::follow(*pair.look, pair.a, pair.b);
   return pair.contact.volumesOf(options_, pair.a.transform, pair.b.transform);
 }
 
 void SurfaceBatch::lookAtAll(btScalar time_step) {
   looks_.begin(time_step);
-  live_.forEachInParallel([&](SurfacePair& pair) { lookAt(pair, time_step); });
+  live_.forEachInParallel([&](SurfacePair& pair) {
+    if (!looks_.join(*pair.look)) return;
+    if (looks_.staysCalm(*pair.look)) {
+      if (pair.contact.isAsBefore()) return;
+      pair.look->reset();
+    }
+    lookAt(pair, time_step);
+  });
 }
 
 void SurfaceBatch::lookAt(SurfacePair& pair, btScalar time_step) const {
-  if (!looks_.join(*pair.look) || !isActive(pair.a, pair.b)) return;
+  if (!isActive(pair.a, pair.b)) return;
   PackingSide a = pair.a;
   BodySide b = pair.b;
   if (!a.refresh() || !b.refresh()) return;
@@ -87,11 +102,12 @@ void SurfaceBatch::lookAt(SurfacePair& pair, btScalar time_step) const {
   place(pair, a, b, time_step);
   pair.look->received =
       pair.separation == 0 && pair.receiver.receive(pair.contact.patches(), options_, time_step);
+  if (pair.look->received) looks_.calm(*pair.look, pair.contact.leeway(), pair.contact.reach());
 }
 
 void SurfaceBatch::place(SurfacePair& pair, const PackingSide& a, const BodySide& b,
                          btScalar time_step) const {
-  pair.look->received = false;
+  pair.look->reset();
   pair.a = a;
   pair.b = b;
   const btScalar needed = neededSeparation(pair, time_step);

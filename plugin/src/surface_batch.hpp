@@ -41,6 +41,9 @@ class SurfaceBatch {
   bool hasDelivered(SurfacePair& pair, const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
                     btScalar separation, btScalar time_step);
 
+  /// Looks at all pairs now that will be asked for in this step: those that were in the step before.
+  void launch(btScalar time_step);
+
   /// Brings `pair` up to date for two sides and returns its patches: also those of contacts up to
   /// `separation` [m] apart, or that may close within `time_step` [s]. It need not have been added.
   const std::vector<ContactPatch>& update(SurfacePair& pair, const PackingSide& a, const BodySide& b,

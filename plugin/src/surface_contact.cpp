@@ -74,6 +74,7 @@ void SurfaceContact::update(const ContactOptions& options, const btTransform& pa
   static thread_local std::vector<SphereContact> contacts;
   std::vector<ContactPatch>& patches = memory_.patches;
   overlap_.reset();
+  leeway_ = -1;
   if (!surface_) return;
   const Placed now{packing, other};
   const Measure measure(options, packing_, other_, separation);
@@ -96,15 +97,14 @@ void SurfaceContact::update(const ContactOptions& options, const btTransform& pa
     findCandidates(contacts, gauge, measure.spacing, packing.getBasis(), patches, memory_.candidates);
     const bool near = measurePatches(memory_.candidates, gauge, measure, patches);
     if (!near) caps(0);
-    if (near || (contacts.empty() && !touches_.empty())) {
+    if (near || contacts.empty()) {
       memory_.searchedAt(now);
-      memory_.measuredAt(now);
+      memory_.measuredAt(now, measure.separation);
       measured_ = measure;
       margin_ = a.margin;
       scale_ = a.scale();
       return;
     }
-    if (contacts.empty()) return;
   } else {
     caps(0);
     if (options.response == Response::penalty) overlap_ = sumOf(a, touches_);
@@ -127,6 +127,9 @@ bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, cons
   if (age == ContactMemory::Age::stale) return false;
   if (age == ContactMemory::Age::current) {
     memory_.carryTo(now, packing_, measure.spacing);
+    if (touches_.empty())
+      leeway_ = memory_.leeway(now, packing_.getAngularMotionDisc(), size_b, measure.spacing);
+    reach_ = before->separation - ContactMemory::reserve(measure.spacing);
   } else {
     if (!surface_->touchAgain(a, now.b, touches_)) return false;
     memory_.turnTo(now);
@@ -136,10 +139,16 @@ bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, cons
       return touch.distance < a.radiusOf(touch.sphere) + a.margin;
     };
     if (!near && std::any_of(touches_.begin(), touches_.end(), cuts)) return false;
-    memory_.measuredAt(now);
+    memory_.measuredAt(now, before->separation);
   }
   measured_ = before;
   return true;
+}
+
+bool SurfaceContact::isAsBefore() {
+  const bool same = surface_->isAsBefore();
+  if (!same) measured_.reset();
+  return same;
 }
 
 const Overlap& SurfaceContact::volumesOf(const ContactOptions& options, const btTransform& packing,

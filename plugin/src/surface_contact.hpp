@@ -25,6 +25,13 @@ class SurfaceContact {
   void update(const ContactOptions& options, const btTransform& packing, const btTransform& other,
               btScalar separation);
   const std::vector<ContactPatch>& patches() const { return memory_.patches; }
+  /// How far the bodies may move on, from where they were in the last update, until contact has to be
+  /// searched for again, as long as they come no nearer than reach() in a step [m]; not positive if in every
+  /// step.
+  btScalar leeway() const { return leeway_; }
+  btScalar reach() const { return reach_; }
+  /// Whether the other shape is as it was. If not, contact is searched for in the next update.
+  bool isAsBefore();
   /// What both share, at the places of the last update. Its torque is about the origin of the packing.
   const Overlap& volumesOf(const ContactOptions& options, const btTransform& packing,
                            const btTransform& other);
@@ -41,6 +48,8 @@ class SurfaceContact {
   std::optional<Measure> measured_;        ///< of it, if it found contact of the surfaces
   btScalar margin_ = 0;                    ///< of the packing, then
   btScalar scale_ = 0;
+  btScalar leeway_ = -1;
+  btScalar reach_ = 0;
   std::optional<Overlap> overlap_;  ///< once it was asked for
 };
 

@@ -5,28 +5,29 @@
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
-namespace {
 
-struct Motion {
-  explicit Motion(const btCollisionObject& object) {
-    if (object.getCollisionShape()->isInfinite()) return;
-    size = object.getCollisionShape()->getAngularMotionDisc();
-    const btRigidBody* body = btRigidBody::upcast(&object);
-    if (body == nullptr || body->isStaticObject()) return;
-    velocity = body->getLinearVelocity();
-    rim_speed = body->getAngularVelocity().length() * size;
-  }
-  btVector3 velocity{0, 0, 0};
-  btScalar rim_speed = 0;
-  btScalar size = BT_LARGE_FLOAT;
-};
+Motion::Motion(const btCollisionObject& object) : size(BT_LARGE_FLOAT) {
+  if (object.getCollisionShape()->isInfinite()) return;
+  size = object.getCollisionShape()->getAngularMotionDisc();
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (body == nullptr || body->isStaticObject()) return;
+  velocity = body->getLinearVelocity();
+  rim_speed = body->getAngularVelocity().length() * size;
+}
 
-}  // namespace
+btScalar sweepOf(const Motion& a, const Motion& b, btScalar time_step) {
+  const btScalar speed = (a.velocity - b.velocity).length() + a.rim_speed + b.rim_speed;
+  return btMin(speed * time_step, btMin(a.size, b.size) / 2);
+}
 
 btScalar sweepOf(const btCollisionObject& a, const btCollisionObject& b, btScalar time_step) {
-  const Motion of_a(a), of_b(b);
-  const btScalar speed = (of_a.velocity - of_b.velocity).length() + of_a.rim_speed + of_b.rim_speed;
-  return btMin(speed * time_step, btMin(of_a.size, of_b.size) / 2);
+  return sweepOf(Motion(a), Motion(b), time_step);
+}
+
+btScalar wayOf(const btTransform& before, const btTransform& now, btScalar size) {
+  btScalar turned2 = 0;  // a turn by t changes the axes by 2 sqrt(2) sin(t / 2)
+  for (int i = 0; i < 3; ++i) turned2 += now.getBasis()[i].distance2(before.getBasis()[i]);
+  return now.getOrigin().distance(before.getOrigin()) + size * btSqrt(turned2 / 2);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,7 +1,7 @@
 // How far bodies move towards each other in a step.
 #pragma once
 
-#include <LinearMath/btScalar.h>
+#include <LinearMath/btTransform.h>
 
 #include "innersphere/bullet_precision.hpp"
 
@@ -10,11 +10,24 @@ class btCollisionObject;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Of a body, at its present velocity.
+struct Motion {
+  explicit Motion(const btCollisionObject& object);
+
+  btVector3 velocity{0, 0, 0};  ///< of its origin [m/s]
+  btScalar rim_speed = 0;       ///< by turning [m/s]
+  btScalar size = 0;            ///< no point is further from its origin [m]; BT_LARGE_FLOAT: it is infinite
+};
+
 /// An upper bound for how much nearer two points of the bodies can come in `time_step` at the present
 /// velocities [m], at most half the size of the smaller body. Contacts that far apart are handed to the
 /// solver already, which lets them close but not pass, so that a fast body does not go deep into another
 /// before its first contact.
+btScalar sweepOf(const Motion& a, const Motion& b, btScalar time_step);
 btScalar sweepOf(const btCollisionObject& a, const btCollisionObject& b, btScalar time_step);
+
+/// An upper bound for how far any point of a body of this size has moved [m].
+btScalar wayOf(const btTransform& before, const btTransform& now, btScalar size);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere
