@@ -21,10 +21,11 @@ bool collideBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pai
 /// In place of a btCollisionDispatcher (or another one derived from it, btCollisionDispatcherMt for example,
 /// as Base): exactly one launch a step, on which a device works while Bullet collides bodies that are no
 /// packings, up to the first pair of packings. Without it pairs that are new in a step take a launch each, so
-/// use it where many bodies meet in a step, above all with CUDA. Pairs of children of compound shapes that are
-/// new still do. Pairs that there is nothing left to do for, most of those of a pile, cost it next to nothing;
-/// not so with another Base, or a near-callback of the user's. Near-callbacks and filters work as before: a pair that they turn down is looked at once,
-/// when it is new. Register PackingCollisionAlgorithm with it as with any other.
+/// use it where many bodies meet in a step, above all with CUDA. Pairs of children of compound shapes that
+/// are new still do. Pairs that there is nothing left to do for, most of those of a pile, cost it next to
+/// nothing; not so with another Base, or a near-callback of the user's. Near-callbacks and filters work as
+/// before: a pair that they turn down is looked at once, when it is new. Register PackingCollisionAlgorithm
+/// with it as with any other.
 template <class Base = btCollisionDispatcher>
 class BatchedDispatcher : public Base {
  public:
