@@ -27,5 +27,12 @@ bool EdgedSolid::nearestTriangle(const btVector3& place, std::size_t& triangle) 
   return true;
 }
 
+bool EdgedSolid::distanceOf(const btVector3& place, btScalar& distance) const {
+  SurfaceTree::Nearest nearest;
+  if (!surface->nearest(((place - origin) * axes) / scale, BT_LARGE_FLOAT, nearest)) return false;
+  distance = btFabs(nearest.distance) * scale;
+  return true;
+}
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -35,6 +35,8 @@ struct EdgedSolid {
   bool isIn(const btVector3& place, btScalar reach) const;
   /// The triangle that is nearest to a place. False if there is none.
   bool nearestTriangle(const btVector3& place, std::size_t& triangle) const;
+  /// How far away from the faces a place is, on either side. False if there are none.
+  bool distanceOf(const btVector3& place, btScalar& distance) const;
 
   const SurfaceTree* surface = nullptr;
   btMatrix3x3 axes = btMatrix3x3::getIdentity();

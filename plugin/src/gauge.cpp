@@ -131,6 +131,17 @@ void forEachCorner(const PackingBody& body, std::size_t triangle, const btVector
 
 }  // namespace
 
+bool SurfaceGauge::goesOn(const Touch& touch, const btVector3& place) const {
+  // A little above a face it is that far away; beyond its edge it is further.
+  constexpr btScalar kAbove = btScalar(0.03), kFurther = btScalar(0.01);  // of the sphere's reach
+  const btScalar reach = a_.reach(touch.sphere);
+  const btVector3 above = place + touch.normal * (kAbove * reach);
+  // On a large ground.
+  const btScalar rounding = 4 * SIMD_EPSILON * (a_.origin() + above - world_.getOrigin()).length();
+  btScalar distance = 0;
+  return !other_.distanceOf(a_, world_, above, distance) || distance < (kAbove + kFurther) * reach + rounding;
+}
+
 bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3& shift, Gap& gap) const {
   const Touch& touch = touches_[index];
   const btScalar radius = a_.ownRadius(touch.sphere);
@@ -139,6 +150,8 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   if (shift.length2() > 0 && (!flat || shift.length() > radius + a_.slack)) return false;
   const btVector3 from = a_.centreOf(touch.sphere) + touch.aside + shift;
   const btVector3 towards_b = -touch.normal;
+  gap.on_b = from + towards_b * touch.distance;
+  if (shift.length2() > 0 && !goesOn(touch, gap.on_b)) return false;
   SurfacePoint on_a;
   const bool leaves = leave(a_, from, towards_b, 2 * (radius + a_.slack), gap.triangle_a, on_a);
   if (on_a.triangle == Gap::kNone && gap.triangle_a != Gap::kNone) {
@@ -153,7 +166,6 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   gap.normal_a = on_a.normal;
   gap.curvature_a = on_a.curvature;
   gap.triangle_a = on_a.triangle;
-  gap.on_b = from + towards_b * touch.distance;
   gap.normal_b = towards_b;
   gap.curvature_b = touch.curvature;
   return leaves;
@@ -173,6 +185,7 @@ void SurfaceGauge::corners(std::size_t index, const Gap& gap, const btVector3& n
                 [&](const btVector3& at, std::uint64_t id, bool is_peak) {
                   // The face is known where spheres are near it.
                   Corner corner{gap, id, is_peak};
+                  const Touch* over = nullptr;
                   btScalar nearest = BT_LARGE_FLOAT;
                   for (const Touch& touch : touches_) {
                     const btScalar reach = reachOf(touch);
@@ -182,12 +195,13 @@ void SurfaceGauge::corners(std::size_t index, const Gap& gap, const btVector3& n
                     if (!(touch.normal.dot(-normal) > kSameFace)) continue;
                     if (!(distance2 < nearest)) continue;
                     nearest = distance2;
+                    over = &touch;
                     corner.gap.normal_b = -touch.normal;
                     const btScalar height = (at - centre).dot(touch.normal) + touch.distance;
                     corner.gap.on_b = at - touch.normal * height;
                   }
                   corner.gap.on_a = at;
-                  if (nearest < BT_LARGE_FLOAT) corners.push_back(corner);
+                  if (over != nullptr && goesOn(*over, corner.gap.on_b)) corners.push_back(corner);
                 });
 }
 

@@ -96,6 +96,9 @@ class SurfaceGauge : public Gauge {
   bool exactB() const override { return true; }
 
  private:
+  /// Whether the plane of a touch is still the surface of B at `place` of it.
+  bool goesOn(const Touch& touch, const btVector3& place) const;
+
   const PackingBody& a_;
   OtherSurface& other_;
   const btTransform& world_;

@@ -51,6 +51,14 @@ bool DistanceSurface::touchOne(const PackingBody& body, const btTransform& world
   return true;
 }
 
+bool DistanceSurface::distanceOf(const PackingBody& body, const btTransform& world, const btVector3& place,
+                                 btScalar& distance) {
+  Nearest found;
+  if (!nearest(world.invXform(body.origin() + place), found)) return false;
+  distance = found.distance;
+  return true;
+}
+
 bool DistanceSurface::facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) {
   const btPolyhedralConvexShape* const shape = polyhedron();
   if (shape == nullptr) return false;

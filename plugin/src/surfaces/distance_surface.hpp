@@ -13,6 +13,8 @@ class DistanceSurface : public OtherSurface {
  public:
   void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override;
   bool touchAgain(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) final;
+  bool distanceOf(const PackingBody& body, const btTransform& world, const btVector3& place,
+                  btScalar& distance) final;
   bool facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) final;
 
  protected:

@@ -40,6 +40,12 @@ class OtherSurface {
   /// False if that cannot be done.
   virtual bool touchAgain(const PackingBody&, const btTransform&, std::vector<Touch>&) { return false; }
 
+  /// How far away from it a place outside is, relative to body.origin(), near the last touches [m]. False if
+  /// that is not known.
+  virtual bool distanceOf(const PackingBody&, const btTransform&, const btVector3&, btScalar&) {
+    return false;
+  }
+
   /// Its flat faces, those near the last touches at least, relative to body.origin(). False if it has none.
   virtual bool facets(const PackingBody&, const btTransform&, EdgedSolid&) { return false; }
 };

@@ -133,6 +133,12 @@ class TriangleSurface : public OtherSurface {
     }
   }
 
+  bool distanceOf(const PackingBody& body, const btTransform& world, const btVector3& place,
+                  btScalar& distance) override {
+    EdgedSolid faces;
+    return facets(body, world, faces) && faces.distanceOf(place, distance);
+  }
+
   bool facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) override {
     if (facets_.isExpired()) {
       const std::unique_lock<std::mutex> lock = turnToRead();
