@@ -95,7 +95,7 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
                    std::vector<MeasuredPoint>& found) {
   static thread_local std::vector<Measured> measured, sideways;
   static thread_local std::vector<std::size_t> places;  // of the measured, among the candidates
-  static thread_local std::vector<Gauge::Corner> corners;
+  static thread_local std::vector<Gauge::Corner> corners, peaks;
   const Candidates::OfPatch& patch = candidates.patches[p];
   for (std::vector<Measured>* list : {&measured, &sideways}) {
     list->clear();
@@ -156,6 +156,19 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
       if (!isFound(corner.id))
         add(corner.gap, edge_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id,
             corner.is_peak ? Kind::corner : Kind::edge);
+    }
+    // Where neither face lies flat, a corner of the one may be deep in the other all the same.
+    if (edge_a && edge_b && !crosses) {
+      for (const bool of_a : {true, false}) {
+        const btVector3& face = of_a ? m.gap.normal_b : m.gap.normal_a;
+        peaks.clear();
+        gauge.corners(m.index, m.gap, face, of_a, peaks);
+        for (const Gauge::Corner& corner : peaks) {
+          if (corner.is_peak && !isFound(corner.id) &&
+              add(corner.gap, of_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id, Kind::corner))
+            corners.push_back(corner);
+        }
+      }
     }
     // Beside them the face is less deep, or, where it ends in an arc, not there.
     if (corners.empty() && !crosses && add(m.gap, normal, m.id, faces ? Kind::faces : Kind::edge)) {

@@ -60,6 +60,41 @@ TEST_P(CrossingEdges, PushOneWayThatIsTheLeast) {
   EXPECT_GT(count, 400);
 }
 
+/// The corner of a cube in the face of another, where no faces lie on each other.
+TEST_P(CrossingEdges, LeaveCornersToTheFacesTheyAreIn) {
+  const auto shape = makeCube(GetParam());
+  const btVector3 corner(btScalar(0.5), btScalar(0.5), btScalar(0.5));
+  int count = 0;
+  for (const double lean : {0.3, 0.55, 0.8}) {
+    for (const double turn : {0.0, 0.4, 0.8, 1.2}) {
+      for (const double x : {-0.45, -0.2, 0.3, 0.47}) {
+        for (const double depth : {0.003, 0.01, 0.03}) {
+          // From the diagonal upside down, towards an edge or a face.
+          const btQuaternion down = shortestArcQuat(corner.normalized(), btVector3(0, 0, -1));
+          const btQuaternion rotation = btQuaternion(btVector3(0, 0, 1), btScalar(turn)) *
+                                        btQuaternion(btVector3(0, 1, 0), btScalar(lean - 0.55)) * down;
+          const btVector3 place(btScalar(x), btScalar(0.4), btScalar(0.5 - depth));
+          const Cubes cubes{btTransform(rotation, place - quatRotate(rotation, corner)),
+                            btTransform::getIdentity()};
+          const Escape escape = leastEscape(cubes);
+          if (escape.between_edges || escape.next < 1.2 * escape.depth) continue;
+          SCOPED_TRACE(testing::Message() << lean << ' ' << turn << ' ' << x << ' ' << depth);
+          ++count;
+          TestWorld world(rigid());
+          world.add(shape, 0, cubes.lower.getOrigin());
+          world.add(shape, 1, cubes.upper.getOrigin(), cubes.upper.getRotation());
+          world.world.performDiscreteCollisionDetection();
+          const auto points = world.contactsOfLast();
+          ASSERT_GE(points.size(), 1u);
+          EXPECT_NEAR(-points[0].getDistance(), escape.depth, 1e-4);
+          for (int i = 0; i < 3; ++i) EXPECT_NEAR(points[0].m_normalWorldOnB[i], escape.direction[i], 1e-3);
+        }
+      }
+    }
+  }
+  EXPECT_GT(count, 100);
+}
+
 TEST_P(CrossingEdges, GrowWithScaleAndMargin) {
   constexpr double kScale = 2, kMargin = 0.01;
   const auto shape = makeCube(GetParam());
