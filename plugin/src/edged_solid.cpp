@@ -14,22 +14,25 @@ bool EdgedSolid::edgeTowards(std::size_t triangle, const btVector3& point, const
   return true;
 }
 
+bool EdgedSolid::nearestFace(const btVector3& place, btScalar reach, SurfaceTree::Nearest& nearest) const {
+  return surface->nearest(((place - origin) * axes) / scale, reach / scale, nearest);
+}
+
 bool EdgedSolid::isIn(const btVector3& place, btScalar reach) const {
   SurfaceTree::Nearest nearest;
-  return surface->nearest(((place - origin) * axes) / scale, reach / scale, nearest) &&
-         (nearest.distance < 0) != inside_out;
+  return nearestFace(place, reach, nearest) && (nearest.distance < 0) != inside_out;
 }
 
 bool EdgedSolid::nearestTriangle(const btVector3& place, std::size_t& triangle) const {
   SurfaceTree::Nearest nearest;
-  if (!surface->nearest(((place - origin) * axes) / scale, BT_LARGE_FLOAT, nearest)) return false;
+  if (!nearestFace(place, BT_LARGE_FLOAT, nearest)) return false;
   triangle = nearest.triangle;
   return true;
 }
 
 bool EdgedSolid::distanceOf(const btVector3& place, btScalar& distance) const {
   SurfaceTree::Nearest nearest;
-  if (!surface->nearest(((place - origin) * axes) / scale, BT_LARGE_FLOAT, nearest)) return false;
+  if (!nearestFace(place, BT_LARGE_FLOAT, nearest)) return false;
   distance = btFabs(nearest.distance) * scale;
   return true;
 }

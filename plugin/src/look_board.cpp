@@ -86,9 +86,7 @@ bool LookBoard::isDone(Look& look, const btCollisionObjectWrapper& a, const btCo
                        btScalar time_step, const void* algorithm) {
   const std::lock_guard<std::mutex> lock(mutex_);
   fetchAhead(look, algorithm);
-  if (!look.received || !isFresh(look) || time_step != time_step_ || look.a == nullptr || look.b == nullptr ||
-      !look.a->isAsSeen(a) || !look.b->isAsSeen(b))
-    return false;
+  if (!hasDelivered(look, time_step) || !look.a->isAsSeen(a) || !look.b->isAsSeen(b)) return false;
   ask(look);
   return true;
 }
@@ -98,8 +96,11 @@ void LookBoard::check() {
 }
 
 bool LookBoard::isDone(const Look& look, btScalar time_step) const {
-  return look.received && isFresh(look) && time_step == time_step_ && look.a != nullptr &&
-         look.b != nullptr && look.a->isStill() && look.b->isStill();
+  return hasDelivered(look, time_step) && look.a->isStill() && look.b->isStill();
+}
+
+bool LookBoard::hasDelivered(const Look& look, btScalar time_step) const {
+  return look.received && isFresh(look) && time_step == time_step_ && look.a != nullptr && look.b != nullptr;
 }
 
 /// Bullet asks for pairs in nearly the same order in each step, which is not that of their places in memory.

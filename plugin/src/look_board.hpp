@@ -77,6 +77,12 @@ struct Look {
   void reset() { received = calm = false; }
 };
 
+/// Of a pair that is on the board, before it is looked at.
+template <typename Pair>
+void fetchLook(const Pair& pair) {
+  __builtin_prefetch(pair.look);
+}
+
 /// Bullet asks for one pair at a time and does not tell when a step begins. But where a pair has moved since
 /// the last look at all pairs, time has gone on, and another look brings all of them up to date that were
 /// asked for since, with all threads or in one launch. Pairs that are new since the last look, or that it
@@ -124,6 +130,8 @@ class LookBoard {
   bool isFresh(const Look& look) const { return look.number == number_ && !look.wanted; }
 
  private:
+  /// The last look has handed out the contacts of a pair of whole bodies.
+  bool hasDelivered(const Look& look, btScalar time_step) const;
   void fetchAhead(Look& look, const void* algorithm);
   const SeenBody* use(const BodySide& side);
   void release(const SeenBody* body);

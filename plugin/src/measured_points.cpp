@@ -137,6 +137,11 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   const auto isFound = [&](std::uint64_t id) {
     return std::any_of(found.begin(), found.end(), [&](const MeasuredPoint& f) { return f.point.id == id; });
   };
+  // Along the normal of the face that it is over.
+  const auto addCorner = [&](const Gauge::Corner& corner, bool of_a) {
+    return !isFound(corner.id) && add(corner.gap, of_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id,
+                                      corner.is_peak ? Kind::corner : Kind::edge);
+  };
   const auto addCrossing = [&](const Measured& m, Gauge::Corner& crossing) {
     return gauge.crossing(m.gap, patch.normal, crossing) &&
            (isFound(crossing.id) || add(crossing.gap, crossing.gap.normal_a, crossing.id, Kind::crossing));
@@ -152,11 +157,7 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     Gauge::Corner crossing;
     const bool crosses = flat && m.gap.normal_a.dot(m.gap.normal_b) < kAligned && addCrossing(m, crossing);
     if (crosses && crossing.is_alone) corners.clear();
-    for (const Gauge::Corner& corner : corners) {
-      if (!isFound(corner.id))
-        add(corner.gap, edge_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id,
-            corner.is_peak ? Kind::corner : Kind::edge);
-    }
+    for (const Gauge::Corner& corner : corners) addCorner(corner, edge_a);
     // Where neither face lies flat, a corner of the one may be deep in the other all the same.
     if (edge_a && edge_b && !crosses) {
       for (const bool of_a : {true, false}) {
@@ -164,9 +165,7 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
         peaks.clear();
         gauge.corners(m.index, m.gap, face, of_a, peaks);
         for (const Gauge::Corner& corner : peaks) {
-          if (corner.is_peak && !isFound(corner.id) &&
-              add(corner.gap, of_a ? corner.gap.normal_b : corner.gap.normal_a, corner.id, Kind::corner))
-            corners.push_back(corner);
+          if (corner.is_peak && addCorner(corner, of_a)) corners.push_back(corner);
         }
       }
     }

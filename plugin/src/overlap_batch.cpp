@@ -217,10 +217,11 @@ void OverlapBatch::lookAtAll(btScalar time_step) {
   looks_.begin(time_step);
   std::atomic<std::size_t> count{0};
   stale_.resize(live_.size());
-  live_.forEachInParallel([&](PackingContact& contact) {
+  const auto look = [&](PackingContact& contact) {
     if (!looks_.join(*contact.look) || looks_.staysCalm(*contact.look)) return;
     if (!lookAt(contact, time_step)) stale_[count++] = &contact;
-  });
+  };
+  live_.forEachInParallel(look, fetchLook<PackingContact>);
   stale_.resize(count);
   // In their own order, whichever thread came first.
   std::sort(stale_.begin(), stale_.end(), [](const PackingContact* one, const PackingContact* other) {

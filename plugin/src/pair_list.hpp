@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <mutex>
-#include <utility>
 #include <vector>
 
 #include "in_parallel.hpp"
@@ -41,39 +40,29 @@ class PairList {
       if (pair != nullptr) visit(*pair);
     }
   }
-  /// With all threads.
-  template <typename Visit>
-  void forEachInParallel(const Visit& visit) const {
+  /// With all threads. `fetch` is called a little before, for what a visit reads first besides the pair
+  /// itself: pairs are far from each other in memory.
+  template <typename Visit, typename Fetch>
+  void forEachInParallel(const Visit& visit, const Fetch& fetch) const {
+    constexpr std::size_t kAhead = 4;
     inParallel(pairs_.size(), [&](std::size_t i) {
-      fetchNext(i);
+      if (i + 2 * kAhead < pairs_.size()) __builtin_prefetch(pairs_[i + 2 * kAhead]);
+      const Pair* next = i + kAhead < pairs_.size() ? pairs_[i + kAhead] : nullptr;
+      if (next != nullptr) fetch(*next);
       if (pairs_[i] != nullptr) visit(*pairs_[i]);
     });
   }
+  template <typename Visit>
+  void forEachInParallel(const Visit& visit) const {
+    forEachInParallel(visit, [](const Pair&) {});
+  }
 
  private:
-  template <typename P>
-  static constexpr auto hasLook(int) -> decltype(std::declval<P>().look, bool()) {
-    return true;
-  }
-  template <typename P>
-  static constexpr bool hasLook(...) {
-    return false;
-  }
   void closeGaps() {
     pairs_.erase(std::remove(pairs_.begin(), pairs_.end(), nullptr), pairs_.end());
     for (std::size_t i = 0; i < pairs_.size(); ++i) pairs_[i]->list_index = i;
     gaps_ = 0;
   }
-  /// What a visit reads first: pairs are far from each other in memory.
-  void fetchNext(std::size_t i) const {
-    constexpr std::size_t kAhead = 4;
-    if (i + 2 * kAhead < pairs_.size()) __builtin_prefetch(pairs_[i + 2 * kAhead]);
-    if constexpr (hasLook<Pair>(0)) {
-      const Pair* next = i + kAhead < pairs_.size() ? pairs_[i + kAhead] : nullptr;
-      if (next != nullptr) __builtin_prefetch(next->look);
-    }
-  }
-
   std::vector<Pair*> pairs_;  ///< null: a gap
   std::size_t gaps_ = 0;
 };

@@ -83,14 +83,15 @@ Overlap SurfaceBatch::volumesOf(SurfacePair& pair) {
 
 void SurfaceBatch::lookAtAll(btScalar time_step) {
   looks_.begin(time_step);
-  live_.forEachInParallel([&](SurfacePair& pair) {
+  const auto look = [&](SurfacePair& pair) {
     if (!looks_.join(*pair.look)) return;
     if (looks_.staysCalm(*pair.look)) {
       if (pair.contact.isAsBefore()) return;
       pair.look->reset();
     }
     lookAt(pair, time_step);
-  });
+  };
+  live_.forEachInParallel(look, fetchLook<SurfacePair>);
 }
 
 void SurfaceBatch::lookAt(SurfacePair& pair, btScalar time_step) const {

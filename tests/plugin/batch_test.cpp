@@ -229,15 +229,10 @@ TEST_P(Batch, ManifoldsAreThoseThatAreWrittenOneByOne) {
   EXPECT_EQ(contacts(GetParam(), kSteps / 2), expected);
 }
 
-std::string dispatcherName(const testing::TestParamInfo<DispatcherKind>& info) {
-  constexpr const char* kNames[] = {"plain", "Mt", "Batched", "BatchedMt"};
-  return kNames[static_cast<int>(info.param)];
-}
-
 INSTANTIATE_TEST_SUITE_P(Dispatchers, Batch,
                          testing::Values(DispatcherKind::plain, DispatcherKind::multithreaded,
                                          DispatcherKind::batched, DispatcherKind::batched_multithreaded),
-                         dispatcherName);
+                         [](const auto& info) { return nameOf(info.param); });
 
 TEST(BatchedDispatcher, DoesWithoutARegistration) {
   btDefaultCollisionConfiguration configuration;

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "innersphere/packer.hpp"
-#include "innersphere/solids.hpp"
-#include "test_packings.hpp"
+#include "bullet_cube.hpp"
+#include "named_packings.hpp"
 #include "test_world.hpp"
 
 namespace innersphere::test {
@@ -27,44 +26,22 @@ double distanceOf(const btVector3& p) {
 
 class BeyondEdge : public testing::TestWithParam<std::string> {
  protected:
-  static void SetUpTestSuite() {
-    PackOptions options;
-    options.spheres = 500;
-    ring = makeShape(pack(*makeTorus(kRing, kTube), options));
-  }
+  static void SetUpTestSuite() { ring = makeTorusShape(kRing, kTube, 500); }
   static void TearDownTestSuite() { ring.reset(); }
 
-  std::shared_ptr<btCollisionShape> block() {
-    const btScalar h = btScalar(0.5);
-    const auto corner = [&](int i) { return btVector3(i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h); };
-    if (GetParam() == "packing") return makeShape(latticeBox({1, 1, 1}, 8));
-    if (GetParam() == "box") return std::make_shared<btBoxShape>(btVector3(h, h, h));
-    if (GetParam() == "hull") {
-      auto hull = std::make_shared<btConvexHullShape>();
-      hull->setMargin(0);
-      for (int i = 0; i < 8; ++i) hull->addPoint(corner(i), i == 7);
-      return hull;
-    }
-    const int faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                              {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    if (mesh_.getNumTriangles() == 0) {
-      for (const auto& face : faces) mesh_.addTriangle(corner(face[0]), corner(face[1]), corner(face[2]));
-    }
-    return std::make_shared<btBvhTriangleMeshShape>(&mesh_, true);
-  }
-  btTriangleMesh mesh_;
   static std::shared_ptr<PackingShape> ring;
 };
 std::shared_ptr<PackingShape> BeyondEdge::ring;
 
 /// The lowest place of a ring goes from over the face to beyond the edge.
 TEST_P(BeyondEdge, NothingBears) {
+  const BulletCube block(GetParam());
   int contacts = 0;
   for (const double tilt : {0.02, 0.1, 0.3, 0.6}) {
     for (const double turn : {0.0, 0.7, 1.6, 2.5}) {
       for (double beyond = -0.06; beyond < 0.09; beyond += 0.01) {
         TestWorld world;
-        world.add(block(), 0, btVector3(0, 0, 0));
+        world.add(block.shape, 0, btVector3(0, 0, 0));
         // The ring leans about the x axis, so that its lowest place lies at -y of its centre.
         const double lowest_y = -kRing * std::cos(tilt), lowest_z = -kRing * std::sin(tilt) - kTube;
         world.add(ring, 1, btVector3(0, btScalar(0.5 + beyond - lowest_y), btScalar(0.5 - 0.001 - lowest_z)),

@@ -1,8 +1,9 @@
 // Pairs whose boxes overlap but whose bodies are apart are left alone until something brings them together.
 #include <gtest/gtest.h>
+
+#include <cmath>
 #include <functional>
 
-#include "innersphere/batched_dispatcher.hpp"
 #include "registration.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
@@ -140,9 +141,8 @@ TEST_P(CalmPairs, MeetWhenOneComesSlowly) {
 }
 
 std::string caseName(const testing::TestParamInfo<Case>& info) {
-  constexpr const char* kNames[] = {"plain", "Mt", "Batched", "BatchedMt"};
-  return std::string(kNames[static_cast<int>(std::get<0>(info.param))]) +
-         (std::get<1>(info.param) ? "_packing" : "_box");
+  const auto [kind, packing] = info.param;
+  return nameOf(kind) + (packing ? "_packing" : "_box");
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -5,32 +5,12 @@
 #include <map>
 #include <sstream>
 
+#include "bullet_cube.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
 #include "test_packings.hpp"
 
 namespace innersphere::test {
-
-Surface cut(const Surface& surface) {
-  Surface result;
-  std::map<std::array<float, 3>, std::uint32_t> known;
-  const auto vertex = [&](const std::array<float, 3>& place) {
-    const auto [at, fresh] = known.try_emplace(place, static_cast<std::uint32_t>(known.size()));
-    if (fresh) result.vertices.push_back(place);
-    return at->second;
-  };
-  for (const auto& t : surface.triangles) {
-    std::uint32_t corners[3], middles[3];
-    for (int k = 0; k < 3; ++k) {
-      const auto &p = surface.vertices[t[k]], &q = surface.vertices[t[(k + 1) % 3]];
-      corners[k] = vertex(p);
-      middles[k] = vertex({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2});
-    }
-    for (int k = 0; k < 3; ++k) result.triangles.push_back({corners[k], middles[k], middles[(k + 2) % 3]});
-    result.triangles.push_back({middles[0], middles[1], middles[2]});
-  }
-  return result;
-}
 
 std::shared_ptr<PackingShape> makeCube(const std::string& kind) {
   if (kind == "lattice") return makeShape(latticeBox({1, 1, 1}, 8));

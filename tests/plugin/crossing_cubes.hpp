@@ -12,9 +12,6 @@
 
 namespace innersphere::test {
 
-/// Each triangle in four.
-Surface cut(const Surface& surface);
-
 /// A cube of 1 m: spheres on a grid, the same with edges in four pieces, or packed as many as `kind` says.
 std::shared_ptr<PackingShape> makeCube(const std::string& kind);
 

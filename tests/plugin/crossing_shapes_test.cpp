@@ -8,45 +8,13 @@
 #include <string>
 #include <tuple>
 
+#include "bullet_cube.hpp"
 #include "crossing_cubes.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
 namespace innersphere::test {
 namespace {
-
-/// A cube of 1 m that is no packing, with what it refers to.
-class BulletCube {
- public:
-  explicit BulletCube(const std::string& kind) {
-    const btScalar h = btScalar(0.5);
-    if (kind == "box") {
-      shape = std::make_shared<btBoxShape>(btVector3(h, h, h));
-    } else if (kind == "hull") {
-      auto hull = std::make_shared<btConvexHullShape>();
-      for (int i = 0; i < 8; ++i) hull->addPoint(btVector3(i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h));
-      shape = hull;
-    } else {
-      Surface surface = latticeBox({1, 1, 1}, 1).surface;
-      if (kind == "cut_mesh") surface = cut(cut(surface));
-      const auto corner = [&](std::uint32_t v) {
-        const auto& p = surface.vertices[v];
-        return btVector3(p[0], p[1], p[2]);
-      };
-      for (const auto& t : surface.triangles) {
-        const bool inside_out = kind == "inside_out_mesh";
-        mesh_.addTriangle(corner(t[0]), corner(t[inside_out ? 2 : 1]), corner(t[inside_out ? 1 : 2]));
-      }
-      shape = std::make_shared<btBvhTriangleMeshShape>(&mesh_, true);
-    }
-    shape->setMargin(0);
-  }
-
-  std::shared_ptr<btCollisionShape> shape;
-
- private:
-  btTriangleMesh mesh_;
-};
 
 /// Packing, other shape, and whether the packing is above.
 using Kinds = std::tuple<std::string, std::string, bool>;

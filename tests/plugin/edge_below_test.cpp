@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_cube.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
@@ -15,38 +16,17 @@ constexpr double kDepth = 0.002;  // [m]
 
 class EdgeBelow : public testing::TestWithParam<std::tuple<std::string, double>> {
  protected:
-  std::shared_ptr<btCollisionShape> block() {
-    const std::string& kind = std::get<0>(GetParam());
-    const btScalar h = btScalar(0.5);
-    if (kind == "packing") return makeShape(latticeBox({1, 1, 1}, 8));
-    if (kind == "box") return std::make_shared<btBoxShape>(btVector3(h, h, h));
-    if (kind == "hull") {
-      auto hull = std::make_shared<btConvexHullShape>();
-      hull->setMargin(0);
-      for (int i = 0; i < 8; ++i)
-        hull->addPoint(btVector3(i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h), i == 7);
-      return hull;
-    }
-    const int faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                              {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    const auto corner = [&](int i) { return btVector3(i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h); };
-    for (const auto& face : faces) mesh_.addTriangle(corner(face[0]), corner(face[1]), corner(face[2]));
-    auto mesh = std::make_shared<btBvhTriangleMeshShape>(&mesh_, true);
-    mesh->setMargin(0);
-    return mesh;
-  }
-
   /// Contacts of a cube of 2 m with a cube of 1 m whose highest point is kDepth inside of it.
   std::vector<btManifoldPoint> contactsOver(const btQuaternion& turn) {
     const btMatrix3x3 axes(turn);
     const double reach = 0.5 * (std::fabs(axes[2][0]) + std::fabs(axes[2][1]) + std::fabs(axes[2][2]));
-    world.add(block(), 0, btVector3(0, 0, btScalar(-reach)), turn);
+    world.add(block_.shape, 0, btVector3(0, 0, btScalar(-reach)), turn);
     world.add(makeShape(latticeBox({2, 2, 2}, 16)), 1, btVector3(btScalar(0.1), 0, btScalar(1 - kDepth)));
     world.world.performDiscreteCollisionDetection();
     return world.contactsOfLast();
   }
 
-  btTriangleMesh mesh_;
+  const BulletCube block_{std::get<0>(GetParam())};
   TestWorld world;
 };
 

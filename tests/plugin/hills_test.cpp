@@ -4,9 +4,7 @@
 
 #include <cmath>
 
-#include "innersphere/packer.hpp"
-#include "innersphere/solids.hpp"
-#include "test_packings.hpp"
+#include "named_packings.hpp"
 #include "test_world.hpp"
 
 namespace innersphere::test {
@@ -16,11 +14,7 @@ constexpr double kRing = 0.4, kTube = 0.1;
 
 class Hills : public testing::TestWithParam<std::tuple<double, double>> {
  protected:
-  static void SetUpTestSuite() {
-    PackOptions options;
-    options.spheres = 500;
-    ring = makeShape(pack(*makeTorus(kRing, kTube), options));
-  }
+  static void SetUpTestSuite() { ring = makeTorusShape(kRing, kTube, 500); }
   static void TearDownTestSuite() { ring.reset(); }
   static std::shared_ptr<PackingShape> ring;
 };

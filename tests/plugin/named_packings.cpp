@@ -18,4 +18,10 @@ std::shared_ptr<PackingShape> makeNamedShape(const std::string& name, std::size_
   return shape;
 }
 
+std::shared_ptr<PackingShape> makeTorusShape(double ring, double tube, std::size_t n) {
+  PackOptions options;
+  options.spheres = n;
+  return makeShape(pack(*makeTorus(ring, tube), options));
+}
+
 }  // namespace innersphere::test

@@ -12,4 +12,7 @@ namespace innersphere::test {
 /// [m].
 std::shared_ptr<PackingShape> makeNamedShape(const std::string& name, std::size_t n, double bounding_radius);
 
+/// A torus about the z axis, packed with n spheres. Radii of the ring and of the tube [m].
+std::shared_ptr<PackingShape> makeTorusShape(double ring, double tube, std::size_t n);
+
 }  // namespace innersphere::test

@@ -29,6 +29,11 @@ std::unique_ptr<btCollisionDispatcher> makeDispatcher(DispatcherKind kind,
 
 }  // namespace
 
+std::string nameOf(DispatcherKind kind) {
+  constexpr const char* kNames[] = {"plain", "Mt", "Batched", "BatchedMt"};
+  return kNames[static_cast<int>(kind)];
+}
+
 TestWorld::TestWorld(const ContactOptions& options, DispatcherKind kind)
     : owned_dispatcher(makeDispatcher(kind, &configuration)),
       dispatcher(*owned_dispatcher),

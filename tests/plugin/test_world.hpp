@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <btBulletDynamicsCommon.h>
@@ -13,6 +14,8 @@ namespace innersphere::test {
 /// Debian's Bullet is built without threads: there the multithreaded dispatcher works, in its own order and
 /// with its own release of manifolds, but on one thread.
 enum class DispatcherKind { plain, multithreaded, batched, batched_multithreaded };
+/// For names of tests.
+std::string nameOf(DispatcherKind kind);
 
 class TestWorld {
  public:
