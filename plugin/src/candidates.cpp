@@ -109,7 +109,8 @@ void pickCandidates(const PatchContacts& from, Candidates& candidates) {
   static thread_local std::vector<std::size_t> near, picked;
   const auto append = [&](const std::vector<std::size_t>& indices) {
     candidates.indices.insert(candidates.indices.end(), indices.begin(), indices.end());
-    candidates.patches.push_back({from.moments.normal, from.moments.area, candidates.indices.size()});
+    candidates.patches.push_back(
+        {from.moments.normal, from.moments.area, from.moments.radius, candidates.indices.size()});
   };
   near = from.indices;
   if (from.gauge.exactB()) dropFar(from, near);

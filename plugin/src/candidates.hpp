@@ -16,6 +16,7 @@ struct Candidates {
   struct OfPatch {
     btVector3 normal;  ///< unit, from A to B
     btScalar area;     ///< [m^2]
+    btScalar radius;   ///< mean distance of the area from its centre [m]
     std::size_t end;   ///< behind its last index
   };
   /// Where a contact was measured last. It is measured there again first.

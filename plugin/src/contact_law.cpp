@@ -37,6 +37,11 @@ btVector3 velocityAt(const btCollisionObject& object, const btVector3& point) {
   return body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition());
 }
 
+btVector3 spinOf(const btCollisionObject& object) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  return body != nullptr ? body->getAngularVelocity() : btVector3(0, 0, 0);
+}
+
 btVector3 centripetal(const btCollisionObject& object, const btVector3& point) {
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (body == nullptr) return btVector3(0, 0, 0);
@@ -111,9 +116,17 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   return law;
 }
 
+btVector3 relativeVelocity(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point) {
+  return velocityAt(a, point) - velocityAt(b, point);
+}
+
+btVector3 relativeSpin(const btCollisionObject& a, const btCollisionObject& b) {
+  return spinOf(a) - spinOf(b);
+}
+
 btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
                        const btVector3& normal) {
-  return (velocityAt(a, point) - velocityAt(b, point)).dot(normal);
+  return relativeVelocity(a, b, point).dot(normal);
 }
 
 btScalar approachByTurning(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,

@@ -67,6 +67,12 @@ class ContactLaw {
   btScalar size_;
 };
 
+/// Of `a` as seen from `b`, at a point of the world [m/s].
+btVector3 relativeVelocity(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point);
+
+/// The same of their turning [rad/s].
+btVector3 relativeSpin(const btCollisionObject& a, const btCollisionObject& b);
+
 /// Speed at which two bodies approach each other at a point of the world along `normal`, from a to b [m/s].
 btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
                        const btVector3& normal);

@@ -33,7 +33,8 @@ struct ContactPoint {
 struct ContactPatch {
   btVector3 normal{0, 0, 0};  ///< unit, from A to B
   btVector3 centre{0, 0, 0};
-  btScalar area = 0;  ///< [m^2]
+  btScalar area = 0;    ///< [m^2]
+  btScalar radius = 0;  ///< mean distance of the area from its centre [m]
   int count = 0;
   std::array<ContactPoint, kPatchPoints> points;
 };

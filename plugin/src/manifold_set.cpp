@@ -4,6 +4,8 @@
 
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
+#include "patch_friction.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -13,10 +15,6 @@ constexpr btScalar kWarmStarting = btScalar(0.85);
 /// Patches whose normals differ by more than about 45 degrees are not the same patch.
 constexpr btScalar kSamePatch = btScalar(0.7);
 
-/// Friction that used less than this share of what its cone allows (squared) has held.
-constexpr btScalar kHeld = btScalar(0.98);
-/// What is left of a slip after a step in which it did not hold.
-constexpr btScalar kKeptSliding = btScalar(0.9);
 /// A slip of more than this share of the threshold at which Bullet drops contacts is given up.
 constexpr btScalar kFarthestSlip = btScalar(0.2);
 
@@ -29,24 +27,8 @@ struct NewPoint {
   btVector3 on_b{0, 0, 0};     ///< in the world
   btVector3 local_a{0, 0, 0};  ///< the point on A, in the frame of A's object
   btVector3 slip{0, 0, 0};     ///< of A on B, while friction could have held them
+  btScalar friction = 1;       ///< share of it
 };
-
-/// How far A has slipped on B although friction held them at this point. The cached point carries it from
-/// step to step, as the distance of its two places along the surface: Bullet's friction knows no more than
-/// speeds, and what ten iterations leave of them adds up to bodies that creep. Where friction slides, the
-/// slip is forgotten step by step; at once, the body would jerk.
-btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, const btCollisionObject& b,
-                 const btVector3& normal, btScalar farthest) {
-  const btScalar most = cached.m_combinedFriction * cached.m_appliedImpulse;
-  if (!(most > 0)) return btVector3(0, 0, 0);
-  const btScalar first = cached.m_appliedImpulseLateral1, second = cached.m_appliedImpulseLateral2;
-  const bool held = first * first + second * second < kHeld * most * most;
-  const btVector3 apart =
-      a.getWorldTransform() * cached.m_localPointA - b.getWorldTransform() * cached.m_localPointB;
-  const btVector3 slip = apart - normal * normal.dot(apart);
-  if (slip.length2() > farthest * farthest) return btVector3(0, 0, 0);
-  return held ? slip : slip * kKeptSliding;
-}
 
 /// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.
 PointIndices matchPoints(const btPersistentManifold& manifold, const NewPoint* points, int count) {
@@ -99,6 +81,9 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
                             BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   const PointLaw& law = from.law;
+  // Directions of the user's own may be those of a belt that moves what lies on it.
+  const bool belt = (point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0;
+  if (!belt) point.m_combinedFriction *= from.friction;
   if (law.penalty) {
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
@@ -132,11 +117,9 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     point.m_combinedContactDamping1 = law.damping;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   }
-  // Directions of the user's own may be those of a belt that moves what lies on it.
-  constexpr int kUsersFriction =
-      BT_CONTACT_FLAG_FRICTION_ANCHOR | BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
+  const bool anchored = (point.m_contactPointFlags & BT_CONTACT_FLAG_FRICTION_ANCHOR) != 0;
   const bool driven_apart = law.depth < from.depth;
-  const bool held = !driven_apart && !from.slip.isZero() && (point.m_contactPointFlags & kUsersFriction) == 0;
+  const bool held = !driven_apart && !from.slip.isZero() && !belt && !anchored;
   if (held) point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
   if (depth == from.depth && !held) return;
   point.m_distance1 = -depth;
@@ -163,8 +146,10 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const bt
   }
   PointIndices match = matchPoints(manifold, points.data(), count);
   removeUnmatched(manifold, match);
+  const btScalar friction = slidingShare(a, b, patch, manifold);
   for (int i = 0; i < count; ++i) {
     NewPoint& point = points[i];
+    point.friction = friction;
     // Bullet keeps impulses and lifetime of the cached point nearest to the new one: move the match there
     // first.
     btVector3 before(0, 0, 0);

@@ -131,7 +131,8 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   const auto add = [&](const Gap& gap, const btVector3& normal, std::uint64_t id, Kind kind) {
     const btScalar depth = (gap.on_a - gap.on_b).dot(normal);
     const bool near = depth > -separation;
-    if (near) found.push_back({{gap.on_b, normal, depth, id, 0, 0, shareOfA(gap, normal)}, kind, 0});
+    if (near)
+      found.push_back({{gap.on_b, normal, depth, id, 0, 0, shareOfA(gap, normal)}, kind, 0, {0, 0, 0}, 0});
     return near;
   };
   const auto isFound = [&](std::uint64_t id) {
@@ -179,8 +180,13 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
     Gauge::Corner crossing;
     if (isFlat(m)) addCrossing(m, crossing);
   }
+  btVector3 centre(0, 0, 0);
+  for (std::size_t i = first; i < found.size(); ++i) centre += found[i].point.on_b;
   for (std::size_t i = first; i < found.size(); ++i) {
-    found[i].area = patch.area / btScalar(found.size() - first);
+    const btScalar count = btScalar(found.size() - first);
+    found[i].area = patch.area / count;
+    found[i].centre = centre / count;
+    found[i].radius = patch.radius;
   }
 }
 

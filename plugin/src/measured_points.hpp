@@ -10,7 +10,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A point and the part of the patch's area that it stands for.
+/// A point and the part of a patch of spheres that it stands for.
 struct MeasuredPoint {
   /// What it is measured between.
   enum class Kind {
@@ -21,7 +21,9 @@ struct MeasuredPoint {
   };
   ContactPoint point;
   Kind kind;
-  btScalar area;  ///< [m^2]
+  btScalar area;     ///< its share [m^2]
+  btVector3 centre;  ///< of the patch
+  btScalar radius;   ///< mean distance of the patch's area from there [m]
 };
 
 /// Appends those contacts of the candidates' patch `p` that are on, or near, both surfaces: not further apart

@@ -97,6 +97,7 @@ void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vecto
   patch.normal = moments.normal;
   patch.centre = moments.centre;
   patch.area = moments.area;
+  patch.radius = moments.radius;
   pointsFromMoments(moments, spacing, patch);
   if (patch.count > 0) patches.push_back(patch);
 }

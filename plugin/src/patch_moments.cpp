@@ -44,6 +44,7 @@ PatchMoments patchMoments(const std::vector<SphereContact>& contacts, const std:
     m.spread[0] += weight * u * u;
     m.spread[1] += weight * u * v;
     m.spread[2] += weight * v * v;
+    m.radius += weight * btSqrt(u * u + v * v);
   }
   // A depth that slopes by s over the patch moves the centre of volume by spread * s / mean depth.
   if (m.volume > 0) {

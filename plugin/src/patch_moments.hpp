@@ -16,6 +16,7 @@ struct PatchMoments {
   btScalar area = 0;  ///< length of the summed area vectors
   btVector3 normal{0, 0, 0};
   btVector3 centre{0, 0, 0};  ///< weighted by area
+  btScalar radius = 0;        ///< mean distance of the area from the centre [m]
   btVector3 tangent[2];       ///< with the normal a right-handed frame
   btScalar spread[3] = {};    ///< second central moment in the plane: 00, 01, 11 [m^2]
   btScalar slope[2] = {};     ///< of the depth along the tangents

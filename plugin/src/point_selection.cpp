@@ -107,6 +107,20 @@ class Selection {
   std::vector<btScalar>& worth_;
 };
 
+/// How far the area of a group reaches from its centre: sums over the patches of spheres in it.
+struct Reach {
+  btScalar area = 0;
+  btVector3 centre{0, 0, 0};
+  btScalar square = 0;
+
+  void add(const MeasuredPoint& m) {
+    area += m.area;
+    centre += m.centre * m.area;
+    square += (m.radius * m.radius + m.centre.length2()) * m.area;
+  }
+  btScalar radius() const { return btSqrt(btMax(btScalar(0), square / area - (centre / area).length2())); }
+};
+
 std::vector<std::vector<ContactPoint>> roomForGroups() {
   constexpr std::size_t kUsualPoints = 64;
   std::vector<std::vector<ContactPoint>> groups(kMaxGroups);
@@ -132,6 +146,7 @@ void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uin
                    btScalar spacing, std::vector<ContactPatch>& patches) {
   static thread_local std::vector<std::vector<ContactPoint>> groups = roomForGroups();
   static thread_local std::vector<btScalar> worth;
+  std::array<Reach, kMaxGroups> reaches;
   for (std::vector<ContactPoint>& group : groups) group.clear();
   patches.clear();
   std::sort(found.begin(), found.end(), [](const MeasuredPoint& a, const MeasuredPoint& b) {
@@ -149,6 +164,7 @@ void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uin
     }
     if (best == patches.size()) patches.emplace_back();
     groups[best].push_back(m.point);
+    reaches[best].add(m);
     ContactPatch& patch = patches[best];
     patch.area += m.area;
     patch.normal += m.point.normal * m.area;
@@ -157,6 +173,7 @@ void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uin
   for (std::size_t g = 0; g < patches.size(); ++g) {
     patches[g].normal.normalize();
     patches[g].centre /= patches[g].area;
+    patches[g].radius = reaches[g].radius();
     Selection(groups[g], old_ids, spacing, patches[g], worth).run();
   }
 }
