@@ -19,6 +19,28 @@ constexpr btScalar kSplitImpulseDepth = btScalar(0.03);
 /// Fastest push of the default law, in sizes of the body per second.
 constexpr btScalar kFastest = btScalar(0.5);
 
+/// How far ahead of bodies that roll their load lies, in sizes of the smaller one: a fiftieth of what it does
+/// for steel on steel. Enough to lie still on slopes of a micrometre, which measured surfaces have.
+constexpr btScalar kRolling = btScalar(1e-5);
+/// Points this near to a line, in lengths of it, are on it.
+constexpr btScalar kOnLine = btScalar(0.02);
+
+/// Whether bodies that touch in the points of a patch could roll on it.
+bool canRollOn(const ContactPatch& patch) {
+  btVector3 first(0, 0, 0), along(0, 0, 0);
+  int count = 0;
+  for (int i = 0; i < patch.count; ++i) {
+    const ContactPoint& point = patch.points[i];
+    if (!(point.depth > 0)) continue;
+    const btVector3 way = point.on_b - first;
+    if (count == 0) first = point.on_b;
+    if (count == 1) along = way;
+    if (count > 1 && along.cross(way).length() > kOnLine * along.length2()) return false;
+    ++count;
+  }
+  return true;
+}
+
 btScalar inverseMass(const btCollisionObject& object) {
   if (object.isStaticOrKinematicObject()) return 0;
   if (const btRigidBody* body = btRigidBody::upcast(&object)) return body->getInvMass();
@@ -77,6 +99,7 @@ ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std
   law.law_ = this;
   law.stiffness_ = stiffness * share;
   law.damping_ = damping_ratio_ * 2 * btSqrt(stiffness * mass_) * share;
+  law.rolling_ = canRollOn(patch) ? kRolling * size_ : btScalar(0);
   return law;
 }
 
@@ -84,6 +107,7 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   PointLaw law;
   law.depth = depth;
   law.time_step = law_->time_step_;
+  law.rolling = rolling_;
   if (law_->response_ == Response::rigid) return law;
   law.stiffness = stiffness_;
   law.damping = damping_;

@@ -19,6 +19,7 @@ struct PointLaw {
   btScalar stiffness = 0;  ///< [N/m]
   btScalar damping = 0;    ///< [N s/m]
   btScalar push = 0;       ///< speed at which the spring alone would drive the bodies apart [m/s]
+  btScalar rolling = 0;    ///< how far ahead the load of bodies that roll lies [m]
   btScalar bears = 0;      ///< impulse of the spring in a step at rest; 0 if it is held back [N s]
   btScalar time_step = 0;  ///< [s]
 };
@@ -34,6 +35,9 @@ struct PointLaw {
 ///   damping along n     C = options.damping 2 sqrt(K m), four times that by default.
 /// Each patch takes the share A / T of both and divides it among its points. The default law drives bodies
 /// that are inside each other apart no faster than half the size of the smaller one in a second.
+///
+/// Where bodies touch in one place or along a line, on which they could roll, they resist it as if their load
+/// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second.
 class ContactLaw {
  public:
   /// `size` [m] is that of the smaller body.
@@ -49,6 +53,7 @@ class ContactLaw {
     const ContactLaw* law_;
     btScalar stiffness_;
     btScalar damping_;
+    btScalar rolling_;
   };
   OfPatch of(const std::vector<ContactPatch>& patches, std::size_t index) const;
 

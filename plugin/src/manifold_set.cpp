@@ -28,6 +28,7 @@ struct NewPoint {
   btVector3 local_a{0, 0, 0};  ///< the point on A, in the frame of A's object
   btVector3 slip{0, 0, 0};     ///< of A on B, while friction could have held them
   btScalar friction = 1;       ///< share of it
+  btScalar curvature = 0;      ///< of both surfaces [1/m]
 };
 
 /// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.
@@ -84,6 +85,10 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   // Directions of the user's own may be those of a belt that moves what lies on it.
   const bool belt = (point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0;
   if (!belt) point.m_combinedFriction *= from.friction;
+  if (point.m_combinedRollingFriction == 0) point.m_combinedRollingFriction = law.rolling;
+  // Bullet reads the one only where there is the other.
+  if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
+    point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curvature);
   if (law.penalty) {
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
@@ -140,6 +145,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const bt
     point.law = law.at(point.depth);
     if (-point.depth > manifold.getContactBreakingThreshold()) continue;
     point.normal = patch.points[i].normal;
+    point.curvature = patch.points[i].curvature_a + patch.points[i].curvature_b;
     point.on_b = origin + patch.points[i].on_b;
     point.local_a = a.getWorldTransform().invXform(point.on_b + point.normal * point.depth);
     ++count;

@@ -58,5 +58,9 @@ btScalar slidingShare(const btCollisionObject& a, const btCollisionObject& b, co
   return work(rim) > work(patch.radius) ? btSqrt(work(patch.radius) / work(rim)) : btScalar(1);
 }
 
+btScalar spinningLever(btScalar depth, btScalar curvature) {
+  return depth > 0 && curvature > 0 ? 3 * SIMD_PI / 16 * btSqrt(depth / curvature) : btScalar(0);
+}
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

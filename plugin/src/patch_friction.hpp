@@ -26,5 +26,10 @@ btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, cons
 btScalar slidingShare(const btCollisionObject& a, const btCollisionObject& b, const ContactPatch& patch,
                       const btPersistentManifold& manifold);
 
+/// Mean distance of the pressure of a round contact from its middle [m], at a depth [m] where the curvatures
+/// of both surfaces add up to `curvature` [1/m]: 3 pi / 16 of the radius sqrt(depth / curvature) of Hertz's
+/// contact. 0 where they are flat, or apart.
+btScalar spinningLever(btScalar depth, btScalar curvature);
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

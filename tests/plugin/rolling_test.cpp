@@ -1,0 +1,71 @@
+// What brakes balls: next to nothing where they roll, the friction of a small round contact where they spin.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "named_packings.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+constexpr double kRadius = 0.5, kGravity = 9.81, kStep = 1.0 / 240;
+
+/// A ball of 1 kg that has come to lie on the plane.
+btRigidBody& addBall(TestWorld& world) {
+  world.world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  world.addFloor().setFriction(1);
+  btRigidBody& ball = world.add(makeNamedShape("ball", 500, kRadius), 1, btVector3(0, 0, btScalar(kRadius)));
+  ball.setFriction(1);
+  ball.setActivationState(DISABLE_DEACTIVATION);
+  world.run(0.5, kStep);
+  return ball;
+}
+
+double inertiaOf(const btRigidBody& body) {
+  return 1 / double(body.getInvInertiaDiagLocal().z());
+}
+
+void roll(btRigidBody& ball, double speed) {
+  ball.setLinearVelocity(btVector3(btScalar(speed), 0, 0));
+  ball.setAngularVelocity(btVector3(0, btScalar(speed / kRadius), 0));
+}
+
+// A load that lies a lever ahead of the middle slows the ball by g lever / R / (1 + I / (m R^2)).
+TEST(Rolling, IsHardlyBraked) {
+  TestWorld world;
+  btRigidBody& ball = addBall(world);
+  roll(ball, 1);
+  world.run(10, kStep);
+  const double slowing = kGravity * 1e-5 * kRadius / kRadius / 1.4;
+  EXPECT_NEAR(1 - ball.getLinearVelocity().x(), 10 * slowing, 0.3 * 10 * slowing);
+}
+
+TEST(Rolling, IsBrakedAsTheUserSays) {
+  TestWorld world;
+  btRigidBody& ball = addBall(world);
+  constexpr double kLever = 0.02;
+  ball.setRollingFriction(btScalar(kLever));
+  roll(ball, 1);
+  world.run(1, kStep);
+  const double slowing = kGravity * kLever / kRadius / 1.4;
+  EXPECT_NEAR(1 - ball.getLinearVelocity().x(), slowing, 0.05 * slowing);
+}
+
+// The pressure of a round contact of radius a, as Hertz has it, is 3 pi / 16 a from its middle on average; a
+// ball that is d deep has a = sqrt(R d).
+TEST(Rolling, ASpinningBallIsBrakedByItsContact) {
+  TestWorld world;
+  btRigidBody& ball = addBall(world);
+  const double depth = -double(world.contactsOfLast().at(0).getDistance());
+  ball.setAngularVelocity(btVector3(0, 0, 5));
+  constexpr double kSeconds = 2;
+  world.run(kSeconds, kStep);
+  const double torque = kGravity * 3 * M_PI / 16 * std::sqrt(kRadius * depth);
+  const double slowing = torque / inertiaOf(ball);
+  EXPECT_NEAR(5 - ball.getAngularVelocity().z(), kSeconds * slowing, 0.05 * kSeconds * slowing);
+  EXPECT_LT(ball.getLinearVelocity().length(), 1e-3);
+}
+
+}  // namespace
+}  // namespace innersphere::test
