@@ -14,6 +14,9 @@ constexpr btScalar kKeptSliding = btScalar(0.9);
 /// them.
 constexpr btScalar kAcross = btScalar(0.5);
 
+/// Mean distance from the middle of a line, of that of its ends. Few spheres may tell less of an area.
+constexpr btScalar kLine = btScalar(0.5);
+
 bool held(const btManifoldPoint& point) {
   const btScalar most = point.m_combinedFriction * point.m_appliedImpulse;
   const btScalar first = point.m_appliedImpulseLateral1, second = point.m_appliedImpulseLateral2;
@@ -55,7 +58,8 @@ btScalar slidingShare(const btCollisionObject& a, const btCollisionObject& b, co
   const btScalar slide = (speed - patch.normal * speed.dot(patch.normal)).length2();
   const btScalar spin = relativeSpin(a, b).dot(patch.normal);
   const auto work = [&](btScalar radius) { return slide + kAcross * spin * spin * radius * radius; };
-  return work(rim) > work(patch.radius) ? btSqrt(work(patch.radius) / work(rim)) : btScalar(1);
+  const btScalar radius = btMax(patch.radius, kLine * rim);
+  return radius < rim && spin != 0 ? btSqrt(work(radius) / work(rim)) : btScalar(1);
 }
 
 btScalar spinningLever(btScalar depth, btScalar curvature) {

@@ -22,7 +22,7 @@ btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, cons
 /// that of turning about the normal, r the mean distance of the patch's area from its centre and p that of
 /// the points, weighted by what they bore in the last step,
 ///   share^2 = (V^2 + (w r)^2 / 2) / (V^2 + (w p)^2 / 2).
-/// Exact where bodies only slide, or only turn. 1 where friction holds.
+/// Exact where bodies only slide, or only turn. 1 where friction holds, at least 1/2: that of a line.
 btScalar slidingShare(const btCollisionObject& a, const btCollisionObject& b, const ContactPatch& patch,
                       const btPersistentManifold& manifold);
 
