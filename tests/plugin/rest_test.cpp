@@ -56,12 +56,11 @@ TEST_P(Rest, IsAtTheSurfaceAndDoesNotCreep) {
   EXPECT_LT(before.getRotation().angleShortestPath(after.getRotation()), 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Rest,
-                         testing::Combine(testing::Values("box", "ball", "torus", "link", "lbracket", "gear", "nut"),
-                                          testing::Values("plane", "packing")),
-                         [](const auto& info) {
-                           return std::get<0>(info.param) + "_on_" + std::get<1>(info.param);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Of, Rest,
+    testing::Combine(testing::Values("box", "ball", "torus", "link", "lbracket", "gear", "nut"),
+                     testing::Values("plane", "packing")),
+    [](const auto& info) { return std::get<0>(info.param) + "_on_" + std::get<1>(info.param); });
 
 }  // namespace
 }  // namespace innersphere::test
