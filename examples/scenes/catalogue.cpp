@@ -22,7 +22,7 @@ const std::vector<Scene>& scenes() {
        "Contacts that change quickly take energy and never add any.", buildDrop, 8},
       {"bounce", "Balls, a box and a torus fall on a plane and bounce, with and without loss.",
        "Bullet's restitution acts once an impact, however many points carry it.", buildBounce, 1.5},
-      {"slide", "Boxes on an incline, on the near and the far side of the friction angle.",
+      {"slide", "Boxes on an incline, below, at and above the friction angle.",
        "Friction is Coulomb's, on Bullet's shapes and on packings.", buildSlide, 1},
       {"roll", "A ball and a cylinder slide on a plane until friction makes them roll.",
        "Friction acts at the point of contact, and the inertia is the solid's own.", buildRoll, 1},

@@ -23,10 +23,8 @@ struct Arguments {
 
 demo::Film filmOf(const demo::Scene& scene, const demo::SceneOptions& options) {
   demo::ScenePlay play = demo::play(scene, options);
-  demo::Film film = std::move(play.recording.film);
-  film.caption = scene.description + " " + captionOf(play) + ".";
-  for (const demo::Verdict& verdict : play.verdicts) film.notes.push_back(summaryOf(verdict));
-  return film;
+  addTexts(scene, play);
+  return std::move(play.recording.film);
 }
 
 void run(Arguments& arguments) {

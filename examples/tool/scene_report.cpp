@@ -88,19 +88,6 @@ double motionAtTheEnd(const demo::SceneWorld& world, const demo::Recording& reco
 
 }  // namespace
 
-std::string captionOf(const demo::ScenePlay& play) {
-  const demo::SceneWorld& world = *play.world;
-  std::size_t spheres = 0;
-  for (const demo::SceneSolid& solid : world.solids()) {
-    for (const demo::Actor& actor : world.film.actors) {
-      if (actor.shape == solid.look) spheres += solid.packing->spheres.size();
-    }
-  }
-  const std::size_t bodies = movingBodies(world);
-  return std::to_string(bodies) + (bodies == 1 ? " moving body, " : " moving bodies, ") +
-         std::to_string(spheres) + " spheres, step " + number(1e3 * play.options.dt, "ms");
-}
-
 std::string summaryOf(const demo::Verdict& verdict) {
   const demo::Truth& truth = verdict.truth;
   const std::string allowed =
@@ -112,6 +99,22 @@ std::string summaryOf(const demo::Verdict& verdict) {
   }
   return (verdict.outcome == demo::Outcome::holds ? "holds   " : "MISSED  ") + truth.what + ": " +
          number(verdict.measured, truth.unit) + ", " + allowed;
+}
+
+void addTexts(const demo::Scene& scene, demo::ScenePlay& play) {
+  const demo::SceneWorld& world = *play.world;
+  std::size_t spheres = 0;
+  for (const demo::SceneSolid& solid : world.solids()) {
+    for (const demo::Actor& actor : world.film.actors) {
+      if (actor.shape == solid.look) spheres += solid.packing->spheres.size();
+    }
+  }
+  const std::size_t bodies = movingBodies(world);
+  demo::Film& film = play.recording.film;
+  film.caption = scene.description + " " + std::to_string(bodies) +
+                 (bodies == 1 ? " moving body, " : " moving bodies, ") + std::to_string(spheres) +
+                 " spheres, step " + number(1e3 * play.options.dt, "ms") + ".";
+  for (const demo::Verdict& verdict : play.verdicts) film.notes.push_back(summaryOf(verdict));
 }
 
 std::string describe(const demo::Verdict& verdict) {

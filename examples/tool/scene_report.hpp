@@ -9,8 +9,8 @@
 
 namespace innersphere::tool {
 
-/// A line below the title of the film.
-std::string captionOf(const demo::ScenePlay& play);
+/// What the page of its film says below the title: what the scene shows, how it was run, and what came of it.
+void addTexts(const demo::Scene& scene, demo::ScenePlay& play);
 
 Report describe(const demo::Scene& scene, const demo::ScenePlay& play);
 

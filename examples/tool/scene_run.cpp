@@ -39,7 +39,7 @@ int run(Arguments& arguments) {
   arguments.options.progress = progressBar();
   demo::ScenePlay play = demo::play(scene, arguments.options);
   clearProgressBar();
-  play.recording.film.caption = captionOf(play);
+  addTexts(scene, play);
 
   describe(scene, play).print(arguments.json);
   std::fflush(stdout);

@@ -3,7 +3,7 @@
 #
 #   ./tests/benchmarks/run.sh PART [ARGUMENTS]      for example: packing_benchmark --help
 #
-# PARTs `query` and `trade` run all that belongs to one question, with plots: see query.sh and trade.sh. Tables go to stdout as
+# PARTs `query`, `scenes` and `trade` run all that belongs to one question: see query.sh, scenes.sh, trade.sh. Tables go to stdout as
 # Markdown. To keep one: redirect it into tests/benchmarks/results/PART.md. Only what the part needs is built, in
 # build-benchmarks/, and CUDA only where there is a device.
 set -euo pipefail
@@ -18,7 +18,7 @@ if [ -z "$part" ]; then
   exit 2
 fi
 shift
-if [ "$part" = query ] || [ "$part" = trade ]; then
+if [[ $part =~ ^(query|scenes|trade)$ ]]; then
   cd "$caller"
   exec "$here/$part.sh" "$@"
 fi

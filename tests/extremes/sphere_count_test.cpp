@@ -1,4 +1,7 @@
-// From one sphere to a million, and spheres of which one is ten thousand times as large as another.
+// From one sphere to a million, and spheres of which one is ten thousand times as large as another: boxes
+// rest on each other within 1 % of their size and gain no energy, to 1 % of that of the fall; queries find
+// exactly the pairs that overlap, and their volume to 1e-4. A body ten thousand times as small as the one it
+// lies on does the same.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -100,6 +103,7 @@ TEST(SizeRatio, OfTenThousandRests) {
   world.watch(0.02, kDt);
   EXPECT_TRUE(world.finite());
   EXPECT_NEAR(small.getWorldTransform().getOrigin().z(), kSmall / 2, 0.01 * kSmall);
+  EXPECT_LE(world.gain(), 0.01 * 1e-9 * 9.81 * 0.2 * kSmall);
 }
 
 }  // namespace

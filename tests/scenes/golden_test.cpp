@@ -75,7 +75,7 @@ TEST(Golden, ScenesMoveAsTheyDid) {
   for (const char* name : kScenes) {
     demo::SceneOptions options;
     options.spheres = 100;
-    options.seconds = 0.5;
+    options.seconds = 1;
     options.contact.backend = Backend::cpu;
     const demo::Scene& scene = demo::sceneNamed(name);
     const std::string actual = lineOf(demo::play(scene, options).recording);

@@ -2,42 +2,49 @@
 
 #include <cmath>
 
-#include "innersphere/solids.hpp"
 #include "scenes/scene.hpp"
 #include "scenes/world.hpp"
 
 namespace innersphere::test {
 
 const std::vector<Variant>& variants() {
-  static const std::vector<Variant> all = {{"rest", 300, 2},
-                                           {"soft", 1000, 2},
-                                           {"drop", 300},
-                                           {"bounce", 200},
+  static const std::vector<Variant> all = {{"rest"},
+                                           {"rest", 300, 2, 0, "_of_300_spheres"},
+                                           {"soft"},
+                                           {"soft", 1000, 2, 0, "_of_1000_spheres"},
+                                           {"drop"},
+                                           {"bounce"},
                                            {"bounce", 200, 0, 1.0 / 2000, "_at_2000_Hz"},
-                                           {"slide", 300},
-                                           {"roll", 300, 0.6},
-                                           {"flip", 300},
-                                           {"torsion", 300, 0.5},
-                                           {"cradle", 100},
-                                           {"collisions", 100, 1.5},
-                                           {"tumble", 300},
-                                           {"stack", 300},
-                                           {"card-house", 300, 2},
-                                           {"mass-ratios", 300, 2},
-                                           {"chain-hang", 500, 2},
+                                           {"slide"},
+                                           {"roll"},
+                                           {"flip"},
+                                           {"torsion"},
+                                           {"torsion", 300, 0, 0, "_of_300_spheres"},
+                                           {"cradle"},
+                                           {"collisions"},
+                                           {"tumble"},
+                                           {"stack"},
+                                           {"stack", 300, 0, 0, "_of_300_spheres"},
+                                           {"card-house"},
+                                           {"mass-ratios"},
+                                           {"chain-hang"},
+                                           {"chain-hang", 256, 0, 0, "_of_256_spheres"},
                                            {"chain-hang", 500, 2, 1.0 / 60, "_at_60_Hz"},
-                                           {"chain-swing", 500, 2},
-                                           {"chain-heavy", 500, 2},
+                                           {"chain-swing"},
+                                           {"chain-swing", 500, 2, 1.0 / 60, "_at_60_Hz"},
+                                           {"chain-heavy"},
                                            {"chain-heavy", 500, 5, 1.0 / 60, "_at_60_Hz"},
-                                           {"bowls", 500, 4},
-                                           {"nut", 1000, 1.5},
-                                           {"nut-held", 1000, 2},
-                                           {"gears", 500, 3},
-                                           {"peg", 500, 1.5},
-                                           {"maze", 500},
-                                           {"chazelle", 1000, 4},
-                                           {"pile", 200, 1},
-                                           {"large-pile", 100, 0.5}};
+                                           {"bowls"},
+                                           {"bowls", 500, 4, 0, "_of_500_spheres"},
+                                           {"nut"},
+                                           {"nut", 1000, 0, 0, "_of_1000_spheres"},
+                                           {"nut-held"},
+                                           {"gears"},
+                                           {"peg"},
+                                           {"maze"},
+                                           {"chazelle"},
+                                           {"pile"},
+                                           {"large-pile"}};
   return all;
 }
 
@@ -54,8 +61,6 @@ void expectTruths(const Variant& variant, Backend backend) {
   options.dt = variant.dt;
   options.contact.backend = backend;
   const demo::Scene& scene = demo::sceneNamed(variant.scene);
-  if (scene.takes_solids)
-    options.solids = {makeTorus(0.35, 0.15), makeNamedSolid("lbracket")};  // packed quickly
   const demo::ScenePlay play = demo::play(scene, options);
   ASSERT_FALSE(play.verdicts.empty());
   int shown = 0;

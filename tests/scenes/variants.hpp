@@ -1,4 +1,4 @@
-// Scenes in variants that take seconds, for each backend.
+// Scenes as they are, and in variants that ask more of them, for each backend.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,15 @@ namespace innersphere::test {
 
 struct Variant {
   const char* scene;
-  std::size_t spheres = 500;
-  double seconds = 0;  // 0: the scene's own
-  double dt = 0;       // 0: the scene's own
+  std::size_t spheres = 0;  // 0: the scene's own
+  double seconds = 0;       // 0: the scene's own
+  double dt = 0;            // 0: the scene's own
   const char* name = "";
 
   friend void PrintTo(const Variant& v, std::ostream* out) { *out << v.scene << v.name; }
 };
 
-/// At least one of each scene.
+/// Each scene as users get it, and some with fewer spheres or other steps.
 const std::vector<Variant>& variants();
 
 /// As a name for a test.

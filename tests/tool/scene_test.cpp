@@ -110,7 +110,7 @@ TEST_F(SceneRun, TruthIsComparedWithWhatWasMeasured) {
   // A ball under its own weight: the truth is shown after a second, not before.
   const auto shown = json("scene check slide --spheres 100");
   EXPECT_EQ(shown[0]["scene"], "slide");
-  EXPECT_EQ(shown[0]["truths"].size(), 6u);
+  EXPECT_EQ(shown[0]["truths"].size(), 8u);
   for (const auto& truth : shown[0]["truths"]) {
     const double off = truth["measured"].get<double>() - truth["expected"].get<double>();
     EXPECT_EQ(truth["holds"].get<bool>(), std::fabs(off) <= truth["tolerance"].get<double>());
@@ -136,7 +136,7 @@ TEST_F(SceneRun, GalleryHoldsFilmsWithTheirContacts) {
   ASSERT_EQ(films.size(), 2u);
   EXPECT_EQ(films[0]["title"], "slide");
   EXPECT_EQ(films[1]["title"], "collisions");
-  EXPECT_EQ(films[0]["notes"].size(), 6u) << "a line for each truth";
+  EXPECT_EQ(films[0]["notes"].size(), 8u) << "a line for each truth";
   // Seven frames in a tenth of a second, and where each one's contacts begin: eight numbers of four bytes, in
   // base 64.
   EXPECT_EQ(films[0]["first_contacts"].get<std::string>().size(), 44u);
