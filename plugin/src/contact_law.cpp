@@ -3,6 +3,8 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
+#include "body_velocity.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -54,21 +56,13 @@ btScalar inverseMass(const btCollisionObject& object) {
 }
 
 btVector3 velocityAt(const btCollisionObject& object, const btVector3& point) {
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  if (body == nullptr) return btVector3(0, 0, 0);
-  return body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition());
-}
-
-btVector3 spinOf(const btCollisionObject& object) {
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  return body != nullptr ? body->getAngularVelocity() : btVector3(0, 0, 0);
+  const BodyVelocity velocity(object);
+  return velocity.linear + velocity.spin.cross(point - object.getWorldTransform().getOrigin());
 }
 
 btVector3 centripetal(const btCollisionObject& object, const btVector3& point) {
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  if (body == nullptr) return btVector3(0, 0, 0);
-  const btVector3& spin = body->getAngularVelocity();
-  return spin.cross(spin.cross(point - body->getCenterOfMassPosition()));
+  const btVector3 spin = BodyVelocity(object).spin;
+  return spin.cross(spin.cross(point - object.getWorldTransform().getOrigin()));
 }
 
 }  // namespace
@@ -145,7 +139,7 @@ btVector3 relativeVelocity(const btCollisionObject& a, const btCollisionObject& 
 }
 
 btVector3 relativeSpin(const btCollisionObject& a, const btCollisionObject& b) {
-  return spinOf(a) - spinOf(b);
+  return BodyVelocity(a).spin - BodyVelocity(b).spin;
 }
 
 btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,

@@ -1,7 +1,9 @@
 #include "sweep.hpp"
 
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
-#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "body_velocity.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -9,10 +11,10 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 Motion::Motion(const btCollisionObject& object) : size(BT_LARGE_FLOAT) {
   if (object.getCollisionShape()->isInfinite()) return;
   size = object.getCollisionShape()->getAngularMotionDisc();
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  if (body == nullptr || body->isStaticObject()) return;
-  velocity = body->getLinearVelocity();
-  rim_speed = body->getAngularVelocity().length() * size;
+  if (object.isStaticObject()) return;
+  const BodyVelocity now(object);
+  velocity = now.linear;
+  rim_speed = now.spin.length() * size;
 }
 
 btScalar sweepOf(const Motion& a, const Motion& b, btScalar time_step) {

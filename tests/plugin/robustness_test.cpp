@@ -6,10 +6,6 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
-#include <BulletDynamics/Featherstone/btMultiBody.h>
-#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
-#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
-#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <LinearMath/btThreads.h>
 
 #include "innersphere/log.hpp"
@@ -169,36 +165,6 @@ TEST(Robustness, MultithreadedDispatcher) {
   for (int i = 0; i < 180; ++i) world.stepSimulation(btScalar(1) / 60, 0);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(bodies[i]->getWorldTransform().getOrigin().z(), 0.5 + i, 0.01);
   for (const auto& body : bodies) world.removeRigidBody(body.get());
-  world.removeRigidBody(&floor);
-}
-
-TEST(Robustness, MultiBodyLinks) {
-  btDefaultCollisionConfiguration configuration;
-  btCollisionDispatcher dispatcher(&configuration);
-  btDbvtBroadphase broadphase;
-  btMultiBodyConstraintSolver solver;
-  btMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
-  world.setGravity(btVector3(0, 0, -10));
-  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
-  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
-  btRigidBody floor(0, nullptr, &plane);
-  world.addRigidBody(&floor);
-  const auto shape = makeShape(latticeBox({1, 1, 1}, 6));
-  btVector3 inertia;
-  shape->calculateLocalInertia(1, inertia);
-  btMultiBody body(0, 1, inertia, false, false);
-  body.setBaseWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(0.6))));
-  body.finalizeMultiDof();
-  btMultiBodyLinkCollider collider(&body, -1);
-  collider.setCollisionShape(shape.get());
-  collider.setWorldTransform(body.getBaseWorldTransform());
-  body.setBaseCollider(&collider);
-  world.addCollisionObject(&collider, btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter);
-  world.addMultiBody(&body);
-  for (int i = 0; i < 120; ++i) world.stepSimulation(btScalar(1) / 60, 0);
-  EXPECT_NEAR(body.getBasePos().z(), 0.5, 0.005);
-  world.removeMultiBody(&body);
-  world.removeCollisionObject(&collider);
   world.removeRigidBody(&floor);
 }
 

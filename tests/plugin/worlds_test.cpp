@@ -16,7 +16,7 @@
 //   one slot for tick and near callbacks                 Worlds.TickCallbacks*, Batch.NearCallbacksStillFilter
 //   the solver loses springs deeper than 4 cm            ContactLaw.SoftContactDeeperThanTheSplitImpulseThreshold
 //   forces add up over substeps, impulses do not         Penalty.SubstepsOfOneCallDoNotAddUp
-//   multi-body links take no impulses                    Robustness.MultiBodyLinks
+//   multi-body links take no impulses, nor split ones    MultiBody
 //   old points live on, new ones lose warm starting      CallbacksOn.PointsThatWereNotFoundAgain*, PointsAreFew*
 //   the breaking threshold merges points                 Shape.ContactThresholdFollowsTheSpheresNotTheSize
 //   the shape of a living pair may change                Robustness.ChangedShapeOfALivingPair

@@ -13,7 +13,8 @@ enum class Response {
   /// The force stiffness * sum V n over all overlapping spheres, as impulses before the solver runs: keeps
   /// the energy where damping and friction are 0. Explicit: a stiffness that is too high for the step throws
   /// bodies apart, see PairOverlap::largest_step. Contacts are reported, with their impulses, but the solver
-  /// leaves them alone. Links of a btMultiBody, which take no impulses, get compliant contacts.
+  /// leaves them alone. Links of a btMultiBody, which take no impulses, get compliant contacts, as deep as
+  /// the spheres say.
   penalty
 };
 

@@ -1,0 +1,22 @@
+// How fast a body moves, whatever kind of body it is.
+#pragma once
+
+#include <LinearMath/btVector3.h>
+
+#include "innersphere/bullet_precision.hpp"
+
+class btCollisionObject;
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Zero for what is neither a rigid body nor part of a multi-body.
+struct BodyVelocity {
+  explicit BodyVelocity(const btCollisionObject& object);
+
+  btVector3 linear{0, 0, 0};  ///< of its origin [m/s]
+  btVector3 spin{0, 0, 0};    ///< [rad/s]
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
