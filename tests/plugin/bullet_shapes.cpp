@@ -1,7 +1,9 @@
 #include "bullet_shapes.hpp"
 
-#include <functional>
+#include <array>
+#include <cstdint>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include <BulletCollision/CollisionShapes/btBox2dShape.h>
@@ -181,6 +183,36 @@ BulletShape compoundOf(BulletShape child) {
   return {compound, btTransform::getIdentity(), std::make_shared<BulletShape>(std::move(child))};
 }
 
+/// Writes what btSdfCollisionShape reads.
+class Bytes {
+ public:
+  template <typename Value>
+  void add(const Value& value) {
+    data_.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  }
+  const std::string& data() const { return data_; }
+
+ private:
+  std::string data_;
+};
+
+/// Of a cell from -1 to 1: its corners, then two nodes on each of the edges along x, y and z.
+std::vector<btVector3> nodesOfCell() {
+  std::vector<btVector3> nodes;
+  for (int i = 0; i < 8; ++i) nodes.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int slow = axis == 1 ? 2 : axis == 0 ? 1 : 0, fast = 3 - axis - slow;
+    for (int i = 0; i < 8; ++i) {
+      btVector3 node(0, 0, 0);
+      node[axis] = btScalar(i & 1 ? 1 : -1) / 3;
+      node[fast] = btScalar(i & 2 ? 1 : -1);
+      node[slow] = btScalar(i & 4 ? 1 : -1);
+      nodes.push_back(node);
+    }
+  }
+  return nodes;
+}
+
 using Make = std::function<BulletShape()>;
 
 const std::map<std::string, Make>& makers() {
@@ -272,6 +304,11 @@ const std::map<std::string, Make>& makers() {
        [] {
          return compoundOf(compoundOf(below(makeShape(latticeBox({3, 3, 2}, 12)), 1)));
        }},
+      {"sdf",  // turned: its x axis is up
+       [] {
+         return BulletShape{makeSdf(2, 2, [](const btVector3& p) { return double(p.x()); }),
+                            btTransform(btQuaternion(btVector3(0, 1, 0), -SIMD_HALF_PI))};
+       }},
       {"empty", [] { return BulletShape{std::make_shared<btEmptyShape>()}; }},
       {"fluid", [] { return typedBox(HFFLUID_SHAPE_PROXYTYPE); }},
       {"buoyant", [] { return typedBox(HFFLUID_BUOYANT_CONVEX_SHAPE_PROXYTYPE); }},
@@ -306,6 +343,43 @@ const std::vector<std::string>& emptyShapes() {
 
 BulletShape makeBulletShape(const std::string& name) {
   return makers().at(name)();
+}
+
+std::shared_ptr<btSdfCollisionShape> makeSdf(double half, int cells,
+                                             const std::function<double(const btVector3&)>& distance) {
+  const std::uint64_t fields = 1, count = std::uint64_t(cells) * cells * cells;
+  const std::vector<btVector3> nodes = nodesOfCell();
+  const double size = 2 * half / cells;
+  Bytes bytes;
+  bytes.add(std::array<double, 6>{-half, -half, -half, half, half, half});
+  bytes.add(std::array<std::uint32_t, 3>{std::uint32_t(cells), std::uint32_t(cells), std::uint32_t(cells)});
+  bytes.add(std::array<double, 3>{size, size, size});
+  bytes.add(std::array<double, 3>{1 / size, 1 / size, 1 / size});
+  bytes.add(count);
+  bytes.add(fields);
+  // Each cell has nodes of its own.
+  bytes.add(fields);
+  bytes.add(count * nodes.size());
+  for (int z = 0; z < cells; ++z) {
+    for (int y = 0; y < cells; ++y) {
+      for (int x = 0; x < cells; ++x) {
+        const btVector3 middle =
+            (btVector3(btScalar(x), btScalar(y), btScalar(z)) * 2 + btVector3(1, 1, 1)) * btScalar(size / 2) -
+            btVector3(1, 1, 1) * btScalar(half);
+        for (const btVector3& node : nodes) bytes.add(distance(middle + node * btScalar(size / 2)));
+      }
+    }
+  }
+  bytes.add(fields);
+  bytes.add(count);
+  for (std::uint32_t i = 0; i < count * nodes.size(); ++i) bytes.add(i);
+  bytes.add(fields);
+  bytes.add(count);
+  for (std::uint32_t i = 0; i < count; ++i) bytes.add(i);
+  auto shape = std::make_shared<btSdfCollisionShape>();
+  if (!shape->initializeSDF(bytes.data().data(), int(bytes.data().size())))
+    throw std::runtime_error("Bullet does not read it.");
+  return shape;
 }
 
 }  // namespace innersphere::test

@@ -1,11 +1,13 @@
 // One of every kind of shape that Bullet has.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <BulletCollision/CollisionShapes/btSdfCollisionShape.h>
 #include <LinearMath/btTransform.h>
 
 namespace innersphere::test {
@@ -24,5 +26,10 @@ const std::vector<std::string>& bulletShapes();
 const std::vector<std::string>& emptyShapes();
 
 BulletShape makeBulletShape(const std::string& name);
+
+/// A field of distances over the cube from -half to half, of `cells` cells along each edge; between their
+/// nodes Bullet interpolates with cubic polynomials.
+std::shared_ptr<btSdfCollisionShape> makeSdf(double half, int cells,
+                                             const std::function<double(const btVector3&)>& distance);
 
 }  // namespace innersphere::test

@@ -6,6 +6,7 @@
 
 #include <LinearMath/btPoolAllocator.h>
 
+#include "bullet_shapes.hpp"
 #include "innersphere/error.hpp"
 #include "pair_algorithm.hpp"
 #include "registration.hpp"
@@ -178,6 +179,22 @@ TEST(Registration, SdfShapesKeepTheirRow) {
   world.add(std::make_shared<btSphereShape>(btScalar(0.5)), 1, btVector3(0, 0, btScalar(0.2)));
   world.run(0.1);
   EXPECT_GT(world.contactCount(), 0);  // of the packing with the sphere
+}
+
+/// A slope, on which bodies roll, slide and lie.
+TEST(Registration, ConvexBodiesOnSdfShapesKeepTheirBits) {
+  const auto places = [](bool registered) {
+    TestWorld world;
+    if (!registered) PackingCollisionAlgorithm::unregisterAlgorithm(&world.dispatcher);
+    world.add(makeSdf(4, 2, [](const btVector3& p) { return double(p.z() * 0.8 + p.x() * 0.6); }), 0,
+              btVector3(0, 0, 0));
+    btRigidBody& ball = world.add(std::make_shared<btSphereShape>(btScalar(0.5)), 1, btVector3(0, 0, 1));
+    btRigidBody& box = world.add(std::make_shared<btBoxShape>(btVector3(1, 1, 1) / 2), 1, btVector3(0, 2, 1));
+    world.run(0.5);
+    EXPECT_GT(world.contactCount(), 0);
+    return std::pair(ball.getWorldTransform().getOrigin(), box.getWorldTransform().getOrigin());
+  };
+  EXPECT_EQ(places(true), places(false));
 }
 
 TEST(Registration, AfterGImpact) {

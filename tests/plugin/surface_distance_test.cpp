@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "bullet_shapes.hpp"
 #include "surfaces/other_surface.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
@@ -83,6 +84,15 @@ TEST(SurfaceDistance, Hull) {
   hull.setMargin(btScalar(0.01));
   expectDistance(hull, btVector3(btScalar(0.3), btScalar(0.2), btScalar(1.11)), 0.1, btVector3(0, 0, 1));
   expectDistance(hull, btVector3(btScalar(0.3), btScalar(0.2), btScalar(0.8)), -0.21, btVector3(0, 0, 1));
+}
+
+TEST(SurfaceDistance, Sdf) {
+  const auto ball = makeSdf(2, 16, [](const btVector3& p) { return double(p.length()) - 1; });
+  expectDistance(*ball, btVector3(btScalar(0.6), btScalar(0.8), 0) * btScalar(1.1), 0.1, btVector3(3, 4, 0));
+  expectDistance(*ball, btVector3(btScalar(0.5), btScalar(-0.5), btScalar(0.1)), std::sqrt(0.51) - 1,
+                 btVector3(5, -5, 1));
+  expectDistance(*ball, btVector3(0, 0, btScalar(1.4)), 0.4, btVector3(0, 0, 1));
+  expectDistance(*ball, btVector3(0, 0, btScalar(2.1)), 1.1, btVector3(0, 0, 1));  // beyond the field
 }
 
 class MeshDistance : public testing::Test {
