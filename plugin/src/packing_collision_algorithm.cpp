@@ -62,5 +62,9 @@ void PackingCollisionAlgorithm::unregisterAlgorithm(btCollisionDispatcher* dispa
   }
 }
 
+bool PackingCollisionAlgorithm::isRegistered(const btCollisionDispatcher* dispatcher) {
+  return dispatcher != nullptr && Registration::hasTables(*dispatcher);
+}
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -44,6 +44,13 @@ void forEachRow(const Visit& visit) {
   }
 }
 
+/// The table can be written from outside, but only be read by dispatchers.
+struct Reader : btCollisionDispatcher {
+  static const btCollisionAlgorithmCreateFunc* read(const btCollisionDispatcher& dispatcher) {
+    return (dispatcher.*(&Reader::m_doubleDispatchContactPoints))[kPackingShapeType][kPackingShapeType];
+  }
+};
+
 }  // namespace
 
 std::shared_ptr<Registration> Registration::of(btCollisionDispatcher* dispatcher) {
@@ -103,6 +110,10 @@ void Registration::clearTables(btCollisionDispatcher* dispatcher) {
     dispatcher->registerClosestPointsCreateFunc(type0, type1,
                                                 defaults->getClosestPointsAlgorithmCreateFunc(type0, type1));
   });
+}
+
+bool Registration::hasTables(const btCollisionDispatcher& dispatcher) {
+  return dynamic_cast<const CreateFunc*>(Reader::read(dispatcher)) != nullptr;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -52,6 +52,9 @@ class Registration : public std::enable_shared_from_this<Registration> {
   void fillTables(btCollisionDispatcher* dispatcher);
   /// Writes back what its configuration started it with.
   static void clearTables(btCollisionDispatcher* dispatcher);
+  /// Whether our functions are there. Unlike find(), it is not misled by a dispatcher that was destroyed, and
+  /// another that has taken its address.
+  static bool hasTables(const btCollisionDispatcher& dispatcher);
 
   OverlapBatch& batch() { return batch_; }
   SurfaceBatch& surfaces() { return surfaces_; }

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <optional>
+
 #include <BulletCollision/CollisionShapes/btSdfCollisionShape.h>
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
@@ -48,6 +51,23 @@ TEST(Registration, BadArgumentsAreNamed) {
     options.backend = Backend::cuda;
     EXPECT_EQ(codeOf(&dispatcher, options), ErrorCode::no_device);
   }
+}
+
+TEST(Registration, CanBeAskedFor) {
+  EXPECT_FALSE(PackingCollisionAlgorithm::isRegistered(nullptr));
+  btDefaultCollisionConfiguration configuration;
+  std::optional<btCollisionDispatcher> dispatcher(&configuration);
+  btCollisionDispatcher other(&configuration);
+  EXPECT_FALSE(PackingCollisionAlgorithm::isRegistered(&*dispatcher));
+  PackingCollisionAlgorithm::registerAlgorithm(&*dispatcher);
+  EXPECT_TRUE(PackingCollisionAlgorithm::isRegistered(&*dispatcher));
+  EXPECT_FALSE(PackingCollisionAlgorithm::isRegistered(&other));
+  dispatcher.emplace(&configuration);  // another one, at the same address
+  EXPECT_FALSE(PackingCollisionAlgorithm::isRegistered(&*dispatcher));
+  PackingCollisionAlgorithm::registerAlgorithm(&*dispatcher);
+  EXPECT_TRUE(PackingCollisionAlgorithm::isRegistered(&*dispatcher));
+  PackingCollisionAlgorithm::unregisterAlgorithm(&*dispatcher);
+  EXPECT_FALSE(PackingCollisionAlgorithm::isRegistered(&*dispatcher));
 }
 
 TEST(Registration, AgainReplacesTheOptions) {
