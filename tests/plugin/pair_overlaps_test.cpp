@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include <LinearMath/btIDebugDraw.h>
 
@@ -115,6 +116,33 @@ TEST(PairOverlaps, LargestStepIsStableAndNotFarFromTheTruth) {
   };
   EXPECT_LT(fastestAt(0.9), 0.6);
   EXPECT_GT(fastestAt(3), 2 * fastestAt(0.9));
+}
+
+TEST(PairOverlaps, ChildrenOfACompoundArePairsOfTheirOwn) {
+  constexpr double kDepth = 0.03, kMass = 2, kStep = 1.0 / 60;
+  ContactOptions options;
+  options.estimator = Estimator::raw;
+  TestWorld world(options);
+  world.world.setGravity(btVector3(0, 0, 0));
+  btRigidBody& floor = world.addFloor();
+  const auto child = makeShape(latticeBox({1, 1, 1}, kCells));
+  auto compound = std::make_shared<btCompoundShape>();
+  for (const btScalar x : {-1, 1})
+    compound->addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(x, 0, 0)), child.get());
+  btRigidBody& body = world.add(compound, kMass, btVector3(3, 0, btScalar(0.5 - kDepth)));
+  world.run(kStep);
+  auto pairs = pairOverlaps(&world.dispatcher);
+  ASSERT_EQ(pairs.size(), 2u);
+  if (pairs[0].centroid.x() > pairs[1].centroid.x()) std::swap(pairs[0], pairs[1]);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(pairs[i].a, &body);
+    EXPECT_EQ(pairs[i].b, &floor);
+    EXPECT_NEAR(pairs[i].volume, cutVolume(kDepth), 1e-3 * cutVolume(kDepth));
+    EXPECT_NEAR(pairs[i].centroid.x(), 2 + 2 * i, 1e-3);
+    EXPECT_LT(pairs[i].force.z(), 0);
+  }
+  const double impulse = -kStep * (pairs[0].force.z() + pairs[1].force.z());
+  EXPECT_NEAR(body.getLinearVelocity().z(), impulse / kMass, 1e-3 * impulse);
 }
 
 TEST(PairOverlaps, BodiesApartAreNotListed) {

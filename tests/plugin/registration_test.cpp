@@ -46,6 +46,12 @@ TEST(Registration, BadArgumentsAreNamed) {
   options = {};
   options.damping = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(codeOf(&dispatcher, options), ErrorCode::bad_argument);
+  for (const double accuracy :
+       {-0.001, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    options = {};
+    options.accuracy = accuracy;
+    EXPECT_EQ(codeOf(&dispatcher, options), ErrorCode::bad_argument) << accuracy;
+  }
   if (!cudaAvailable()) {
     options = {};
     options.backend = Backend::cuda;

@@ -161,6 +161,23 @@ TEST(Worlds, GImpactRegisteredLaterMeetsTheTriangles) {
   EXPECT_NEAR(other.getWorldTransform().getOrigin().z() - body.getWorldTransform().getOrigin().z(), 1, 0.01);
 }
 
+TEST(Worlds, AMovingGImpactMeshRestsOnAPackingAndCarriesOne) {
+  TestWorld world;
+  btGImpactCollisionAlgorithm::registerAlgorithm(&world.dispatcher);
+  PackingCollisionAlgorithm::registerAlgorithm(&world.dispatcher);
+  world.add(makeShape(latticeBox({6, 6, 1}, 6)), 0, btVector3(0, 0, btScalar(-0.5)));
+  const BulletShape mesh = makeBulletShape("gimpact");  // half as high as wide: 4 x 4 x 2
+  btRigidBody& below = world.add(mesh.shape, 4, btVector3(0, 0, btScalar(1.05)));
+  btRigidBody& above = world.add(cube(), 1, btVector3(0, 0, btScalar(2.6)));
+  world.run(2);
+  EXPECT_NEAR(below.getWorldTransform().getOrigin().z(), 1, 0.005);
+  EXPECT_NEAR(above.getWorldTransform().getOrigin().z(), 2.5, 0.01);
+  for (const btRigidBody* body : {&below, &above}) {
+    EXPECT_LT(tiltDegrees(*body), 0.5);
+    EXPECT_LT(body->getLinearVelocity().length(), 0.01);
+  }
+}
+
 /// The character has a pair cache of its own and dispatches it in between.
 TEST(Worlds, ACharacterStandsOnAPackingAndMeetsOthers) {
   TestWorld world;
@@ -200,6 +217,28 @@ TEST(Worlds, ACompoundScalesItsPackings) {
   btRigidBody& body = world.add(compound, 1, btVector3(0, 0, btScalar(1.02)));
   world.run(1);
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 1, 0.01);
+}
+
+/// The packing throws before the compound has changed.
+TEST(Worlds, StretchingACompoundOfAPackingIsAnError) {
+  TestWorld world;
+  world.addFloor();
+  const auto child = cube();
+  auto compound = std::make_shared<btCompoundShape>();
+  compound->addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 1)), child.get());
+  btRigidBody& body = world.add(compound, 1, btVector3(0, 0, btScalar(-0.48)));
+  try {
+    compound->setLocalScaling(btVector3(2, 1, 1));
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+  }
+  EXPECT_EQ(compound->getLocalScaling(), btVector3(1, 1, 1));
+  EXPECT_EQ(child->getLocalScaling(), btVector3(1, 1, 1));
+  world.run(1);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), -0.5, 0.005);
+  compound->setLocalScaling(btVector3(2, 2, 2));
+  EXPECT_NEAR(child->getLocalScaling().x(), 2, 1e-6);
 }
 
 /// Continuous collision detection of others goes through the packing's triangles.

@@ -51,7 +51,8 @@ class PackingShape : public btConcaveShape {
   void setMargin(btScalar margin) override;
   btScalar getContactBreakingThreshold(btScalar factor) const override;
   /// About the centre of mass; replaces the scaling before. Uniform and positive only: throws Error
-  /// bad_argument otherwise.
+  /// bad_argument otherwise. From btCompoundShape::setLocalScaling too, which has scaled the children before
+  /// it by then.
   void setLocalScaling(const btVector3& scaling) override;
   const btVector3& getLocalScaling() const override;
   /// Exact moments of the solid for a homogeneous body of this mass [kg m^2].
