@@ -14,7 +14,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 struct PairOverlap {
   const btCollisionObject* a = nullptr;  ///< has a packing
   const btCollisionObject* b = nullptr;
-  double volume = 0;                 ///< that both share, by the spheres [m^3]
+  /// That both share, by the spheres [m^3]. Of what is no packing a sphere sees the plane that touches it
+  /// where it is nearest; one that lies all behind the triangles of a mesh or height field does not count.
+  double volume = 0;
   btVector3 centroid{0, 0, 0};       ///< of that volume in the world [m]; of the contacts where there is none
   btVector3 area{0, 0, 0};           ///< of the contact times its direction, from A to B [m^2]
   btScalar depth = 0;                ///< of the deepest contact [m]; negative: the width of the gap
