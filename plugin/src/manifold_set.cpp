@@ -74,6 +74,16 @@ btManifoldPoint* pointAt(btPersistentManifold& manifold, const btVector3& on_b) 
   return nullptr;
 }
 
+/// Points of bodies that the user has given friction anchors are kept by Bullet as they are, their depth too,
+/// while friction holds. Here all friction that holds is anchored: the point is to be replaced.
+void letGo(const btCollisionObject& a, const btCollisionObject& b, btManifoldPoint& cached) {
+  if (((a.getCollisionFlags() | b.getCollisionFlags()) & btCollisionObject::CF_HAS_FRICTION_ANCHOR) == 0)
+    return;
+  constexpr btScalar kSome = btScalar(1e-15);  // more than friction of 0 holds
+  cached.m_combinedFriction = 0;
+  if (cached.m_appliedImpulseLateral1 == 0) cached.m_appliedImpulseLateral1 = kSome;
+}
+
 /// Stiffness, damping and the depth they act on, and the slip that friction is to undo, unless the user has
 /// set a law of their own, through the bodies or in a material callback. The callback has seen the true
 /// depth.
@@ -123,9 +133,9 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     point.m_combinedContactDamping1 = law.damping;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   }
-  const bool anchored = (point.m_contactPointFlags & BT_CONTACT_FLAG_FRICTION_ANCHOR) != 0;
   const bool driven_apart = law.depth < from.depth;
-  const bool held = !driven_apart && !from.slip.isZero() && !belt && !anchored;
+  const bool held = !driven_apart && !from.slip.isZero() && !belt;
+  point.m_contactPointFlags &= ~BT_CONTACT_FLAG_FRICTION_ANCHOR;
   if (held) point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
   if (depth == from.depth && !held) return;
   point.m_distance1 = -depth;
@@ -159,19 +169,14 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const bt
     point.friction = friction;
     // Bullet keeps impulses and lifetime of the cached point nearest to the new one: move the match there
     // first.
-    btVector3 before(0, 0, 0);
     if (match[i] >= 0) {
       btManifoldPoint& cached = manifold.getContactPoint(match[i]);
       point.slip = slipOf(cached, a, b, point.normal, kFarthestSlip * manifold.getContactBreakingThreshold());
-      before = cached.m_localPointA;
       cached.m_localPointA = point.local_a;
+      letGo(a, b, cached);
     }
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
-    if (btManifoldPoint* added = pointAt(manifold, point.on_b)) {
-      setLaw(*added, point, a, b);
-    } else if (match[i] >= 0) {
-      manifold.getContactPoint(match[i]).m_localPointA = before;  // kept by a friction anchor
-    }
+    if (btManifoldPoint* added = pointAt(manifold, point.on_b)) setLaw(*added, point, a, b);
   }
   result->refreshContactPoints();
 }

@@ -24,7 +24,8 @@ enum class Response {
 /// that have friction, but no rolling or spinning friction, and touch in one place or along a line, resist
 /// rolling as if their load lay 0.00001 sizes of the smaller one ahead (a ball of 1 m loses 0.07 mm/s of its
 /// speed in a second), and spinning as the friction of a small round contact does: else balls would never
-/// come to rest.
+/// come to rest. Friction that holds is anchored, but with Response::penalty: CF_HAS_FRICTION_ANCHOR changes
+/// nothing.
 struct ContactOptions {
   Response response = Response::compliant;
   Backend backend = Backend::automatic;
