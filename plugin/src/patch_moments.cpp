@@ -75,19 +75,22 @@ void pointsFromMoments(const PatchMoments& m, btScalar spacing, ContactPatch& pa
     r[2] = (m.spread[2] + root_det) / norm;
   }
   const btScalar root3 = btSqrt(btScalar(3));
+  // Corners push three times as far out, squared, as the patch does on average: a third of its slope turns
+  // the bodies as the volume does.
+  const btScalar slope[2] = {m.slope[0] / 3, m.slope[1] / 3};
   btScalar u[kPatchPoints], v[kPatchPoints], steepest = 0;
   for (int i = 0; i < kPatchPoints; ++i) {
     const btScalar su = (i & 1) != 0 ? root3 : -root3, sv = (i & 2) != 0 ? root3 : -root3;
     u[i] = r[0] * su + r[1] * sv;
     v[i] = r[1] * su + r[2] * sv;
-    steepest = btMax(steepest, btFabs(m.slope[0] * u[i] + m.slope[1] * v[i]));
+    steepest = btMax(steepest, btFabs(slope[0] * u[i] + slope[1] * v[i]));
   }
   // No corner is lifted out of the contact: the sum of the forces is then that of the volume.
   const btScalar tilt = steepest > depth ? depth / steepest : btScalar(1);
   for (int corner = 0; corner < kPatchPoints; ++corner) {
     ContactPoint point;
     point.normal = m.normal;
-    point.depth = depth + tilt * (m.slope[0] * u[corner] + m.slope[1] * v[corner]);
+    point.depth = depth + tilt * (slope[0] * u[corner] + slope[1] * v[corner]);
     const btVector3 middle = m.centre + m.tangent[0] * u[corner] + m.tangent[1] * v[corner];
     point.on_b = middle - m.normal * (point.depth / 2);
     point.id = static_cast<std::uint64_t>(corner);

@@ -28,7 +28,7 @@ PatchMoments patchMoments(const std::vector<SphereContact>& contacts, const std:
                           const btMatrix3x3& reference);
 
 /// Up to four points at the corners of a rectangle with the spread of the patch (sqrt 3 standard deviations),
-/// each as deep as the sloping mean depth there. None if there is no depth.
+/// with depths that give the force and the torque of the volume. None if there is no depth.
 void pointsFromMoments(const PatchMoments& moments, btScalar spacing, ContactPatch& patch);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
