@@ -15,7 +15,7 @@ if [ "${1:-}" = --gpu ]; then
   export INNERSPHERE_REQUIRE_GPU=1
 fi
 # shellcheck disable=SC2086  # a list of names
-need_packages $build_packages libgtest-dev librapidcheck-dev
+need_packages $build_packages libgtest-dev librapidcheck-dev libbullet-extras-dev
 build release -DINNERSPHERE_TESTS=ON -DINNERSPHERE_CUDA=$cuda
 
 log=$(mktemp)
@@ -24,6 +24,6 @@ status=0
 ctest --test-dir build --output-on-failure --no-tests=error -j "$(nproc)" "$@" | tee "$log" || status=$?
 skipped=$(grep -c '\*\*\*Skipped' "$log" || true)
 if [ "$skipped" -gt 0 ]; then
-  echo "$skipped tests were skipped because they need a CUDA device; ./tests/run.sh --gpu runs them."
+  echo "$skipped tests were skipped; ./tests/run.sh --gpu runs those that need a CUDA device."
 fi
 exit $status
