@@ -1,5 +1,6 @@
 #include "pair_contact.hpp"
 
+#include <mutex>
 #include <typeinfo>
 #include <utility>
 
@@ -69,6 +70,8 @@ PairContact::~PairContact() {
 
 void PairContact::process(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, bool swapped,
                           const btDispatcherInfo& dispatch, btManifoldResult* result) {
+  std::unique_lock<std::recursive_mutex> lock(registration_->processing(), std::defer_lock);
+  if (!closest_) lock.lock();
   if (hasReceived(a, b, *result, dispatch.m_timeStep)) return;
   static const std::vector<ContactPatch> kNone;
   const std::vector<ContactPatch>* patches = &kNone;

@@ -59,11 +59,15 @@ class Registration : public std::enable_shared_from_this<Registration> {
   OverlapBatch& batch() { return batch_; }
   SurfaceBatch& surfaces() { return surfaces_; }
   StepCount& steps() { return steps_; }
+  /// Held while a pair is processed, in which a look at all pairs may write their contacts, and penalty
+  /// forces write to the bodies: a dispatcher may process several at once.
+  std::recursive_mutex& processing() { return processing_; }
   /// That Bullet has algorithms for.
   SharedPairList<PairContact>& pairs() { return pairs_; }
 
  private:
   mutable std::mutex mutex_;
+  std::recursive_mutex processing_;  ///< callbacks of the user's may ask for contacts
   ContactOptions options_;
   OverlapBatch batch_;
   SurfaceBatch surfaces_;

@@ -70,8 +70,7 @@ TEST_P(Allocations, NoneInAStep) {
 
 std::string nameOfCase(const testing::TestParamInfo<Allocations::ParamType>& info) {
   const auto& [name, response, kind] = info.param;
-  constexpr const char* kResponses[] = {"compliant", "rigid", "penalty"};
-  return name + "_" + kResponses[static_cast<int>(response)] + "_" + nameOf(kind);
+  return name + "_" + nameOf(response) + "_" + nameOf(kind);
 }
 
 INSTANTIATE_TEST_SUITE_P(

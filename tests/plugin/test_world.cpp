@@ -12,18 +12,17 @@ namespace innersphere::test {
 
 namespace {
 
-std::unique_ptr<btCollisionDispatcher> makeDispatcher(DispatcherKind kind,
-                                                      btCollisionConfiguration* configuration) {
+MakeDispatcher maker(DispatcherKind kind) {
   btSetTaskScheduler(btGetSequentialTaskScheduler());  // btCollisionDispatcherMt asks for it when it is made
   switch (kind) {
     case DispatcherKind::multithreaded:
-      return std::make_unique<btCollisionDispatcherMt>(configuration);
+      return make<btCollisionDispatcherMt>;
     case DispatcherKind::batched:
-      return std::make_unique<BatchedDispatcher<>>(configuration);
+      return make<BatchedDispatcher<>>;
     case DispatcherKind::batched_multithreaded:
-      return std::make_unique<BatchedDispatcher<btCollisionDispatcherMt>>(configuration);
+      return make<BatchedDispatcher<btCollisionDispatcherMt>>;
     default:
-      return std::make_unique<btCollisionDispatcher>(configuration);
+      return make<btCollisionDispatcher>;
   }
 }
 
@@ -34,8 +33,15 @@ std::string nameOf(DispatcherKind kind) {
   return kNames[static_cast<int>(kind)];
 }
 
-TestWorld::TestWorld(const ContactOptions& options, DispatcherKind kind)
-    : owned_dispatcher(makeDispatcher(kind, &configuration)),
+std::string nameOf(Response response) {
+  constexpr const char* kNames[] = {"Compliant", "Rigid", "Penalty"};
+  return kNames[static_cast<int>(response)];
+}
+
+TestWorld::TestWorld(const ContactOptions& options, DispatcherKind kind) : TestWorld(options, maker(kind)) {}
+
+TestWorld::TestWorld(const ContactOptions& options, const MakeDispatcher& make)
+    : owned_dispatcher(make(&configuration)),
       dispatcher(*owned_dispatcher),
       world(&dispatcher, &broadphase, &solver, &configuration) {
   PackingCollisionAlgorithm::registerAlgorithm(&dispatcher, options);
@@ -84,6 +90,18 @@ int TestWorld::contactCount() const {
     count += dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
   }
   return count;
+}
+
+std::vector<btScalar> TestWorld::motion() const {
+  std::vector<btScalar> all;
+  for (const auto& body : bodies) {
+    const btQuaternion turn = body->getWorldTransform().getRotation();
+    for (const btVector3& v :
+         {body->getWorldTransform().getOrigin(), body->getLinearVelocity(), body->getAngularVelocity()})
+      all.insert(all.end(), {v.x(), v.y(), v.z()});
+    all.insert(all.end(), {turn.x(), turn.y(), turn.z(), turn.w()});
+  }
+  return all;
 }
 
 double TestWorld::deepestContact() const {

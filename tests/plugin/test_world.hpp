@@ -1,6 +1,7 @@
 // A Bullet world with a floor for bodies to fall on.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,10 +17,19 @@ namespace innersphere::test {
 enum class DispatcherKind { plain, multithreaded, batched, batched_multithreaded };
 /// For names of tests.
 std::string nameOf(DispatcherKind kind);
+std::string nameOf(Response response);
+
+using MakeDispatcher = std::function<std::unique_ptr<btCollisionDispatcher>(btCollisionConfiguration*)>;
+/// Of a test's own class.
+template <class Dispatcher>
+std::unique_ptr<btCollisionDispatcher> make(btCollisionConfiguration* configuration) {
+  return std::make_unique<Dispatcher>(configuration);
+}
 
 class TestWorld {
  public:
   explicit TestWorld(const ContactOptions& options = {}, DispatcherKind kind = DispatcherKind::plain);
+  TestWorld(const ContactOptions& options, const MakeDispatcher& make);
   ~TestWorld();
 
   /// A body of mass 0 is static. The shape is kept alive by the world.
@@ -31,6 +41,8 @@ class TestWorld {
 
   double kineticEnergy() const;
   int contactCount() const;
+  /// Where all bodies are and how they move, to compare worlds bit by bit.
+  std::vector<btScalar> motion() const;
   double deepestContact() const;  ///< [m], positive
   /// Of the body that was added last, deepest first; normals point to it.
   std::vector<btManifoldPoint> contactsOfLast() const;

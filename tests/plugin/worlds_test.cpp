@@ -7,6 +7,7 @@
 //   normals follow the order of a manifold's bodies      ShapeMatrix, Callbacks.ManifoldsNameTheirBodies*
 //   child algorithms own or clear manifolds              ShapeMatrix, CallbacksOn.PointsAreFewAndKeepTheirImpulses
 //   Mt cannot release a manifold in the same dispatch    ShapeMatrix (Mt), Worlds.Multithreaded, Batch (Mt)
+//   Mt collides pairs by several threads                 ConcurrentDispatch, ConcurrentPenalty
 //   type numbers are few, and one is shared with SDF     Shape.IsRecognisedAmongOthersOfItsType, Registration.SdfShapes*, Foreign*
 //   GImpact overwrites its rows                          Registration.AfterGImpact, Worlds.GImpactRegisteredLater*
 //   contactTest needs its own registration               ShapeMatrix.QueriesFindIt, ContactQuery
