@@ -46,6 +46,13 @@ bool hasCallbacks(const btDispatcher& dispatcher) {
          gCalculateCombinedContactStiffnessCallback != &btManifoldResult::calculateCombinedContactStiffness;
 }
 
+bool hasPoints(const btManifoldArray& manifolds) {
+  for (int i = 0; i < manifolds.size(); ++i) {
+    if (manifolds[i]->getNumContacts() > 0) return true;
+  }
+  return false;
+}
+
 /// On B.
 btVector3 impulseOf(const btManifoldPoint& point) {
   return -(point.m_normalWorldOnB * point.m_appliedImpulse +
@@ -96,7 +103,7 @@ void PairContact::process(const btCollisionObjectWrapper& a, const btCollisionOb
   manifolds_.write(*object_a_, *object_b_, origin(), *patches, law,
                    sweepOf(*object_a_, *object_b_, time_step_), result);
   penalty_ = PenaltyReport();
-  if (law.penalty() && patches != &kNone) push(law, dispatch);
+  if (law.penalty() && patches != &kNone) push(law, dispatch, *result);
 }
 
 PairContact::Place PairContact::place() const {
@@ -205,14 +212,17 @@ ContactLaw PairContact::lawOf(const ContactOptions& chosen, btScalar time_step) 
   return ContactLaw(options, reducedMass(*object_a_, *object_b_), time_step, sizeOf(*shape_a_, *shape_b_));
 }
 
-void PairContact::push(const ContactLaw& law, const btDispatcherInfo& dispatch) {
+void PairContact::push(const ContactLaw& law, const btDispatcherInfo& dispatch,
+                       const btManifoldResult& result) {
   static thread_local btManifoldArray manifolds;
+  manifolds.resize(0);
+  manifolds_.append(manifolds);
+  // contactTest walks a compound with the algorithms of a step, but its result keeps no point.
+  if (typeid(result) != typeid(btManifoldResult) && !hasPoints(manifolds)) return;
   const std::uint64_t step = registration_->steps().of(dispatch);
   if (step == pushed_step_ || !(dispatch.m_timeStep > 0)) return;
   pushed_step_ = step;
   if (!dispatcher_->needsResponse(object_a_, object_b_)) return;
-  manifolds.resize(0);
-  manifolds_.append(manifolds);
   penalty_ = Penalty(*object_a_, *object_b_, btScalar(options_.damping), dispatch.m_timeStep)
                  .push(overlap(), law.penaltyStiffness(), arm(), manifolds);
 }

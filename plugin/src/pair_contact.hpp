@@ -62,7 +62,7 @@ class PairContact : public ContactReceiver, public ListedPair {
   void look(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btScalar time_step);
   bool provide(const PackingSide& a, const PackingSide& b);
   ContactLaw lawOf(const ContactOptions& options, btScalar time_step) const;
-  void push(const ContactLaw& law, const btDispatcherInfo& dispatch);
+  void push(const ContactLaw& law, const btDispatcherInfo& dispatch, const btManifoldResult& result);
   Overlap overlap();
   /// Of A's packing in the world, and where the torque of overlap() acts.
   btVector3 origin() const;

@@ -1,8 +1,10 @@
-// contactTest and contactPairTest: true contacts, and no side effects.
+// contactTest and contactPairTest: true contacts, and no side effects, nor has anything else that only reads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 
+#include "innersphere/pair_overlaps.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
@@ -122,6 +124,78 @@ TEST_P(ContactQuery, FindsBodiesThatAreAsFarApartAsAskedFor) {
 
 INSTANTIATE_TEST_SUITE_P(Grounds, ContactQuery, testing::Bool(),
                          [](const auto& info) { return info.param ? "packing" : "plane"; });
+
+class ReadingAWorld : public testing::TestWithParam<std::tuple<Response, DispatcherKind>> {
+ protected:
+  /// Packings, alone and in a compound, and a box, on a floor and on each other.
+  static void fill(TestWorld& world) {
+    world.addFloor();
+    const auto cube = makeShape(latticeBox({1, 1, 1}, 5));
+    const auto pair = std::make_shared<btCompoundShape>();
+    for (const int side : {-1, 1}) {
+      const btTransform place(btQuaternion::getIdentity(), btVector3(btScalar(0.5 * side), 0, 0));
+      pair->addChildShape(place, cube.get());
+    }
+    const auto box = std::make_shared<btBoxShape>(btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5)));
+    const std::shared_ptr<btCollisionShape> shapes[] = {cube, box, cube, pair, cube};
+    for (int i = 0; i < 5; ++i) {
+      world.add(shapes[i], 1,
+                btVector3(btScalar(0.1 * i), btScalar(0.2 * (i % 2)), btScalar(0.55 + 1.05 * i)),
+                btQuaternion(btVector3(0, 0, 1), btScalar(0.4 * i)));
+    }
+  }
+
+  struct Found {
+    std::size_t contacts = 0, rays = 0, sweeps = 0, overlaps = 0;
+  };
+  static void read(TestWorld& world, Found& all) {
+    for (const auto& a : world.bodies) {
+      Collect found;
+      world.world.contactTest(a.get(), found);
+      for (const auto& b : world.bodies) {
+        // Bullet takes other ways through compounds where a distance is allowed.
+        for (const btScalar distance : {btScalar(0), btScalar(0.1)}) {
+          found.m_closestDistanceThreshold = distance;
+          if (a != b) world.world.contactPairTest(a.get(), b.get(), found);
+        }
+      }
+      all.contacts += found.points.size();
+    }
+    const btVector3 above(0, 0, 20), below(0, 0, -20);
+    btCollisionWorld::AllHitsRayResultCallback hits(above, below);
+    world.world.rayTest(above, below, hits);
+    all.rays += static_cast<std::size_t>(hits.m_hitFractions.size());
+    btCollisionWorld::ClosestConvexResultCallback hit(above, below);
+    const btSphereShape ball(btScalar(0.2));
+    world.world.convexSweepTest(&ball, btTransform(btQuaternion::getIdentity(), above),
+                                btTransform(btQuaternion::getIdentity(), below), hit);
+    all.sweeps += hit.hasHit() ? 1 : 0;
+    all.overlaps += pairOverlaps(&world.dispatcher).size();
+  }
+};
+
+TEST_P(ReadingAWorld, DoesNotMoveIt) {
+  ContactOptions options;
+  options.response = std::get<0>(GetParam());
+  TestWorld read_world(options, std::get<1>(GetParam())), other(options, std::get<1>(GetParam()));
+  fill(read_world);
+  fill(other);
+  Found found;
+  for (int step = 0; step < 60; ++step) {
+    read_world.run(1.0 / 60);
+    other.run(1.0 / 60);
+    ASSERT_EQ(read_world.motion(), other.motion()) << "after step " << step;
+    read(read_world, found);
+  }
+  for (const std::size_t count : {found.contacts, found.rays, found.sweeps, found.overlaps})
+    EXPECT_GE(count, 60u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Responses, ReadingAWorld,
+    testing::Combine(testing::Values(Response::compliant, Response::rigid, Response::penalty),
+                     testing::Values(DispatcherKind::plain, DispatcherKind::batched)),
+    [](const auto& info) { return nameOf(std::get<0>(info.param)) + "_" + nameOf(std::get<1>(info.param)); });
 
 }  // namespace
 }  // namespace innersphere::test

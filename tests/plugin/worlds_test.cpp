@@ -12,6 +12,7 @@
 //   GImpact overwrites its rows                          Registration.AfterGImpact, Worlds.GImpactRegisteredLater*
 //   contactTest needs its own registration               ShapeMatrix.QueriesFindIt, ContactQuery
 //   compounds are walked by Bullet, with scaling         ShapeMatrix (nested), Worlds.ACompoundScalesItsPackings, Batch.Children*
+//   contactTest walks compounds with a step's algorithms ReadingAWorld
 //   soft bodies, rays, sweeps, CCD use the triangles     Worlds.ClothFallsOnAPacking, AFastBall*, Shape.RaysAndSweeps*
 //   characters dispatch a cache of their own             Worlds.ACharacterStands*, Penalty.ActsOnceAStep*
 //   one slot for tick and near callbacks                 Worlds.TickCallbacks*, Batch.NearCallbacksStillFilter
