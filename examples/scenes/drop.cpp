@@ -23,7 +23,7 @@ void buildDrop(SceneWorld& world, const SceneOptions& options) {
   world.expect({"speed at the end", "m/s", Truth::Kind::at_most, 0.002, 0, "it has come to rest",
                 [](const Recording& r) { return r.steps.back().fastest; }, 8});
   world.expect(energyGainBelow(0.013, weight * kHeight, "that of a fall by 1 m"));
-  world.film.viewpoint = {0.4, 0.3, 0.45};
+  world.film.viewpoint = {0.4, 0.3, 0.45, true};
 }
 
 }  // namespace innersphere::demo

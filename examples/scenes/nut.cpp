@@ -44,16 +44,14 @@ void buildNut(SceneWorld& world, const SceneOptions& options) {
   const MassProperties& solid = world.solids()[1].packing->solid;
   const double turns = 2 * std::numbers::pi / kPitch;
   const double expected = 9.81 / (1 + solid.inertia[8] / solid.volume * turns * turns);
-  world
-      .expect({"acceleration along the axis", "m/s^2", Truth::Kind::equal, expected, 0.03 * expected,
-               "g / (1 + I (2 pi / p)^2 / m), the screw without friction; 3 %",
-               [index](const Recording& r) {
-                 const std::size_t a = r.stepAt(0.3), b = r.steps.size() - 1;
-                 return (r.body(index, a).velocity[2] - r.body(index, b).velocity[2]) /
-                        (r.steps[b].time - r.steps[a].time);
-               },
-               1.5})
-      .known_miss = options.spheres < 4000 ? 0.0005 : 0;
+  world.expect({"acceleration along the axis", "m/s^2", Truth::Kind::equal, expected, 0.03 * expected,
+                "g / (1 + I (2 pi / p)^2 / m), the screw without friction; 3 %",
+                [index](const Recording& r) {
+                  const std::size_t a = r.stepAt(0.3), b = r.steps.size() - 1;
+                  return (r.body(index, a).velocity[2] - r.body(index, b).velocity[2]) /
+                         (r.steps[b].time - r.steps[a].time);
+                },
+                1.5});
   world.expect({"turn over way down", "rad/m", Truth::Kind::equal, turns, 0.03 * turns, "2 pi / p",
                 [index](const Recording& r) {
                   return turnedAboutZ(r, index, 0, r.seconds()) /

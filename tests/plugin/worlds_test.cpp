@@ -1,6 +1,7 @@
 // Packings in every kind of world that Bullet has.
 //
 // What Bullet does that a collision algorithm can fall over, and the test that would show it:
+// clang-format off
 //   elements of its pool have a fixed size, unchecked    Registration.AlgorithmFitsBulletsPool, Worlds.APoolWithTooSmallElements*
 //   the pool of algorithms overflows to the heap         Worlds.MoreAlgorithmsThanThePoolHolds
 //   manifolds may not be had                             Worlds.SlavesToAUsersPoolOfManifolds
@@ -24,6 +25,7 @@
 //   the shape of a living pair may change                Robustness.ChangedShapeOfALivingPair
 //   importers know only Bullet's shapes                  Serialization
 //   a user's own contact law or material callback        ContactLaw.UsersOwnStiffnessIsKept, MaterialCallbackSeesEveryPoint
+// clang-format on
 #include <gtest/gtest.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
