@@ -17,6 +17,8 @@
 //   soft bodies, rays, sweeps, CCD use the triangles     Worlds.ClothFallsOnAPacking, AFastBall*, Shape.RaysAndSweeps*
 //   characters dispatch a cache of their own             Worlds.ACharacterStands*, Penalty.ActsOnceAStep*
 //   one slot for tick and near callbacks                 Worlds.TickCallbacks*, Batch.NearCallbacksStillFilter
+//   islands follow boxes, too wide ones are disabled     Worlds.WhatMovesBesideASleeper*, APackingThatIsTooWide*
+//   there is a continuous dispatch                       Worlds.ContinuousDispatchFindsNoTimeOfImpact
 //   the solver loses springs deeper than 4 cm            ContactLaw.SoftContactDeeperThanTheSplitImpulseThreshold
 //   forces add up over substeps, impulses do not         Penalty.SubstepsOfOneCallDoNotAddUp
 //   multi-body links take no impulses, nor split ones    MultiBody
@@ -256,6 +258,51 @@ TEST(Worlds, AFastBallDoesNotPassThrough) {
   ball.setLinearVelocity(btVector3(0, 0, -200));
   world.run(0.1);
   EXPECT_GT(ball.getWorldTransform().getOrigin().z(), 0);
+}
+
+/// Bullet's islands are of bodies whose boxes overlap, and share their sleep.
+TEST(Worlds, WhatMovesBesideASleeperDoesNotWakeIt) {
+  TestWorld world;
+  world.addFloor();
+  btRigidBody& sleeper = world.add(cube(), 1, btVector3(0, 0, btScalar(0.5)));
+  world.run(3);
+  ASSERT_EQ(sleeper.getActivationState(), ISLAND_SLEEPING);
+  btRigidBody& other = world.add(cube(), 1, btVector3(btScalar(1.15), 0, btScalar(0.5)));
+  for (int i = 0; i < 60; ++i) {
+    other.setAngularVelocity(btVector3(0, 0, btScalar(i % 2 == 0 ? 0.1 : -0.1)));
+    world.run(1.0 / 60);
+    ASSERT_EQ(sleeper.getActivationState(), ISLAND_SLEEPING) << i;
+  }
+}
+
+/// Bullet disables what is wider than 1,000 km.
+TEST(Worlds, APackingThatIsTooWideForBulletLeavesTheOthersAlone) {
+  TestWorld world;
+  world.addFloor();
+  const auto wide = cube();
+  wide->setLocalScaling(btVector3(1, 1, 1) * btScalar(1e6));
+  btRigidBody& body = world.add(wide, 1, btVector3(0, 0, btScalar(6e5)));
+  btRigidBody& other = world.add(cube(), 1, btVector3(btScalar(5e5), 0, btScalar(0.55)));
+  world.run(1);
+  EXPECT_EQ(body.getActivationState(), DISABLE_SIMULATION);
+  EXPECT_EQ(body.getWorldTransform().getOrigin().z(), btScalar(6e5));
+  EXPECT_NEAR(other.getWorldTransform().getOrigin().z(), 0.5, 0.005);
+}
+
+/// There is no continuous detection for packings: all of the step is free.
+TEST(Worlds, ContinuousDispatchFindsNoTimeOfImpact) {
+  TestWorld world;
+  world.add(cube(), 0, btVector3(0, 0, 0));
+  world.add(cube(), 1, btVector3(0, 0, btScalar(0.99)));
+  world.world.performDiscreteCollisionDetection();
+  ASSERT_GT(world.contactCount(), 0);
+  const int points = world.contactCount();
+  btDispatcherInfo& info = world.world.getDispatchInfo();
+  info.m_dispatchFunc = btDispatcherInfo::DISPATCH_CONTINUOUS;
+  info.m_timeOfImpact = 1;
+  world.world.performDiscreteCollisionDetection();
+  EXPECT_EQ(info.m_timeOfImpact, 1);
+  EXPECT_EQ(world.contactCount(), points);
 }
 
 TEST(Worlds, SlavesToAUsersPoolOfManifolds) {
