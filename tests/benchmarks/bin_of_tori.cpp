@@ -80,7 +80,10 @@ StepTime BinOfTori::step(double dt) {
   clock_->narrow_phase = 0;
   StepTime time;
   const std::clock_t start = std::clock();
-  time.all = timeOf([&] { world_.stepSimulation(btScalar(dt), 0); });
+  time.all = timeOf([&] {
+    world_.stepSimulation(btScalar(dt), 0);
+    if (after_step) after_step(world_);
+  });
   time.processors = 1e6 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   time.narrow_phase = clock_->narrow_phase;
   return time;

@@ -34,6 +34,9 @@ class BinOfTori {
             const std::function<std::shared_ptr<btCollisionShape>(int)>& make, const btVector3& inertia);
   ~BinOfTori();
 
+  /// What a program does with the world after each step; a part of the step in its times.
+  std::function<void(btDiscreteDynamicsWorld&)> after_step;
+
   StepTime step(double dt);
   std::vector<BodyState> state() const;
   void setState(const std::vector<BodyState>& state);

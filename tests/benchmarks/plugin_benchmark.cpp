@@ -7,14 +7,17 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <string>
 
 #include "bin_of_tori.hpp"
+#include "innersphere/contact_drawer.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/packing_collision_algorithm.hpp"
 #include "innersphere/packing_shape.hpp"
+#include "innersphere/pair_overlaps.hpp"
 #include "innersphere/solids.hpp"
 #include "machine.hpp"
 #include "timing.hpp"
@@ -75,6 +78,17 @@ std::shared_ptr<btCompoundShape> compoundTorus(const Packing& packing) {
   return compound;
 }
 
+/// What is drawn costs what is worked out for it, not the drawing.
+class NoScreen : public btIDebugDraw {
+ public:
+  void drawLine(const btVector3&, const btVector3&, const btVector3&) override {}
+  void drawContactPoint(const btVector3&, const btVector3&, btScalar, int, const btVector3&) override {}
+  void reportErrorWarning(const char*) override {}
+  void draw3dText(const btVector3&, const char*) override {}
+  void setDebugMode(int) override {}
+  int getDebugMode() const override { return DBG_DrawWireframe; }
+};
+
 class Benchmark {
  public:
   Benchmark(const Settings& settings, const Models& model) : settings_(settings), model_(model) {
@@ -104,6 +118,11 @@ class Benchmark {
                       {},
                       {},
                       0});
+  }
+
+  /// Of the kind that was added last.
+  void afterEachStep(const std::function<void(btDiscreteDynamicsWorld&)>& work) {
+    kinds_.back().world->after_step = work;
   }
 
   /// The first kind leads.
@@ -201,6 +220,20 @@ void run(const Settings& settings) {
     benchmark.addPackings("packing, depth by volume", model, options);
     benchmark.addPackings("packing without a surface", std::make_shared<CollisionModel>(bare), {});
     benchmark.addPackings("packing, margin 0.01 m", model, {}, 0, false, 0.01);
+    benchmark.addPackings("packing, pairOverlaps() after each step", model, {});
+    benchmark.afterEachStep([](btDiscreteDynamicsWorld& world) {
+      pairOverlaps(static_cast<btCollisionDispatcher*>(world.getDispatcher()));
+    });
+    ContactDrawerOptions drawn;
+    for (const bool volumes : {false, true}) {
+      drawn.volumes = volumes;
+      benchmark.addPackings(
+          std::string("packing, drawn by ContactDrawer") + (volumes ? "" : " without volumes"), model, {});
+      benchmark.afterEachStep([drawn](btDiscreteDynamicsWorld& world) {
+        NoScreen screen;
+        ContactDrawer(world, drawn).debugDraw(&screen);
+      });
+    }
   }
   benchmark.run();
   benchmark.print();
