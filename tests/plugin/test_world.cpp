@@ -13,7 +13,6 @@ namespace innersphere::test {
 namespace {
 
 MakeDispatcher maker(DispatcherKind kind) {
-  btSetTaskScheduler(btGetSequentialTaskScheduler());  // btCollisionDispatcherMt asks for it when it is made
   switch (kind) {
     case DispatcherKind::multithreaded:
       return make<btCollisionDispatcherMt>;
@@ -24,6 +23,12 @@ MakeDispatcher maker(DispatcherKind kind) {
     default:
       return make<btCollisionDispatcher>;
   }
+}
+
+std::unique_ptr<btCollisionDispatcher> dispatcherOf(const MakeDispatcher& make,
+                                                    btCollisionConfiguration* configuration) {
+  btSetTaskScheduler(btGetSequentialTaskScheduler());  // btCollisionDispatcherMt asks for it when it is made
+  return make(configuration);
 }
 
 }  // namespace
@@ -41,7 +46,7 @@ std::string nameOf(Response response) {
 TestWorld::TestWorld(const ContactOptions& options, DispatcherKind kind) : TestWorld(options, maker(kind)) {}
 
 TestWorld::TestWorld(const ContactOptions& options, const MakeDispatcher& make)
-    : owned_dispatcher(make(&configuration)),
+    : owned_dispatcher(dispatcherOf(make, &configuration)),
       dispatcher(*owned_dispatcher),
       world(&dispatcher, &broadphase, &solver, &configuration) {
   PackingCollisionAlgorithm::registerAlgorithm(&dispatcher, options);
