@@ -1,6 +1,7 @@
 #include "measures.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "recording.hpp"
 
@@ -28,6 +29,18 @@ Measure largestTurn(std::size_t first_body, std::size_t count, double from) {
     }
     return largest;
   };
+}
+
+std::vector<double> motionsAtTheEnd(const Recording& r, const std::vector<double>& sizes) {
+  const double from = std::max(0.0, r.seconds() - kRestTime);
+  std::vector<double> motions(sizes.size(), 0.0);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (sizes[i] == 0) continue;
+    const Vec3d &a = r.body(i, r.stepAt(from)).position, &b = r.last(i).position;
+    const double way = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    motions[i] = way / sizes[i] + r.turnBetween(i, from, r.seconds()) / 2;
+  }
+  return motions;
 }
 
 double turnedAboutZ(const Recording& r, std::size_t body, double from, double to) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "truth.hpp"
 
@@ -21,6 +22,14 @@ Measure farthestOfAll(std::size_t first_body, std::size_t count, double from = 0
 
 /// The largest angle by which any body is turned at the end, against time `from` [rad].
 Measure largestTurn(std::size_t first_body, std::size_t count, double from = 0);
+
+/// Bodies rest if in so long [s] none moves by so much of its size: nothing is seen to move.
+constexpr double kRestTime = 0.5;
+constexpr double kRestMotion = 0.01;
+
+/// How far each body moved in the last kRestTime, over its size; turning by an angle counts as half of it. 0
+/// for bodies of size 0. `sizes`: of all bodies [m].
+std::vector<double> motionsAtTheEnd(const Recording& r, const std::vector<double>& sizes);
 
 /// The angle that a body turned about the z axis between two times, by its spin [rad].
 double turnedAboutZ(const Recording& r, std::size_t body, double from, double to);

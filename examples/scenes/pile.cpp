@@ -6,6 +6,7 @@
 #include "bullet_math.hpp"
 #include "catalogue.hpp"
 #include "film/palette.hpp"
+#include "measures.hpp"
 #include "random.hpp"
 #include "scene_solids.hpp"
 #include "world.hpp"
@@ -16,7 +17,6 @@ namespace {
 constexpr double kDiagonal = 0.7;  // [m] of each solid's bounding box
 constexpr double kDensity = 1000;  // [kg/m^3]
 constexpr double kWall = 0.03;     // [m] half the thickness of floor and walls
-constexpr double kRest = 0.5;      // [s] in which nothing may be seen to move at the end
 constexpr Colour kTrayColour{0.80f, 0.77f, 0.72f};
 
 struct Tray {
@@ -63,30 +63,16 @@ void addPile(SceneWorld& world, const SceneOptions& options, std::size_t count,
   world.film.viewpoint = {0.5, 0.95, 0.45};  // over the walls
 }
 
-// How far each body moves in the last half second, over its size; turning by an angle counts as half of it.
-std::vector<double> lastMotions(const Recording& r, const std::vector<double>& sizes) {
-  std::vector<double> motions;
-  const double from = r.seconds() - kRest;
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    if (sizes[i] == 0) continue;
-    const Vec3d &a = r.body(i, r.stepAt(from)).position, &b = r.last(i).position;
-    const double way = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-    motions.push_back(way / sizes[i] + r.turnBetween(i, from, r.seconds()) / 2);
-  }
-  return motions;
-}
-
 void expectRest(SceneWorld& world, double seconds, double known_miss, double known_movers) {
-  constexpr double kSeen = 0.01;  // of a body's size
-  std::vector<double> sizes;      // of the bodies; the tray's are 0
+  std::vector<double> sizes;  // of the bodies; the tray's are 0
   for (const SceneBody& body : world.bodies()) sizes.push_back(body.moves() ? body.size : 0);
   const auto count =
       static_cast<double>(std::count_if(sizes.begin(), sizes.end(), [](double s) { return s > 0; }));
   world
       .expect({"largest motion in the last half second, over the body's size", "", Truth::Kind::at_most,
-               kSeen, 0, "nothing is seen to move; turning by an angle counts as half of it",
+               kRestMotion, 0, "nothing is seen to move; turning by an angle counts as half of it",
                [sizes](const Recording& r) {
-                 const std::vector<double> motions = lastMotions(r, sizes);
+                 const std::vector<double> motions = motionsAtTheEnd(r, sizes);
                  return *std::max_element(motions.begin(), motions.end());
                },
                seconds})
@@ -95,9 +81,9 @@ void expectRest(SceneWorld& world, double seconds, double known_miss, double kno
       .expect({"bodies that are seen to move in the last half second", "", Truth::Kind::at_most,
                std::floor(count / 20), 0, "where one slips, one of twenty at most moves with it",
                [sizes](const Recording& r) {
-                 const std::vector<double> motions = lastMotions(r, sizes);
-                 return static_cast<double>(std::count_if(motions.begin(), motions.end(),
-                                                          [](double motion) { return motion > kSeen; }));
+                 const std::vector<double> motions = motionsAtTheEnd(r, sizes);
+                 return static_cast<double>(std::count_if(
+                     motions.begin(), motions.end(), [](double motion) { return motion > kRestMotion; }));
                },
                seconds})
       .known_miss = known_movers;

@@ -4,14 +4,11 @@
 #include <cmath>
 
 #include "contact_arguments.hpp"
+#include "scenes/measures.hpp"
 #include "scenes/world.hpp"
 
 namespace innersphere::tool {
 namespace {
-
-// Bodies rest if in so long [s] none moves by so much of its size: nothing is seen to move.
-constexpr double kRestTime = 0.5;
-constexpr double kRestMotion = 0.01;
 
 std::size_t movingBodies(const demo::SceneWorld& world) {
   return static_cast<std::size_t>(std::count_if(world.bodies().begin(), world.bodies().end(),
@@ -72,18 +69,12 @@ void addOverlap(Report& report, const demo::Recording& recording) {
   report.add("final_overlap_relative", "", last.relative_overlap, "");
 }
 
-// By how much of its size the most restless body moved over the last kRestTime, turning included.
+// By how much of its size the most restless body moved in the end.
 double motionAtTheEnd(const demo::SceneWorld& world, const demo::Recording& recording) {
-  const double from = std::max(0.0, recording.seconds() - kRestTime);
-  double most = 0;
-  for (std::size_t i = 0; i < world.bodies().size(); ++i) {
-    const double size = world.bodies()[i].size;
-    if (size == 0) continue;
-    const Vec3d &a = recording.body(i, recording.stepAt(from)).position, &b = recording.last(i).position;
-    const double way = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-    most = std::max(most, way / size + recording.turnBetween(i, from, recording.seconds()) / 2);
-  }
-  return most;
+  std::vector<double> sizes;
+  for (const demo::SceneBody& body : world.bodies()) sizes.push_back(body.size);
+  const std::vector<double> motions = demo::motionsAtTheEnd(recording, sizes);
+  return motions.empty() ? 0 : *std::max_element(motions.begin(), motions.end());
 }
 
 }  // namespace
@@ -165,9 +156,9 @@ Report describe(const demo::Scene& scene, const demo::ScenePlay& play) {
   report.add("contacts", "contact points", static_cast<std::size_t>(last.contacts));
   addOverlap(report, recording);
   const double motion = motionAtTheEnd(world, recording);
-  report.add("at_rest", "at rest", motion < kRestMotion,
-             std::string(motion < kRestMotion ? "yes" : "no") + "; the most restless body moved by " +
-                 percent(motion) + " of its size in the last " + number(kRestTime, "s"));
+  report.add("at_rest", "at rest", motion < demo::kRestMotion,
+             std::string(motion < demo::kRestMotion ? "yes" : "no") + "; the most restless body moved by " +
+                 percent(motion) + " of its size in the last " + number(demo::kRestTime, "s"));
   report.add("motion_at_the_end", "", motion, "");
   report.add("fastest", "", last.fastest, "");
   report.add("fastest_turn", "", last.fastest_turn, "");
