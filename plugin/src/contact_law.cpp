@@ -21,6 +21,9 @@ constexpr btScalar kSplitImpulseDepth = btScalar(0.03);
 /// Fastest push of the default law, in sizes of the body per second.
 constexpr btScalar kFastest = btScalar(0.5);
 
+/// Part of a slip that Bullet undoes in a step: m_frictionERP, by default.
+constexpr btScalar kUndone = btScalar(0.2);
+
 /// How far ahead of bodies that roll their load lies, in sizes of the smaller one: a fiftieth of what it does
 /// for steel on steel. Enough to lie still on slopes of a micrometre, which measured surfaces have.
 constexpr btScalar kRolling = btScalar(1e-5);
@@ -132,6 +135,10 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   law.push = btMax(law.depth, btScalar(0)) * rate();
   if (law.depth == depth) law.bears = law_->time_step_ * law.stiffness * btMax(depth, btScalar(0));
   return law;
+}
+
+btScalar ContactLaw::OfPatch::slipUndoneBy(btScalar impulse) const {
+  return impulse * law_->time_step_ / (kUndone * law_->mass_);
 }
 
 btVector3 relativeVelocity(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point) {

@@ -47,6 +47,9 @@ class ContactLaw {
   class OfPatch {
    public:
     PointLaw at(btScalar depth) const;
+    /// Slip of the reduced mass that Bullet's friction anchors undo by this impulse [N s] in a step: of a
+    /// slip s they undo a fifth by m s / (5 dt) [m].
+    btScalar slipUndoneBy(btScalar impulse) const;
 
    private:
     friend class ContactLaw;

@@ -15,6 +15,8 @@ constexpr btScalar kWarmStarting = btScalar(0.85);
 /// Patches whose normals differ by more than about 45 degrees are not the same patch.
 constexpr btScalar kSamePatch = btScalar(0.7);
 
+/// Share of the friction that slips may ask for; the rest is there for what pushes.
+constexpr btScalar kSlipShare = btScalar(0.5);
 /// A slip of more than this share of the threshold at which Bullet drops contacts is given up.
 constexpr btScalar kFarthestSlip = btScalar(0.2);
 
@@ -26,7 +28,7 @@ struct NewPoint {
   btVector3 normal{0, 0, 0};   ///< from A to B
   btVector3 on_b{0, 0, 0};     ///< in the world
   btVector3 local_a{0, 0, 0};  ///< the point on A, in the frame of A's object
-  btVector3 slip{0, 0, 0};     ///< of A on B, while friction could have held them
+  btVector3 slip{0, 0, 0};     ///< of A on B, that friction is to undo
   btScalar friction = 1;       ///< share of it
   btScalar curvature = 0;      ///< of both surfaces [1/m]
 };
@@ -164,6 +166,8 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const bt
   PointIndices match = matchPoints(manifold, points.data(), count);
   removeUnmatched(manifold, match);
   const btScalar friction = slidingShare(a, b, patch, manifold);
+  const btScalar largest_slip = law.slipUndoneBy(kSlipShare * mostFriction(manifold));
+  const btScalar farthest_slip = kFarthestSlip * manifold.getContactBreakingThreshold();
   for (int i = 0; i < count; ++i) {
     NewPoint& point = points[i];
     point.friction = friction;
@@ -171,7 +175,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const bt
     // first.
     if (match[i] >= 0) {
       btManifoldPoint& cached = manifold.getContactPoint(match[i]);
-      point.slip = slipOf(cached, a, b, point.normal, kFarthestSlip * manifold.getContactBreakingThreshold());
+      point.slip = slipOf(cached, a, b, point.normal, largest_slip, farthest_slip);
       cached.m_localPointA = point.local_a;
       letGo(a, b, cached);
     }

@@ -8,8 +8,6 @@ namespace {
 
 /// Friction that used less than this share of what its cone allows (squared) has held.
 constexpr btScalar kHeld = btScalar(0.98);
-/// What is left of a slip after a step in which it did not hold.
-constexpr btScalar kKeptSliding = btScalar(0.9);
 /// The part of the speeds of turning, squared, that counts: small ones are across the way of sliding, half of
 /// them.
 constexpr btScalar kAcross = btScalar(0.5);
@@ -25,14 +23,24 @@ bool held(const btManifoldPoint& point) {
 
 }  // namespace
 
+btScalar mostFriction(const btPersistentManifold& manifold) {
+  btScalar friction = 0;
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    friction += point.m_combinedFriction * btMax(point.m_appliedImpulse, btScalar(0));
+  }
+  return friction;
+}
+
 btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, const btCollisionObject& b,
-                 const btVector3& normal, btScalar farthest) {
+                 const btVector3& normal, btScalar largest, btScalar farthest) {
   if (!(cached.m_combinedFriction * cached.m_appliedImpulse > 0)) return btVector3(0, 0, 0);
   const btVector3 apart =
       a.getWorldTransform() * cached.m_localPointA - b.getWorldTransform() * cached.m_localPointB;
   const btVector3 slip = apart - normal * normal.dot(apart);
-  if (slip.length2() > farthest * farthest) return btVector3(0, 0, 0);
-  return held(cached) ? slip : slip * kKeptSliding;
+  const btScalar length = slip.length();
+  if (length > farthest) return btVector3(0, 0, 0);
+  return length > largest ? slip * (largest / length) : slip;
 }
 
 btScalar slidingShare(const btCollisionObject& a, const btCollisionObject& b, const ContactPatch& patch,

@@ -9,12 +9,16 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// How far A has slipped on B although friction held them at this point, along the surface [m]. The cached
-/// point carries it from step to step, as the distance of its two places: Bullet's friction knows no more
-/// than speeds, and what ten iterations leave of them adds up to bodies that creep. Where friction slides,
-/// the slip is forgotten step by step; at once, the body would jerk. 0 beyond `farthest` [m].
+/// What the friction of a patch could bear in the last step, in one direction [N s].
+btScalar mostFriction(const btPersistentManifold& manifold);
+
+/// How far A has slipped on B at this point, along the surface [m]. The cached point carries it from step to
+/// step, as the distance of its two places: Bullet's friction knows no more than speeds, and what ten
+/// iterations leave of them adds up to bodies that creep. As a bristle that bends until it slides, it is no
+/// longer than `largest` [m]: a longer one would ask for more than friction bears, in all directions that the
+/// solver's pyramid has, whose corners bear more than the cone does. 0 beyond `farthest` [m].
 btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, const btCollisionObject& b,
-                 const btVector3& normal, btScalar farthest);
+                 const btVector3& normal, btScalar largest, btScalar farthest);
 
 /// The share of friction at the points of a patch, in (0, 1], that takes as much energy as friction all over
 /// it does. Points lie at the rim, where bodies that turn on each other slide faster than within, and would

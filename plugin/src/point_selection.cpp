@@ -10,6 +10,8 @@ namespace {
 /// spacing deeper.
 constexpr btScalar kKeepSpan = btScalar(1.3);
 constexpr btScalar kKeepDepth = btScalar(1e-3);
+/// Part of that depth that a point at the rim of the patch may lack.
+constexpr btScalar kOutwards = btScalar(0.5);
 /// Points that are less deep than the deepest by this fraction of the spacing are worth 1/e of it.
 constexpr btScalar kTouching = btScalar(0.1);
 /// Normals within 15 degrees of that of a group's deepest point belong to the group.
@@ -42,10 +44,13 @@ class Selection {
 
   void run() {
     patch_.count = 0;
+    // Flat faces are as deep everywhere; at their rim a point bears them best.
+    const btScalar rim = reach();
     const auto deepest = [&](std::size_t i) {
       const ContactPoint& point = found_[i];
       const int steps = point.id == kDeepestId ? 2 : isOld(point) ? 1 : 0;
-      return point.depth + btScalar(steps) * kKeepDepth * spacing_;
+      const btScalar outwards = rim > 0 ? kOutwards * point.on_b.distance(patch_.centre) / rim : btScalar(0);
+      return point.depth + (btScalar(steps) + outwards) * kKeepDepth * spacing_;
     };
     const auto farthest = [&](std::size_t i) { return worth_[i] * found_[i].on_b.distance(at(0)); };
     const auto largest = [&](std::size_t i) {
@@ -86,6 +91,12 @@ class Selection {
       if (point.on_b.distance2(at(i)) <= spacing_ * spacing_) return false;
     }
     return true;
+  }
+  /// Farthest from the centre of the patch.
+  btScalar reach() const {
+    btScalar most = 0;
+    for (const ContactPoint& point : found_) most = btMax(most, point.on_b.distance2(patch_.centre));
+    return btSqrt(most);
   }
   bool isOld(const ContactPoint& point) const {
     return std::find(old_ids_.begin(), old_ids_.end(), point.id) != old_ids_.end();
