@@ -47,7 +47,7 @@ $(grep -v '^  energy  ' "$work/check")
 ## Energy from nowhere
 
 All increments of the total energy, over the reference that each scene names. GImpact collides the surfaces that are drawn. Energies are
-taken in the middle of steps, for packings and GImpact alike (`Recording::energyGained()` says why): with places after the step every body that
+taken in the middle of steps, for packings and GImpact alike (\`Recording::energyGained()\` says why): with places after the step every body that
 falls would lose, and all that swings gain.
 
 | scene | packings, as the scene has them | 256 spheres | rigid | GImpact |
