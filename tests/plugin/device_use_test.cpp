@@ -72,7 +72,7 @@ TEST_F(UseOfADevice, ShapesOfAModelAreInItsMemoryOnce) {
                          std::make_shared<PackingShape>(upper))
         .allocations;
   };
-  allocations(cubeOf(8), cubeOf(8));  // what a process takes once
+  allocations(cubeOf(16), cubeOf(16));  // what a process takes once
   const auto model = cubeOf(16), same = cubeOf(16);
   const Shape shape = std::make_shared<PackingShape>(same);
   const std::size_t of_one_shape = callsOfAWorld(Backend::cuda, shape, shape).allocations;
