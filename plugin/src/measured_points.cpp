@@ -17,7 +17,7 @@ constexpr btScalar kOwnDirection = btScalar(0.5);
 constexpr btScalar kAligned = btScalar(0.996);
 constexpr btScalar kParallel = btScalar(0.99996);
 /// A face that leans more than this does not lie flat on the other: a corner is deeper [rad].
-constexpr btScalar kLeans = btScalar(5e-3);
+constexpr btScalar kLeans = btScalar(1e-3);
 /// What there is room for from the start: few patches have more measurements, and need memory again.
 constexpr std::size_t kUsualMeasured = 128;
 
