@@ -10,7 +10,8 @@ namespace {
 
 /// In units of the spacing: bodies that have moved less since a search have the same candidates for contacts,
 constexpr btScalar kMeasureAgain = btScalar(0.5);
-/// and less since they were measured, the same contacts. The error is of second order: a hundredth of this.
+/// and less since they were measured, the same contacts. The error is of second order: on a ball of five
+/// spacings a hundredth of this.
 constexpr btScalar kCarry = btScalar(0.1);
 /// In units of what a gap is wider than needed: where that is more, as it does not matter how wide it is.
 constexpr btScalar kCarryGap = btScalar(0.25);
