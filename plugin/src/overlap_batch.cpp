@@ -1,7 +1,5 @@
 #include "overlap_batch.hpp"
 
-#include <algorithm>
-#include <atomic>
 #include <mutex>
 
 #include "in_parallel.hpp"
@@ -58,7 +56,7 @@ bool measureOnSurfaces(const Bodies& bodies, PackingContact& contact) {
 
 void OverlapBatch::setOptions(const ContactOptions& options) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
-  finishLaunch();
+  finishLook();
   if (options.backend != options_.backend) context_.reset();
   options_ = options;
   live_.forEach([](PackingContact& contact) {
@@ -71,15 +69,16 @@ void OverlapBatch::add(PackingContact* contact) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
   contact->look = looks_.add(contact->a, contact->b);
   live_.add(contact);
-  // Any number of them may turn stale in one step, which should not allocate then.
-  stale_.reserve(live_.capacity());
+  // There may be something to do for any number of them in one step, which should not allocate then.
+  tasks_.reserve(live_.capacity());
+  jobs_.reserve(live_.capacity());
   queried_.reserve(live_.capacity());
   queries_.reserve(live_.capacity());
 }
 
 void OverlapBatch::remove(PackingContact* contact) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
-  finishLaunch();
+  finishLook();
   looks_.remove(contact->look);
   contact->look = &contact->own_look;
   live_.remove(contact);
@@ -88,13 +87,14 @@ void OverlapBatch::remove(PackingContact* contact) {
 bool OverlapBatch::hasDelivered(PackingContact& contact, const btCollisionObjectWrapper& a,
                                 const btCollisionObjectWrapper& b, btScalar separation) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
-  finishLaunch();
+  finishLook();
   LookBoard::follow(*contact.look, contact.a, contact.b);
   if (contact.separation != separation || contact.a.nesting < 0 || contact.b.nesting < 0) return false;
   const auto isHere = [&] { return contact.a.isWhere(a) && contact.b.isWhere(b); };
   if (!isHere()) {
     if (!looks_.isDue(*contact.look)) return false;
-    bringUpToDate(contact.time_step);
+    lookAtAll(contact.time_step);
+    finishLook();
     if (!isHere()) return false;
   }
   if (!contact.look->received || !contact.valid || !looks_.isFresh(*contact.look) ||
@@ -107,12 +107,15 @@ bool OverlapBatch::hasDelivered(PackingContact& contact, const btCollisionObject
 const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, const PackingSide& a,
                                                       const PackingSide& b, btScalar separation) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
-  finishLaunch();
+  finishLook();
   LookBoard::follow(*contact.look, contact.a, contact.b);
   if (contact.separation != separation) contact.valid = false;
   contact.separation = separation;
   const bool moved = !a.isWhere(contact.a) || !b.isWhere(contact.b);
-  if (moved && looks_.isDue(*contact.look)) bringUpToDate(contact.time_step);
+  if (moved && looks_.isDue(*contact.look)) {
+    lookAtAll(contact.time_step);
+    finishLook();
+  }
   if (!isUpToDate(contact, a, b)) updateAlone(contact, a, b);
   looks_.ask(*contact.look);
   return contact.memory.patches;
@@ -120,10 +123,10 @@ const std::vector<ContactPatch>& OverlapBatch::update(PackingContact& contact, c
 
 Overlap OverlapBatch::volumesOf(PackingContact& contact) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
-  finishLaunch();
+  finishLook();
   LookBoard::follow(*contact.look, contact.a, contact.b);
   if (contact.valid && !contact.measure->on_surfaces) return contact.overlap;
-  return context().overlap(makeQuery(Pass::volumes, contact), {Want::wrench, options_.estimator});
+  return context().overlap(makeQuery(Task::volumes, contact), {Want::wrench, options_.estimator});
 }
 
 QueryContext& OverlapBatch::context() {
@@ -133,32 +136,14 @@ QueryContext& OverlapBatch::context() {
 
 void OverlapBatch::launch(const std::vector<PackingContact*>& fresh, btScalar time_step) {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
-  finishLaunch();
+  finishLook();
   for (PackingContact* contact : fresh) looks_.ask(*contact->look);
   lookAtAll(time_step);
-  if (stale_.empty()) return;
-  try {
-    startStale();
-    launched_ = true;
-  } catch (const Error&) {
-    // No context: each pair hears of it when it is asked for.
-  }
 }
 
 void OverlapBatch::finish() {
   const std::lock_guard<std::mutex> lock(looks_.mutex());
-  finishLaunch();
-}
-
-void OverlapBatch::finishLaunch() {
-  if (!launched_) return;
-  launched_ = false;
-  try {
-    finishStale();
-  } catch (const Error&) {
-    // All of them are invalid still, so that each is queried again when it is asked for.
-  }
-  deliver();
+  finishLook();
 }
 
 BatchCount OverlapBatch::count() const {
@@ -186,19 +171,93 @@ bool OverlapBatch::isUpToDate(const PackingContact& contact, const PackingSide& 
          contact.a.isWhere(a) && contact.b.isWhere(b) && !(neededSeparation(contact) > contact.needed);
 }
 
-void OverlapBatch::bringUpToDate(btScalar time_step) {
-  lookAtAll(time_step);
-  try {
-    runStale();
-  } catch (const Error&) {
-    // Another pair may be at fault; it will hear of it when it is asked for.
+void OverlapBatch::lookAtAll(btScalar time_step) {
+  looks_.begin(time_step);
+  tasks_.assign(live_.size(), Task::nothing);
+  const auto look = [&](PackingContact& contact) {
+    if (!looks_.join(*contact.look) || looks_.staysCalm(*contact.look)) return;
+    tasks_[contact.list_index] = lookAt(contact, time_step);
+  };
+  live_.forEachInParallel(look, fetchLook<PackingContact>);
+  jobs_.clear();
+  for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    if (tasks_[i] != Task::nothing) jobs_.push_back({live_.at(i), tasks_[i]});
   }
-  deliver();
+  under_way_ = true;
+  try {
+    startQueries();
+  } catch (const Error&) {
+    // No context: each pair hears of it when it is asked for.
+    queries_.clear();
+  }
 }
 
-/// What the stale pairs of a look have got.
-void OverlapBatch::deliver() {
-  inParallel(stale_.size(), [&](std::size_t i) { handOut(*stale_[i]); });
+void OverlapBatch::finishLook() {
+  if (!under_way_) return;
+  under_way_ = false;
+  workWithoutQueries();  // while a device works
+  try {
+    finishQueries(true);
+  } catch (const Error&) {
+    // Pairs that have got nothing are invalid still, so that each is queried again when it is asked for:
+    // another one may be at fault.
+  }
+}
+
+/// Finds out what there is to do for a pair.
+OverlapBatch::Task OverlapBatch::lookAt(PackingContact& contact, btScalar time_step) const {
+  if (!isActive(contact.a, contact.b)) return Task::nothing;
+  PackingSide a = contact.a, b = contact.b;
+  if (!a.refresh() || !b.refresh()) return Task::nothing;
+  contact.look->wanted = false;
+  contact.time_step = time_step;
+  return place(contact, a, b);
+}
+
+OverlapBatch::Task OverlapBatch::place(PackingContact& contact, const PackingSide& a,
+                                       const PackingSide& b) const {
+  contact.look->reset();
+  contact.needed = neededSeparation(contact);
+  const Age age = ageOf(contact, a, b);
+  contact.a = a;
+  contact.b = b;
+  contact.valid = false;
+  if (age == Age::current) return Task::carry;
+  if (age == Age::moved) return Task::measure;
+  contact.measure.emplace(options_, *a.packing, *b.packing, contact.needed);
+  return contact.measure->on_surfaces ? Task::surfaces : Task::volumes;
+}
+
+void OverlapBatch::updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b) {
+  const Task task = place(contact, a, b);
+  jobs_.assign(1, {&contact, task});
+  if (!needsQuery(task)) {
+    workWithoutQuery(contact, task);
+    return;
+  }
+  startQueries();
+  finishQueries(false);
+}
+
+void OverlapBatch::workWithoutQueries() {
+  inParallel(jobs_.size(), [&](std::size_t i) {
+    const Job& job = jobs_[i];
+    if (needsQuery(job.task)) return;
+    workWithoutQuery(*job.contact, job.task);
+    handOut(*job.contact);
+  });
+}
+
+void OverlapBatch::workWithoutQuery(PackingContact& contact, Task task) const {
+  const Measure& measure = *contact.measure;
+  if (task == Task::carry) {
+    contact.memory.carryTo(contact.placed(), *contact.a.packing, measure.spacing);
+  } else {
+    contact.memory.turnTo(contact.placed());
+    measureOnSurfaces(Bodies(contact), contact);
+    contact.memory.measuredAt(contact.placed(), measure.separation);
+  }
+  contact.valid = true;
 }
 
 void OverlapBatch::handOut(PackingContact& contact) const {
@@ -213,130 +272,61 @@ void OverlapBatch::handOut(PackingContact& contact) const {
   looks_.calm(look, leeway, measure.separation - ContactMemory::reserve(measure.spacing));
 }
 
-void OverlapBatch::lookAtAll(btScalar time_step) {
-  looks_.begin(time_step);
-  std::atomic<std::size_t> count{0};
-  stale_.resize(live_.size());
-  const auto look = [&](PackingContact& contact) {
-    if (!looks_.join(*contact.look) || looks_.staysCalm(*contact.look)) return;
-    if (!lookAt(contact, time_step)) stale_[count++] = &contact;
-  };
-  live_.forEachInParallel(look, fetchLook<PackingContact>);
-  stale_.resize(count);
-  // In their own order, whichever thread came first.
-  std::sort(stale_.begin(), stale_.end(), [](const PackingContact* one, const PackingContact* other) {
-    return one->list_index < other->list_index;
+void OverlapBatch::startQueries() {
+  makeQueries(Task::surfaces);
+  countJobs();
+  if (!queries_.empty()) context().start(queries_.data(), queries_.size(), optionsOf(Task::surfaces));
+}
+
+void OverlapBatch::finishQueries(bool hand_out) {
+  if (!queries_.empty()) {
+    context().wait(result_);
+    takeResults(Task::surfaces, hand_out);
+  }
+  for (const Task task : {Task::touch, Task::deep, Task::volumes}) {
+    makeQueries(task);
+    if (queries_.empty()) continue;
+    context().run(queries_.data(), queries_.size(), optionsOf(task), result_);
+    takeResults(task, hand_out);
+  }
+}
+
+void OverlapBatch::countJobs() {
+  std::size_t searching = 0;
+  for (const Job& job : jobs_) {
+    if (needsQuery(job.task)) ++searching;
+    if (job.task == Task::measure) ++count_.measured;
+  }
+  count_.launches += searching > 0 ? 1 : 0;
+  count_.pairs += searching;
+}
+
+void OverlapBatch::makeQueries(Task task) {
+  queried_.clear();
+  for (Job& job : jobs_) {
+    if (job.task == task) queried_.push_back(&job);
+  }
+  queries_.resize(queried_.size());
+  inParallel(queried_.size(), [&](std::size_t i) { queries_[i] = makeQuery(task, *queried_[i]->contact); });
+}
+
+void OverlapBatch::takeResults(Task task, bool hand_out) {
+  // Each pair has its own result, so that their order does not matter.
+  inParallel(queried_.size(), [&](std::size_t i) {
+    Job& job = *queried_[i];
+    job.task = takeResult(task, i, *job.contact);
+    job.contact->valid = job.task == Task::nothing;
+    if (job.contact->valid && hand_out) handOut(*job.contact);
   });
 }
 
-/// Finds out what there is to do for a pair, and does it if it is only to take its contacts along. False if
-/// there is more to do.
-bool OverlapBatch::lookAt(PackingContact& contact, btScalar time_step) const {
-  if (!isActive(contact.a, contact.b)) return true;
-  PackingSide a = contact.a, b = contact.b;
-  if (!a.refresh() || !b.refresh()) return true;
-  contact.look->wanted = false;
-  contact.time_step = time_step;
-  place(contact, a, b);
-  if (contact.age != Age::current) return false;
-  handOut(contact);
-  return true;
-}
-
-void OverlapBatch::place(PackingContact& contact, const PackingSide& a, const PackingSide& b) const {
-  contact.look->reset();
-  contact.needed = neededSeparation(contact);
-  contact.age = ageOf(contact, a, b);
-  contact.a = a;
-  contact.b = b;
-  if (contact.age == Age::current) {
-    contact.memory.carryTo(contact.placed(), *a.packing, contact.measure->spacing);
-    return;
-  }
-  contact.valid = false;
-  if (contact.age == Age::stale) contact.measure.emplace(options_, *a.packing, *b.packing, contact.needed);
-}
-
-void OverlapBatch::updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b) {
-  place(contact, a, b);
-  if (contact.age == Age::current) return;
-  stale_.assign(1, &contact);
-  runStale();
-}
-
-void OverlapBatch::countStale() {
-  const auto searching = static_cast<std::size_t>(std::count_if(
-      stale_.begin(), stale_.end(), [](const PackingContact* c) { return c->age == Age::stale; }));
-  count_.launches += searching > 0 ? 1 : 0;
-  count_.pairs += searching;
-  count_.measured += stale_.size() - searching;
-}
-
-void OverlapBatch::runStale() {
-  startStale();
-  finishStale();
-}
-
-void OverlapBatch::startStale() {
-  countStale();
-  makeQueries(Pass::surfaces);
-  if (!queries_.empty()) context().start(queries_.data(), queries_.size(), optionsOf(Pass::surfaces));
-}
-
-void OverlapBatch::finishStale() {
-  measureAgain();  // while a device works
-  if (!queries_.empty()) {
-    context().wait(result_);
-    takeResults(Pass::surfaces);
-  }
-  run(Pass::touch);
-  run(Pass::deep);
-  run(Pass::volumes);
-}
-
-void OverlapBatch::run(Pass pass) {
-  makeQueries(pass);
-  if (queries_.empty()) return;
-  context().run(queries_.data(), queries_.size(), optionsOf(pass), result_);
-  takeResults(pass);
-}
-
-void OverlapBatch::makeQueries(Pass pass) {
-  queried_.clear();
-  for (PackingContact* contact : stale_) {
-    if (takesPart(pass, *contact)) queried_.push_back(contact);
-  }
-  queries_.resize(queried_.size());
-  inParallel(queried_.size(), [&](std::size_t i) { queries_[i] = makeQuery(pass, *queried_[i]); });
-}
-
-void OverlapBatch::takeResults(Pass pass) {
-  // Each pair has its own result, so that their order does not matter.
-  inParallel(queried_.size(), [&](std::size_t i) { takeResult(pass, i, *queried_[i]); });
-}
-
-bool OverlapBatch::takesPart(Pass pass, const PackingContact& contact) const {
-  if (contact.age != Age::stale) return false;
-  if (!contact.measure->on_surfaces) return pass == Pass::volumes;
-  switch (pass) {
-    case Pass::surfaces:
-      return true;
-    case Pass::touch:
-      return contact.near && !contact.touching;
-    case Pass::deep:
-      return contact.deep;
-    default:
-      return false;
-  }
-}
-
-QueryOptions OverlapBatch::optionsOf(Pass pass) const {
-  switch (pass) {
-    case Pass::surfaces:
+QueryOptions OverlapBatch::optionsOf(Task task) const {
+  switch (task) {
+    case Task::surfaces:
       return {Want::contacts, Estimator::raw};
-    case Pass::touch:
+    case Task::touch:
       return {Want::touch, Estimator::raw};
-    case Pass::deep:
+    case Task::deep:
       return {Want::contacts, Estimator::volume_true};
     default:
       return {Want::contacts, options_.estimator};
@@ -347,7 +337,7 @@ btScalar OverlapBatch::neededSeparation(const PackingContact& contact) const {
   return btMax(contact.separation, sweepOf(*contact.a.object, *contact.b.object, contact.time_step));
 }
 
-PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) const {
+PairQuery OverlapBatch::makeQuery(Task task, const PackingContact& contact) const {
   const Measure& measure = *contact.measure;
   PairQuery query;
   query.a = &contact.a.packing->model();
@@ -357,19 +347,20 @@ PairQuery OverlapBatch::makeQuery(Pass pass, const PackingContact& contact) cons
   query.margin = contact.a.margin + contact.b.margin;
   query.prefix_a = static_cast<std::uint32_t>(measure.prefix_a->count);
   query.prefix_b = static_cast<std::uint32_t>(measure.prefix_b->count);
-  if (pass == Pass::surfaces) query.margin += measure.slack();
-  if (pass == Pass::deep) {
+  if (task == Task::surfaces) query.margin += measure.slack();
+  if (task == Task::deep) {
     query.margin +=
         gapsOf(*contact.a.packing, *measure.prefix_a) + gapsOf(*contact.b.packing, *measure.prefix_b);
   }
   return query;
 }
 
-void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& contact) const {
+/// Returns what is left to do for the pair.
+OverlapBatch::Task OverlapBatch::takeResult(Task task, std::size_t index, PackingContact& contact) const {
   static thread_local std::vector<SphereContact> contacts;
-  if (pass == Pass::touch) {
+  if (task == Task::touch) {
     contact.deep = result_.overlaps[index].pair_count > 0;
-    return;
+    return contact.deep ? Task::deep : Task::nothing;
   }
   // Every lens belongs to a sphere of A and to one of B: both lists together have all of it twice.
   contacts.clear();
@@ -388,15 +379,16 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
   const Measure& measure = *contact.measure;
   const btMatrix3x3& reference = contact.a.transform.getBasis();
   ContactMemory& memory = contact.memory;
-  if (pass == Pass::surfaces) {
+  Task left = Task::nothing;
+  if (task == Task::surfaces) {
     const Bodies bodies(contact);
     findCandidates(contacts, PackingGauge(bodies.a, bodies.b, contacts, count_a), measure.spacing, reference,
                    memory.patches, memory.candidates);
     keepCandidates(contacts, count_a, contact);
-    contact.near = !contacts.empty();
-    contact.touching = measureOnSurfaces(bodies, contact);
+    const bool touching = measureOnSurfaces(bodies, contact);
     contact.deep = false;
-  } else if (pass == Pass::deep) {
+    if (!contacts.empty() && !touching) left = Task::touch;
+  } else if (task == Task::deep) {
     gradientPatch(contacts, measure.spacing, reference, memory.patches);
   } else {
     volumePatches(contacts, measure.spacing, reference, memory.patches);
@@ -404,19 +396,7 @@ void OverlapBatch::takeResult(Pass pass, std::size_t index, PackingContact& cont
   }
   memory.searchedAt(contact.placed());
   memory.measuredAt(contact.placed(), measure.separation);
-  contact.valid = true;
-}
-
-/// Those that moved too little for a query.
-void OverlapBatch::measureAgain() {
-  inParallel(stale_.size(), [&](std::size_t i) {
-    PackingContact& contact = *stale_[i];
-    if (contact.age == Age::stale) return;
-    contact.memory.turnTo(contact.placed());
-    contact.touching = measureOnSurfaces(Bodies(contact), contact);
-    contact.memory.measuredAt(contact.placed(), contact.measure->separation);
-    contact.valid = true;
-  });
+  return left;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,6 +1,7 @@
 // All pairs of packings of one dispatcher, queried together.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -27,12 +28,11 @@ struct PackingContact : ListedPair {
   // What is read when Bullet asks for the pair comes first: pairs are many and far from each other in memory.
   ContactReceiver& receiver;
   Look own_look;
-  Look* look = &own_look;                              ///< the board's once it has been added
-  bool valid = false;                                  ///< what is known of the contact belongs together
-  ContactMemory::Age age = ContactMemory::Age::stale;  ///< what the present launch has to do
-  btScalar separation = 0;                             ///< asked for; see Measure
-  btScalar time_step = 0;                              ///< within which contacts may close [s]
-  btScalar needed = 0;  ///< patches are, or will be, right for gaps up to this [m]
+  Look* look = &own_look;   ///< the board's once it has been added
+  bool valid = false;       ///< what is known of the contact belongs together
+  btScalar separation = 0;  ///< asked for; see Measure
+  btScalar time_step = 0;   ///< within which contacts may close [s]
+  btScalar needed = 0;      ///< patches are, or will be, right for gaps up to this [m]
   PackingSide a;
   PackingSide b;
   std::optional<Measure> measure;  ///< of the last query
@@ -42,9 +42,7 @@ struct PackingContact : ListedPair {
   std::vector<SphereContact> contacts;  ///< those that are candidates
   std::size_t count_a = 0;              ///< of A's spheres, which come first
   Overlap overlap;                      ///< only where depth is not measured on the surfaces
-  bool near = false;                    ///< enlarged spheres overlap
-  bool touching = false;                ///< the surfaces are near each other
-  bool deep = false;                    ///< they are not, and yet the solids overlap
+  bool deep = false;                    ///< the surfaces are not near each other, and yet the solids overlap
 };
 
 /// What a batch has done since it was made.
@@ -56,7 +54,7 @@ struct BatchCount {
 
 /// Looks at all pairs at once: see LookBoard. A look makes one query for all pairs that need one, so that a
 /// step costs one launch, and one more for each pair that is new. A launch is up to three queries, one after
-/// the other: see Pass. Pairs that have moved less than what a query leaves room for are measured again where
+/// the other: see Task. Pairs that have moved less than what a query leaves room for are measured again where
 /// it found contact, and those that have hardly moved at all take their contacts along. Safe to use from
 /// several threads at once.
 class OverlapBatch {
@@ -97,44 +95,52 @@ class OverlapBatch {
   using Age = ContactMemory::Age;
   Age ageOf(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
   bool isUpToDate(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
-  void bringUpToDate(btScalar time_step);
-  void lookAtAll(btScalar time_step);
-  void deliver();
-  void handOut(PackingContact& contact) const;
-  bool lookAt(PackingContact& contact, btScalar time_step) const;
-  void place(PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
-  void updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b);
-  void countStale();
-  void runStale();
-  void startStale();
-  void finishStale();
-  void finishLaunch();
-  enum class Pass {
-    surfaces,  ///< spheres enlarged so that they find all contact of the surfaces that they stand for
-    touch,     ///< as they are, where the surfaces showed no overlap: it may be too deep for them
-    deep,      ///< enlarged so that they fill their solids, where it is
-    volumes,   ///< where the volume of overlap is all that is wanted
+  /// What is left to do for a pair.
+  enum class Task : std::uint8_t {
+    nothing,
+    carry,     ///< its contacts go along
+    measure,   ///< its candidates for contacts are measured again
+    surfaces,  ///< a query, with spheres enlarged so that they find all contact of the surfaces they stand
+               ///< for
+    touch,     ///< one with spheres as they are, where the surfaces showed no overlap: it may be too deep
+    deep,      ///< one with spheres enlarged so that they fill their solids, where it is
+    volumes,   ///< one where the volume of overlap is all that is wanted
   };
-  void run(Pass pass);
-  void makeQueries(Pass pass);
-  void takeResults(Pass pass);
-  bool takesPart(Pass pass, const PackingContact& contact) const;
-  QueryOptions optionsOf(Pass pass) const;
+  static bool needsQuery(Task task) { return task >= Task::surfaces; }
+  struct Job {
+    PackingContact* contact;
+    Task task;
+  };
+  /// Begins a look; finishLook() ends it, after which errors have been left to update().
+  void lookAtAll(btScalar time_step);
+  void finishLook();
+  Task lookAt(PackingContact& contact, btScalar time_step) const;
+  Task place(PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
+  void updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b);
+  void workWithoutQueries();
+  void workWithoutQuery(PackingContact& contact, Task task) const;
+  void handOut(PackingContact& contact) const;
+  void startQueries();
+  void finishQueries(bool hand_out);
+  void countJobs();
+  void makeQueries(Task task);
+  void takeResults(Task task, bool hand_out);
+  QueryOptions optionsOf(Task task) const;
   btScalar neededSeparation(const PackingContact& contact) const;
-  PairQuery makeQuery(Pass pass, const PackingContact& contact) const;
-  void takeResult(Pass pass, std::size_t index, PackingContact& contact) const;
-  void measureAgain();
+  PairQuery makeQuery(Task task, const PackingContact& contact) const;
+  Task takeResult(Task task, std::size_t index, PackingContact& contact) const;
 
   BatchCount count_;
   ContactOptions options_;
   std::unique_ptr<QueryContext> context_;  ///< made by the first query
   LookBoard looks_;
   PairList<PackingContact> live_;
-  std::vector<PackingContact*> stale_;
-  std::vector<PackingContact*> queried_;
+  std::vector<Task> tasks_;  ///< by places in live_
+  std::vector<Job> jobs_;    ///< those that are left
+  std::vector<Job*> queried_;
   std::vector<PairQuery> queries_;
   QueryResult result_;
-  bool launched_ = false;  ///< the query for the surfaces of queried_ is under way
+  bool under_way_ = false;  ///< a look has begun
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

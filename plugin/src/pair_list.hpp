@@ -34,6 +34,9 @@ class PairList {
   /// What it has room for; grows by multiples.
   std::size_t capacity() const { return pairs_.capacity(); }
 
+  /// Null where one has gone.
+  Pair* at(std::size_t index) const { return pairs_[index]; }
+
   template <typename Visit>
   void forEach(const Visit& visit) const {
     for (Pair* pair : pairs_) {
