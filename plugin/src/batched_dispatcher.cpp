@@ -50,23 +50,34 @@ void collide(btCollisionDispatcher& dispatcher, Registration& registration, btBr
   const std::size_t count = places.size();
   const auto pairAt = [&](std::size_t i) -> btBroadphasePair& { return pairs[static_cast<int>(i)]; };
   // A device works on while Bullet collides bodies that are no packings.
+  bool any_others = false;
   for (std::size_t i = 0; i < count; ++i) {
-    if (places[i].look == nullptr) dispatcher.getNearCallback()(pairAt(i), dispatcher, info);
+    if (places[i].look != nullptr) continue;
+    any_others = true;
+    dispatcher.getNearCallback()(pairAt(i), dispatcher, info);
   }
   registration.batch().finish();
-  for (LookBoard* board : {&registration.batch().looks(), &registration.surfaces().looks()}) board->check();
-  done.resize(count);
-  inParallel(count, [&](std::size_t i) {
-    done[i] = places[i].look != nullptr && places[i].board->isDone(*places[i].look, info.m_timeStep);
-  });
-  for (std::size_t i = 0; i < count; ++i) {
-    if (places[i].look == nullptr) continue;
-    btBroadphasePair& pair = pairAt(i);
-    if (!done[i]) {
-      dispatcher.getNearCallback()(pair, dispatcher, info);
-    } else if (dispatcher.needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1))) {
+  if (any_others) {  // whose callbacks may have moved bodies
+    for (LookBoard* board : {&registration.batch().looks(), &registration.surfaces().looks()}) board->check();
+  }
+  const auto ask = [&](std::size_t i) {
+    const btBroadphasePair& pair = pairAt(i);
+    if (dispatcher.needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1)))
       places[i].board->ask(*places[i].look);
-    }
+  };
+  // A filter of the user's is asked by one thread, and in turn with what Bullet does for the pairs.
+  const bool own_filter = typeid(dispatcher) != typeid(BatchedDispatcher<>);
+  done.resize(count);
+  inParallel(
+      count,
+      [&](std::size_t i) {
+        done[i] = places[i].look != nullptr && places[i].board->isDone(*places[i].look, info.m_timeStep);
+        if (done[i] && !own_filter) ask(i);
+      },
+      [&](std::size_t i) { fetch(places[i].look); });
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!done[i] && places[i].look != nullptr) dispatcher.getNearCallback()(pairAt(i), dispatcher, info);
+    if (done[i] && own_filter) ask(i);
   }
 }
 
@@ -81,11 +92,14 @@ bool collideBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pai
   if (!registration) return false;
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   places.resize(static_cast<std::size_t>(all.size()));
-  inParallel(places.size(), [&](std::size_t i) { places[i] = placeOf(all[static_cast<int>(i)]); });
+  const auto pairAt = [&](std::size_t i) -> btBroadphasePair& { return all[static_cast<int>(i)]; };
+  inParallel(
+      places.size(), [&](std::size_t i) { places[i] = placeOf(pairAt(i)); },
+      [&](std::size_t i) { __builtin_prefetch(pairAt(i).m_algorithm); });
   fresh.clear();
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i].look != nullptr) continue;
-    btBroadphasePair& pair = all[static_cast<int>(i)];
+    btBroadphasePair& pair = pairAt(i);
     if (PackingContact* contact = announce(dispatcher, pair, info.m_timeStep)) fresh.push_back(contact);
     places[i] = placeOf(pair);
   }

@@ -7,6 +7,7 @@
 
 #include "candidates.hpp"
 #include "contact_patch.hpp"
+#include "in_parallel.hpp"
 #include "innersphere/packing_shape.hpp"
 
 namespace innersphere {
@@ -46,6 +47,11 @@ class ContactMemory {
   void turnTo(const Placed& now);
   /// patches have been measured, with all contacts up to `found` [m] apart.
   void measuredAt(const Placed& now, btScalar found);
+  /// Asks for the memory of what is moved along.
+  void fetchPatches() const {
+    fetch(measured_.data(), measured_.size());
+    fetch(patches.data(), patches.size());
+  }
   /// Moves the patches along: each contact has a point that moves with A and one that moves with B, and rolls
   /// on where surfaces are curved. A's is the packing that positions are relative to the origin of.
   void carryTo(const Placed& now, const PackingShape& a, btScalar spacing);

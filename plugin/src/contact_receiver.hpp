@@ -17,6 +17,8 @@ class ContactReceiver {
   /// Called by any thread, for bodies as they are now. False if that has to wait until Bullet asks.
   virtual bool receive(const std::vector<ContactPatch>& patches, const ContactOptions& options,
                        btScalar time_step) = 0;
+  /// Asks for the memory that receive() writes to.
+  virtual void fetchManifolds() const = 0;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -14,6 +14,7 @@ SeenBody::SeenBody(const btCollisionObject& object)
 }
 
 void SeenBody::see() {
+  still_ = true;
   changed_ = shape_ != object_->getCollisionShape();
   if (changed_) {
     shape_ = object_->getCollisionShape();

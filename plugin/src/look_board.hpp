@@ -25,7 +25,7 @@ class SeenBody {
 
   void see();
   bool isAsSeen(const btCollisionObjectWrapper& wrapper) const;
-  /// Notes whether it is still as it was seen.
+  /// Notes whether it is still as it was seen; else it is taken to be.
   void check();
   bool isStill() const { return still_; }
 
@@ -77,10 +77,14 @@ struct Look {
   void reset() { received = calm = false; }
 };
 
-/// Of a pair that is on the board, before it is looked at.
+/// What a look at a pair reads, in two goes: most pairs are calm, and then that is all.
 template <typename Pair>
 void fetchLook(const Pair& pair) {
-  __builtin_prefetch(pair.look);
+  fetch(pair.look);
+}
+template <typename Pair>
+void fetchUnlessCalm(const Pair& pair) {
+  if (!pair.look->calm) fetch(&pair);
 }
 
 /// Bullet asks for one pair at a time and does not tell when a step begins. But where a pair has moved since
@@ -102,7 +106,8 @@ class LookBoard {
   bool isDone(Look& look, const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
               btScalar time_step, const void* algorithm);
 
-  /// The same for many pairs, by all threads and without the mutex, after check() and before anything moves.
+  /// The same for many pairs, by all threads and without the mutex, if nothing has moved since the look, or
+  /// since check().
   void check();
   bool isDone(const Look& look, btScalar time_step) const;
 

@@ -4,6 +4,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
+#include "in_parallel.hpp"
 #include "patch_friction.hpp"
 
 namespace innersphere {
@@ -208,6 +209,10 @@ void ManifoldSet::report(const btCollisionObject& a, const btCollisionObject& b,
 
 void ManifoldSet::append(btManifoldArray& manifolds) const {
   for (const Entry& entry : entries_) manifolds.push_back(entry.manifold);
+}
+
+void ManifoldSet::fetch() const {
+  for (const Entry& entry : entries_) innersphere::fetch(entry.manifold);
 }
 
 void ManifoldSet::assign(const btTransform& a, const std::vector<ContactPatch>& patches) {

@@ -33,6 +33,8 @@ class ManifoldSet {
                      const std::vector<ContactPatch>& patches, btManifoldResult* result);
 
   void append(btManifoldArray& manifolds) const;
+  /// Asks for their memory.
+  void fetch() const;
   std::size_t size() const { return entries_.size(); }
 
  private:

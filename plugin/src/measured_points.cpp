@@ -4,6 +4,7 @@
 
 #include "contact_normal.hpp"
 #include "deepest_point.hpp"
+#include "in_parallel.hpp"
 #include "vec.hpp"
 
 namespace innersphere {
@@ -18,6 +19,8 @@ constexpr btScalar kAligned = btScalar(0.996);
 constexpr btScalar kParallel = btScalar(0.99996);
 /// A face that leans more than this does not lie flat on the other: a corner is deeper [rad].
 constexpr btScalar kLeans = btScalar(1e-3);
+/// Places of a patch from which on several threads measure them.
+constexpr std::size_t kMany = 8;
 /// What there is room for from the start: few patches have more measurements, and need memory again.
 constexpr std::size_t kUsualMeasured = 128;
 
@@ -94,6 +97,11 @@ btScalar shareOfA(const Gap& gap, const btVector3& normal) {
 void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, btScalar separation,
                    std::vector<MeasuredPoint>& found) {
   static thread_local std::vector<Measured> measured, sideways;
+  struct Tried {
+    Measured measured;
+    bool found;
+  };
+  static thread_local std::vector<Tried> tried;
   static thread_local std::vector<std::size_t> places;  // of the measured, among the candidates
   static thread_local std::vector<Gauge::Corner> corners, peaks;
   const Candidates::OfPatch& patch = candidates.patches[p];
@@ -104,11 +112,25 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   places.clear();
   places.reserve(kUsualMeasured);
   const bool again = patch.end <= candidates.lines.size();
-  for (std::size_t k = p == 0 ? 0 : candidates.patches[p - 1].end; k < patch.end; ++k) {
+  const std::size_t begin = p == 0 ? 0 : candidates.patches[p - 1].end;
+  tried.resize(patch.end - begin);
+  std::vector<Tried>& all = tried;  // of this thread, also for the others
+  const auto tryOne = [&](std::size_t i) {
     Measured m;
-    m.index = candidates.indices[k];
+    m.index = candidates.indices[begin + i];
     m.id = gauge.id(m.index);
-    const bool found = again ? measureAgain(gauge, candidates.lines[k], m) : measure(gauge, patch.normal, m);
+    const bool found =
+        again ? measureAgain(gauge, candidates.lines[begin + i], m) : measure(gauge, patch.normal, m);
+    all[i] = {m, found};
+  };
+  // Bodies that are linked have many; other pairs are done long before them.
+  if (all.size() >= kMany && !gauge.exactB()) {
+    inParallel(all.size(), tryOne);
+  } else {
+    for (std::size_t i = 0; i < all.size(); ++i) tryOne(i);
+  }
+  for (std::size_t k = begin; k < patch.end; ++k) {
+    const auto& [m, found] = all[k - begin];
     if (!again) candidates.lines.emplace_back();
     if (!found) {
       if (!gauge.exactB() || m.gap.triangle_a == Gap::kNone) continue;

@@ -1,5 +1,6 @@
 #include "overlap_batch.hpp"
 
+#include <atomic>
 #include <mutex>
 
 #include "in_parallel.hpp"
@@ -71,7 +72,8 @@ void OverlapBatch::add(PackingContact* contact) {
   live_.add(contact);
   // There may be something to do for any number of them in one step, which should not allocate then.
   tasks_.reserve(live_.capacity());
-  jobs_.reserve(live_.capacity());
+  work_.reserve(live_.capacity());
+  searches_.reserve(live_.capacity());
   queried_.reserve(live_.capacity());
   queries_.reserve(live_.capacity());
 }
@@ -178,29 +180,45 @@ void OverlapBatch::lookAtAll(btScalar time_step) {
     if (!looks_.join(*contact.look) || looks_.staysCalm(*contact.look)) return;
     tasks_[contact.list_index] = lookAt(contact, time_step);
   };
-  live_.forEachInParallel(look, fetchLook<PackingContact>);
-  jobs_.clear();
+  live_.forEachInParallel(look, fetchLook<PackingContact>, fetchUnlessCalm<PackingContact>);
+  work_.clear();
+  searches_.clear();
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
-    if (tasks_[i] != Task::nothing) jobs_.push_back({live_.at(i), tasks_[i]});
+    if (tasks_[i] != Task::nothing)
+      (needsQuery(tasks_[i]) ? searches_ : work_).push_back({live_.at(i), tasks_[i]});
   }
   under_way_ = true;
-  try {
-    startQueries();
-  } catch (const Error&) {
-    // No context: each pair hears of it when it is asked for.
-    queries_.clear();
-  }
+  const auto search = [&](const std::atomic<bool>& working) {
+    try {
+      startQueries();
+      // A device goes on to its next step when it is asked whether it is done.
+      while (working && !queries_.empty()) {
+        if (context().ready()) takeStarted(true);
+      }
+    } catch (const Error&) {
+      // Each pair hears of it when it is asked for: what was to be searched is invalid still.
+      queries_.clear();
+    }
+  };
+  const auto work = [&](std::size_t i) {
+    workWithoutQuery(*work_[i].contact, work_[i].task);
+    handOut(*work_[i].contact);
+  };
+  const auto fetchContact = [&](std::size_t i) { fetch(work_[i].contact); };
+  const auto fetchPatches = [&](std::size_t i) {
+    work_[i].contact->memory.fetchPatches();
+    work_[i].contact->receiver.fetchManifolds();
+  };
+  inParallelBeside(search, work_.size(), work, fetchContact, fetchPatches);
 }
 
 void OverlapBatch::finishLook() {
   if (!under_way_) return;
   under_way_ = false;
-  workWithoutQueries();  // while a device works
   try {
     finishQueries(true);
   } catch (const Error&) {
-    // Pairs that have got nothing are invalid still, so that each is queried again when it is asked for:
-    // another one may be at fault.
+    // As before; another pair may be at fault.
   }
 }
 
@@ -230,22 +248,12 @@ OverlapBatch::Task OverlapBatch::place(PackingContact& contact, const PackingSid
 
 void OverlapBatch::updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b) {
   const Task task = place(contact, a, b);
-  jobs_.assign(1, {&contact, task});
-  if (!needsQuery(task)) {
-    workWithoutQuery(contact, task);
-    return;
-  }
+  work_.clear();
+  searches_.clear();
+  (needsQuery(task) ? searches_ : work_).push_back({&contact, task});
+  if (!needsQuery(task)) workWithoutQuery(contact, task);
   startQueries();
   finishQueries(false);
-}
-
-void OverlapBatch::workWithoutQueries() {
-  inParallel(jobs_.size(), [&](std::size_t i) {
-    const Job& job = jobs_[i];
-    if (needsQuery(job.task)) return;
-    workWithoutQuery(*job.contact, job.task);
-    handOut(*job.contact);
-  });
 }
 
 void OverlapBatch::workWithoutQuery(PackingContact& contact, Task task) const {
@@ -279,10 +287,7 @@ void OverlapBatch::startQueries() {
 }
 
 void OverlapBatch::finishQueries(bool hand_out) {
-  if (!queries_.empty()) {
-    context().wait(result_);
-    takeResults(Task::surfaces, hand_out);
-  }
+  if (!queries_.empty()) takeStarted(hand_out);
   for (const Task task : {Task::touch, Task::deep, Task::volumes}) {
     makeQueries(task);
     if (queries_.empty()) continue;
@@ -291,19 +296,23 @@ void OverlapBatch::finishQueries(bool hand_out) {
   }
 }
 
+void OverlapBatch::takeStarted(bool hand_out) {
+  context().wait(result_);
+  takeResults(Task::surfaces, hand_out);
+  queries_.clear();
+}
+
 void OverlapBatch::countJobs() {
-  std::size_t searching = 0;
-  for (const Job& job : jobs_) {
-    if (needsQuery(job.task)) ++searching;
+  for (const Job& job : work_) {
     if (job.task == Task::measure) ++count_.measured;
   }
-  count_.launches += searching > 0 ? 1 : 0;
-  count_.pairs += searching;
+  count_.launches += searches_.empty() ? 0 : 1;
+  count_.pairs += searches_.size();
 }
 
 void OverlapBatch::makeQueries(Task task) {
   queried_.clear();
-  for (Job& job : jobs_) {
+  for (Job& job : searches_) {
     if (job.task == task) queried_.push_back(&job);
   }
   queries_.resize(queried_.size());

@@ -117,10 +117,10 @@ class OverlapBatch {
   Task lookAt(PackingContact& contact, btScalar time_step) const;
   Task place(PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
   void updateAlone(PackingContact& contact, const PackingSide& a, const PackingSide& b);
-  void workWithoutQueries();
   void workWithoutQuery(PackingContact& contact, Task task) const;
   void handOut(PackingContact& contact) const;
   void startQueries();
+  void takeStarted(bool hand_out);
   void finishQueries(bool hand_out);
   void countJobs();
   void makeQueries(Task task);
@@ -135,8 +135,9 @@ class OverlapBatch {
   std::unique_ptr<QueryContext> context_;  ///< made by the first query
   LookBoard looks_;
   PairList<PackingContact> live_;
-  std::vector<Task> tasks_;  ///< by places in live_
-  std::vector<Job> jobs_;    ///< those that are left
+  std::vector<Task> tasks_;    ///< by places in live_
+  std::vector<Job> work_;      ///< those of them without a query
+  std::vector<Job> searches_;  ///< and with one
   std::vector<Job*> queried_;
   std::vector<PairQuery> queries_;
   QueryResult result_;

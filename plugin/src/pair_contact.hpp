@@ -55,6 +55,7 @@ class PairContact : public ContactReceiver, public ListedPair {
                    const btManifoldResult& result, btScalar time_step);
   bool receive(const std::vector<ContactPatch>& patches, const ContactOptions& options,
                btScalar time_step) override;
+  void fetchManifolds() const override { manifolds_.fetch(); }
   static bool isPlain(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
                       const btManifoldResult& result);
   const std::vector<ContactPatch>& update(const btCollisionObjectWrapper& a,

@@ -43,21 +43,17 @@ class PairList {
       if (pair != nullptr) visit(*pair);
     }
   }
-  /// With all threads. `fetch` is called a little before, for what a visit reads first besides the pair
-  /// itself: pairs are far from each other in memory.
-  template <typename Visit, typename Fetch>
-  void forEachInParallel(const Visit& visit, const Fetch& fetch) const {
-    constexpr std::size_t kAhead = 4;
-    inParallel(pairs_.size(), [&](std::size_t i) {
-      if (i + 2 * kAhead < pairs_.size()) __builtin_prefetch(pairs_[i + 2 * kAhead]);
-      const Pair* next = i + kAhead < pairs_.size() ? pairs_[i + kAhead] : nullptr;
-      if (next != nullptr) fetch(*next);
-      if (pairs_[i] != nullptr) visit(*pairs_[i]);
-    });
-  }
-  template <typename Visit>
-  void forEachInParallel(const Visit& visit) const {
-    forEachInParallel(visit, [](const Pair&) {});
+  /// With all threads. `fetches` are called before for what a visit reads besides the beginning of the pair,
+  /// as in inParallel().
+  template <typename Visit, typename... Fetches>
+  void forEachInParallel(const Visit& visit, const Fetches&... fetches) const {
+    const auto of = [&](const auto& call) {
+      return [&](std::size_t i) {
+        if (pairs_[i] != nullptr) call(*pairs_[i]);
+      };
+    };
+    inParallel(
+        pairs_.size(), of(visit), [&](std::size_t i) { __builtin_prefetch(pairs_[i]); }, of(fetches)...);
   }
 
  private:

@@ -91,7 +91,7 @@ void SurfaceBatch::lookAtAll(btScalar time_step) {
     }
     lookAt(pair, time_step);
   };
-  live_.forEachInParallel(look, fetchLook<SurfacePair>);
+  live_.forEachInParallel(look, fetchLook<SurfacePair>, fetchUnlessCalm<SurfacePair>);
 }
 
 void SurfaceBatch::lookAt(SurfacePair& pair, btScalar time_step) const {

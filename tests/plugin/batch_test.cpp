@@ -160,6 +160,32 @@ TEST_P(Batch, FiltersStillFilter) {
   EXPECT_EQ(countOf(world).pairs, 0u);
 }
 
+TEST_P(Batch, FiltersMayChangeTheirMind) {
+  const auto pathOf = [](DispatcherKind kind) {
+    TestWorld world({}, kind);
+    world.addFloor();
+    btRigidBody& lower = world.add(cube(), 1, btVector3(0, 0, btScalar(0.5)));
+    btRigidBody& upper = world.add(cube(), 1, btVector3(btScalar(0.4), 0, btScalar(1.5)));
+    std::vector<btScalar> heights;
+    const auto runAnd = [&](bool ignore) {
+      upper.setIgnoreCollisionCheck(&lower, ignore);
+      lower.setIgnoreCollisionCheck(&upper, ignore);
+      // Bullet leaves contacts to whoever changes a filter.
+      world.world.getPairCache()->cleanProxyFromPairs(upper.getBroadphaseHandle(), &world.dispatcher);
+      for (int i = 0; i < 30; ++i) {
+        world.run(1.0 / 60);
+        heights.push_back(upper.getWorldTransform().getOrigin().z());
+      }
+    };
+    for (const bool ignore : {false, true}) runAnd(ignore);
+    return heights;
+  };
+  const std::vector<btScalar> expected = pathOf(DispatcherKind::plain), found = pathOf(GetParam());
+  EXPECT_NEAR(expected[29], 1.5, 0.01);
+  EXPECT_LT(expected[59], 1);  // through the lower one
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-3) << i;
+}
+
 TEST_P(Batch, MovesBodiesAsThePlainDispatcherDoes) {
   const auto places = [](DispatcherKind kind) {
     TestWorld world({}, kind);

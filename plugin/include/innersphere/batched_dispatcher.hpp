@@ -24,8 +24,9 @@ bool collideBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pai
 /// use it where many bodies meet in a step, above all with CUDA. Pairs of children of compound shapes that
 /// are new still do. Pairs that there is nothing left to do for, most of those of a pile, cost it next to
 /// nothing; not so with another Base, or a near-callback of the user's. Near-callbacks and filters work as
-/// before: a pair that they turn down is looked at once, when it is new. Register PackingCollisionAlgorithm
-/// with it as with any other.
+/// before: a pair that they turn down is looked at once, when it is new. Filters of a class derived from this
+/// one (needsCollision()) are asked by one thread, those of bodies (checkCollideWithOverride()) by several.
+/// Register PackingCollisionAlgorithm with it as with any other.
 template <class Base = btCollisionDispatcher>
 class BatchedDispatcher : public Base {
  public:

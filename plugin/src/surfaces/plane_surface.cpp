@@ -11,10 +11,10 @@ class PlaneSurface : public DistanceSurface {
   explicit PlaneSurface(const btStaticPlaneShape& plane) : plane_(plane) {}
 
   bool isAsBefore() override {
-    const bool same = normal_ == plane_.getPlaneNormal() && constant_ == plane_.getPlaneConstant();
+    if (normal_ == plane_.getPlaneNormal() && constant_ == plane_.getPlaneConstant()) return true;
     normal_ = plane_.getPlaneNormal();
     constant_ = plane_.getPlaneConstant();
-    return same;
+    return false;
   }
 
   /// In the packing's frame, where the plane's distance of a box is known.
