@@ -51,7 +51,9 @@ PackingSide::PackingSide(const btCollisionObjectWrapper& wrapper, const PackingS
       packing(&packing_shape),
       scaling(packing_shape.getLocalScaling()),
       margin(packing_shape.getMargin()),
-      prefix(packing_shape.impl().prefix) {}
+      prefix(packing_shape.impl().prefix) {
+  packing_shape.impl().watch.meet();
+}
 
 bool PackingSide::refresh() {
   if (!BodySide::refresh()) return false;

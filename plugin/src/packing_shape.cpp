@@ -9,7 +9,6 @@
 
 #include "innersphere/error.hpp"
 #include "packing_shape_impl.hpp"
-#include "unregistered.hpp"
 #include "vec.hpp"
 
 namespace innersphere {
@@ -76,7 +75,7 @@ std::size_t PackingShape::sphereCount() const {
 }
 
 void PackingShape::getAabb(const btTransform& t, btVector3& min, btVector3& max) const {
-  noticeStep();
+  impl_->watch.notice(t, impl_->disc);
   const btScalar scale = impl_->scaling.x();
   btTransformAabb(impl_->solid->box_min * scale, impl_->solid->box_max * scale,
                   impl_->bulge() * scale + getMargin(), t, min, max);

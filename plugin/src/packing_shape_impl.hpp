@@ -4,6 +4,7 @@
 #include "innersphere/packing_shape.hpp"
 #include "packed_solid.hpp"
 #include "serialized_spheres.hpp"
+#include "unregistered.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -35,6 +36,7 @@ struct PackingShape::Impl {
   btScalar disc = 0;        ///< asked for many times in a step
   std::size_t version = 0;  ///< rises with each change
   mutable SerializedSpheres serialized;
+  mutable StepWatch watch;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

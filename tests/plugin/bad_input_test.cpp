@@ -65,19 +65,35 @@ TEST(FarAwayWorld, NothingBreaksWhereScalarsAreCoarse) {
   }
 }
 
-/// Runs in a process of its own, in which nobody has registered a dispatcher.
-void stepAnUnregisteredWorld() {
+/// A world whose dispatcher nobody registered.
+struct ForgottenWorld {
   btDefaultCollisionConfiguration configuration;
-  btCollisionDispatcher dispatcher(&configuration);
+  btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
-  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
-  const auto shape = makeShape(latticeBox({1, 1, 1}, 2));
-  btRigidBody lower(0, nullptr, shape.get()), upper(1, nullptr, shape.get());
-  upper.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 1)));
-  world.addRigidBody(&lower);
-  world.addRigidBody(&upper);
-  for (int i = 0; i < 600; ++i) world.stepSimulation(btScalar(1) / 60, 0);
+  btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+  std::shared_ptr<btCollisionShape> shape = makeShape(latticeBox({1, 1, 1}, 2));
+  btRigidBody lower{0, nullptr, shape.get()};
+  btRigidBody upper{1, nullptr, shape.get()};
+
+  ForgottenWorld() {
+    world.setGravity(btVector3(0, 0, btScalar(-9.81)));
+    upper.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 1)));
+    world.addRigidBody(&lower);
+    world.addRigidBody(&upper);
+  }
+  ~ForgottenWorld() {
+    world.removeRigidBody(&upper);
+    world.removeRigidBody(&lower);
+  }
+  void step(int count) {
+    for (int i = 0; i < count; ++i) world.stepSimulation(btScalar(1) / 60, 0);
+  }
+};
+
+/// Runs in a process of its own, in which nobody has registered a dispatcher.
+void stepAnUnregisteredWorld() {
+  ForgottenWorld().step(600);
   std::exit(0);
 }
 
@@ -87,16 +103,46 @@ TEST(UnregisteredWorldDeathTest, SaysSo) {
               "^InnerSphere: No dispatcher was registered[^\n]*\n$");
 }
 
+struct Messages {
+  Messages() {
+    setLogCallback([this](const std::string& message) { all.push_back(message); });
+  }
+  ~Messages() { setLogCallback(nullptr); }
+  std::vector<std::string> all;
+};
+
+TEST(UnregisteredWorld, BesideOneThatIsRegisteredSaysSoOnce) {
+  TestWorld registered;
+  ForgottenWorld forgotten;
+  const Messages messages;
+  forgotten.step(4000);
+  EXPECT_LT(forgotten.upper.getWorldTransform().getOrigin().z(), -100);
+  ASSERT_EQ(messages.all.size(), 1u);
+  EXPECT_NE(messages.all[0].find("registerAlgorithm with the dispatcher of its world"), std::string::npos);
+}
+
+TEST(UnregisteredWorld, IsNotSeenInOneThatIsRegistered) {
+  TestWorld world;
+  world.addFloor();
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 2));
+  btRigidBody& falls = world.add(shape, 1, btVector3(0, 0, btScalar(0.6)));
+  world.run(0.5);
+  falls.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 10000)));
+  world.add(makeShape(latticeBox({1, 1, 1}, 2)), 0, btVector3(5, 0, 20));  // is met by nobody, and stays
+  const Messages messages;
+  world.run(40);
+  EXPECT_LT(falls.getWorldTransform().getOrigin().z(), 9000);
+  EXPECT_TRUE(messages.all.empty());
+}
+
 /// Shapes of a world that nobody registered are met by their triangles where Bullet can.
 TEST(UnregisteredWorld, DoesNotSpeakOnceADispatcherIsRegistered) {
   TestWorld registered;
-  int messages = 0;
-  setLogCallback([&](const std::string&) { ++messages; });
+  const Messages messages;
   const auto shape = makeShape(latticeBox({1, 1, 1}, 2));
   btVector3 min, max;
   for (int i = 0; i < 5000; ++i) shape->getAabb(btTransform::getIdentity(), min, max);
-  setLogCallback(nullptr);
-  EXPECT_EQ(messages, 0);
+  EXPECT_TRUE(messages.all.empty());
 }
 
 }  // namespace
