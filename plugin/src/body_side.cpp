@@ -51,9 +51,7 @@ PackingSide::PackingSide(const btCollisionObjectWrapper& wrapper, const PackingS
       packing(&packing_shape),
       scaling(packing_shape.getLocalScaling()),
       margin(packing_shape.getMargin()),
-      prefix(packing_shape.impl().prefix) {
-  packing_shape.impl().watch.meet();
-}
+      prefix(packing_shape.impl().prefix) {}
 
 bool PackingSide::refresh() {
   if (!BodySide::refresh()) return false;

@@ -112,13 +112,23 @@ struct Messages {
 };
 
 TEST(UnregisteredWorld, BesideOneThatIsRegisteredSaysSoOnce) {
-  TestWorld registered;
-  ForgottenWorld forgotten;
-  const Messages messages;
-  forgotten.step(4000);
-  EXPECT_LT(forgotten.upper.getWorldTransform().getOrigin().z(), -100);
-  ASSERT_EQ(messages.all.size(), 1u);
-  EXPECT_NE(messages.all[0].find("registerAlgorithm with the dispatcher of its world"), std::string::npos);
+  for (const bool shared : {false, true}) {
+    TestWorld registered;
+    ForgottenWorld forgotten;
+    registered.addFloor();
+    const auto shape = shared ? forgotten.shape : makeShape(latticeBox({1, 1, 1}, 2));
+    for (int i = 0; i < 20; ++i)
+      registered.add(shape, 1, btVector3(btScalar(1.2 * (i % 5)), btScalar(1.2 * (i / 5)), btScalar(0.6)));
+    const Messages messages;
+    for (int i = 0; i < 6000; ++i) {
+      registered.run(1.0 / 60);
+      forgotten.step(1);
+    }
+    EXPECT_LT(forgotten.upper.getWorldTransform().getOrigin().z(), -100);
+    EXPECT_GT(registered.bodies.back()->getWorldTransform().getOrigin().z(), 0.4);
+    ASSERT_EQ(messages.all.size(), 1u) << shared;
+    EXPECT_NE(messages.all[0].find("registerAlgorithm with the dispatcher of its world"), std::string::npos);
+  }
 }
 
 TEST(UnregisteredWorld, IsNotSeenInOneThatIsRegistered) {

@@ -33,9 +33,10 @@ struct PackingCollisionAlgorithm {
 
   /// Whether packings collide in the worlds of a dispatcher. Where one was forgotten, packings fall through
   /// each other, and as Bullet tells nobody which world a shape is in, that shows late: a message in the log
-  /// says so after 1,000 steps if no dispatcher was ever registered, else when a packing has gone further in
-  /// 1,000 steps than ten times its size and no dispatcher that was registered has ever met its shape. A
-  /// shape that bodies of several worlds share is known by those that are registered.
+  /// says so after 1,000 steps if no dispatcher was ever registered, else when a body with a packing has gone
+  /// further in 1,000 steps than ten times its size, and has never come near one that a registered dispatcher
+  /// asks for. That may also be one that flies alone. Children of compounds are not followed if a registered
+  /// dispatcher knows their shape.
   static bool isRegistered(const btCollisionDispatcher* dispatcher);
 };
 
