@@ -68,10 +68,8 @@ void StepWatch::follow(const btTransform& place, btScalar size) {
   if (!(place.getOrigin().distance(start_) > kFar * size)) return;
   done_ = true;
   log("A packing has gone far in 1,000 steps and met nothing that a registered dispatcher knows of. If it "
-      "has "
-      "fallen through something, call PackingCollisionAlgorithm::registerAlgorithm with the dispatcher of "
-      "its "
-      "world, too.");
+      "has fallen through something, call PackingCollisionAlgorithm::registerAlgorithm with the dispatcher "
+      "of its world, too.");
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
