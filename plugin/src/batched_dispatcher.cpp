@@ -17,6 +17,10 @@ btCollisionObject* objectOf(const btBroadphaseProxy* proxy) {
   return static_cast<btCollisionObject*>(proxy->m_clientObject);
 }
 
+btBroadphasePair& pairAt(btBroadphasePairArray& pairs, std::size_t index) {
+  return pairs[static_cast<int>(index)];
+}
+
 btCollisionObjectWrapper wrapped(const btCollisionObject& object) {
   return {nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1};
 }
@@ -48,20 +52,19 @@ void collide(btCollisionDispatcher& dispatcher, Registration& registration, btBr
   static thread_local std::vector<char> kept;
   std::vector<char>& done = kept;  // of this thread, also for the others
   const std::size_t count = places.size();
-  const auto pairAt = [&](std::size_t i) -> btBroadphasePair& { return pairs[static_cast<int>(i)]; };
   // A device works on while Bullet collides bodies that are no packings.
   bool any_others = false;
   for (std::size_t i = 0; i < count; ++i) {
     if (places[i].look != nullptr) continue;
     any_others = true;
-    dispatcher.getNearCallback()(pairAt(i), dispatcher, info);
+    dispatcher.getNearCallback()(pairAt(pairs, i), dispatcher, info);
   }
   registration.batch().finish();
   if (any_others) {  // whose callbacks may have moved bodies
     for (LookBoard* board : {&registration.batch().looks(), &registration.surfaces().looks()}) board->check();
   }
   const auto ask = [&](std::size_t i) {
-    const btBroadphasePair& pair = pairAt(i);
+    const btBroadphasePair& pair = pairAt(pairs, i);
     if (dispatcher.needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1)))
       places[i].board->ask(*places[i].look);
   };
@@ -76,7 +79,8 @@ void collide(btCollisionDispatcher& dispatcher, Registration& registration, btBr
       },
       [&](std::size_t i) { fetch(places[i].look); });
   for (std::size_t i = 0; i < count; ++i) {
-    if (!done[i] && places[i].look != nullptr) dispatcher.getNearCallback()(pairAt(i), dispatcher, info);
+    if (!done[i] && places[i].look != nullptr)
+      dispatcher.getNearCallback()(pairAt(pairs, i), dispatcher, info);
     if (done[i] && own_filter) ask(i);
   }
 }
@@ -92,14 +96,13 @@ bool collideBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pai
   if (!registration) return false;
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   places.resize(static_cast<std::size_t>(all.size()));
-  const auto pairAt = [&](std::size_t i) -> btBroadphasePair& { return all[static_cast<int>(i)]; };
   inParallel(
-      places.size(), [&](std::size_t i) { places[i] = placeOf(pairAt(i)); },
-      [&](std::size_t i) { __builtin_prefetch(pairAt(i).m_algorithm); });
+      places.size(), [&](std::size_t i) { places[i] = placeOf(pairAt(all, i)); },
+      [&](std::size_t i) { fetch(pairAt(all, i).m_algorithm); });
   fresh.clear();
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i].look != nullptr) continue;
-    btBroadphasePair& pair = pairAt(i);
+    btBroadphasePair& pair = pairAt(all, i);
     if (PackingContact* contact = announce(dispatcher, pair, info.m_timeStep)) fresh.push_back(contact);
     places[i] = placeOf(pair);
   }

@@ -58,7 +58,7 @@ void inParallel(std::size_t count, const Job& job, const Fetches&... fetches) {
 }
 
 /// The same, while this thread first does something else: here(working), where `working` turns false when all
-/// jobs are done.
+/// jobs are done. It must not wait for that: there may be no other thread for them.
 template <typename Here, typename Job, typename... Fetches>
 void inParallelBeside(const Here& here, std::size_t count, const Job& job, const Fetches&... fetches) {
   tbb::this_task_arena::isolate([&] {

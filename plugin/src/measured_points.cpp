@@ -92,15 +92,38 @@ btScalar shareOfA(const Gap& gap, const btVector3& normal) {
   return from_a + from_b > SIMD_EPSILON ? from_b / (from_a + from_b) : btScalar(0.5);
 }
 
+struct Tried {
+  Measured measured;
+  bool found;
+};
+
+/// Measures all candidates of a patch, the first of which is `begin`.
+void measureAll(const Candidates& candidates, const Candidates::OfPatch& patch, std::size_t begin, bool again,
+                const Gauge& gauge, std::vector<Tried>& tried) {
+  tried.reserve(kUsualMeasured);
+  tried.resize(patch.end - begin);
+  const auto measureOne = [&](std::size_t i) {
+    Measured m;
+    m.index = candidates.indices[begin + i];
+    m.id = gauge.id(m.index);
+    const bool found =
+        again ? measureAgain(gauge, candidates.lines[begin + i], m) : measure(gauge, patch.normal, m);
+    tried[i] = {m, found};
+  };
+  // Bodies that are linked have many; other pairs are done long before them. Shapes that are no packings
+  // remember what they were asked last, and are asked by one thread.
+  if (tried.size() >= kMany && !gauge.exactB()) {
+    inParallel(tried.size(), measureOne);
+  } else {
+    for (std::size_t i = 0; i < tried.size(); ++i) measureOne(i);
+  }
+}
+
 }  // namespace
 
 void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, btScalar separation,
                    std::vector<MeasuredPoint>& found) {
   static thread_local std::vector<Measured> measured, sideways;
-  struct Tried {
-    Measured measured;
-    bool found;
-  };
   static thread_local std::vector<Tried> tried;
   static thread_local std::vector<std::size_t> places;  // of the measured, among the candidates
   static thread_local std::vector<Gauge::Corner> corners, peaks;
@@ -113,24 +136,9 @@ void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, bt
   places.reserve(kUsualMeasured);
   const bool again = patch.end <= candidates.lines.size();
   const std::size_t begin = p == 0 ? 0 : candidates.patches[p - 1].end;
-  tried.resize(patch.end - begin);
-  std::vector<Tried>& all = tried;  // of this thread, also for the others
-  const auto tryOne = [&](std::size_t i) {
-    Measured m;
-    m.index = candidates.indices[begin + i];
-    m.id = gauge.id(m.index);
-    const bool found =
-        again ? measureAgain(gauge, candidates.lines[begin + i], m) : measure(gauge, patch.normal, m);
-    all[i] = {m, found};
-  };
-  // Bodies that are linked have many; other pairs are done long before them.
-  if (all.size() >= kMany && !gauge.exactB()) {
-    inParallel(all.size(), tryOne);
-  } else {
-    for (std::size_t i = 0; i < all.size(); ++i) tryOne(i);
-  }
+  measureAll(candidates, patch, begin, again, gauge, tried);
   for (std::size_t k = begin; k < patch.end; ++k) {
-    const auto& [m, found] = all[k - begin];
+    const auto& [m, found] = tried[k - begin];
     if (!again) candidates.lines.emplace_back();
     if (!found) {
       if (!gauge.exactB() || m.gap.triangle_a == Gap::kNone) continue;

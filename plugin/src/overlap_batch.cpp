@@ -184,8 +184,7 @@ void OverlapBatch::lookAtAll(btScalar time_step) {
   work_.clear();
   searches_.clear();
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
-    if (tasks_[i] != Task::nothing)
-      (needsQuery(tasks_[i]) ? searches_ : work_).push_back({live_.at(i), tasks_[i]});
+    if (tasks_[i] != Task::nothing) jobsLike(tasks_[i]).push_back({live_.at(i), tasks_[i]});
   }
   under_way_ = true;
   const auto search = [&](const std::atomic<bool>& working) {
@@ -250,7 +249,7 @@ void OverlapBatch::updateAlone(PackingContact& contact, const PackingSide& a, co
   const Task task = place(contact, a, b);
   work_.clear();
   searches_.clear();
-  (needsQuery(task) ? searches_ : work_).push_back({&contact, task});
+  jobsLike(task).push_back({&contact, task});
   if (!needsQuery(task)) workWithoutQuery(contact, task);
   startQueries();
   finishQueries(false);

@@ -111,6 +111,7 @@ class OverlapBatch {
     PackingContact* contact;
     Task task;
   };
+  std::vector<Job>& jobsLike(Task task) { return needsQuery(task) ? searches_ : work_; }
   /// Begins a look; finishLook() ends it, after which errors have been left to update().
   void lookAtAll(btScalar time_step);
   void finishLook();

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "innersphere/log.hpp"
+#include "plugin/capture_log.hpp"
 #include "watched_world.hpp"
 
 namespace innersphere::test {
@@ -49,8 +49,7 @@ class NotANumber : public testing::TestWithParam<std::tuple<Break, Response, Dis
 
 TEST_P(NotANumber, StaysWithItsBody) {
   const auto& [broken, response, kind] = GetParam();
-  int messages = 0;
-  setLogCallback([&messages](const std::string&) { ++messages; });
+  const CaptureLog log;
   ContactOptions options;
   options.response = response;
   options.damping = 1;
@@ -65,7 +64,6 @@ TEST_P(NotANumber, StaysWithItsBody) {
   ASSERT_GT(world.contactCount(), 0);
   broken.apply(lost);
   world.watch(3, 1.0 / 240);
-  setLogCallback(nullptr);
   for (const auto& body : world.bodies) {
     if (body.get() == &lost) continue;
     EXPECT_TRUE(isFinite(*body));

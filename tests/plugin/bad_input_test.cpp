@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "innersphere/log.hpp"
+#include "capture_log.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
@@ -103,14 +103,6 @@ TEST(UnregisteredWorldDeathTest, SaysSo) {
               "^InnerSphere: No dispatcher was registered[^\n]*\n$");
 }
 
-struct Messages {
-  Messages() {
-    setLogCallback([this](const std::string& message) { all.push_back(message); });
-  }
-  ~Messages() { setLogCallback(nullptr); }
-  std::vector<std::string> all;
-};
-
 TEST(UnregisteredWorld, BesideOneThatIsRegisteredSaysSoOnce) {
   for (const bool shared : {false, true}) {
     TestWorld registered;
@@ -119,15 +111,15 @@ TEST(UnregisteredWorld, BesideOneThatIsRegisteredSaysSoOnce) {
     const auto shape = shared ? forgotten.shape : makeShape(latticeBox({1, 1, 1}, 2));
     for (int i = 0; i < 20; ++i)
       registered.add(shape, 1, btVector3(btScalar(1.2 * (i % 5)), btScalar(1.2 * (i / 5)), btScalar(0.6)));
-    const Messages messages;
+    const CaptureLog log;
     for (int i = 0; i < 6000; ++i) {
       registered.run(1.0 / 60);
       forgotten.step(1);
     }
     EXPECT_LT(forgotten.upper.getWorldTransform().getOrigin().z(), -100);
     EXPECT_GT(registered.bodies.back()->getWorldTransform().getOrigin().z(), 0.4);
-    ASSERT_EQ(messages.all.size(), 1u) << shared;
-    EXPECT_NE(messages.all[0].find("registerAlgorithm with the dispatcher of its world"), std::string::npos);
+    ASSERT_EQ(log.messages.size(), 1u) << shared;
+    EXPECT_NE(log.messages[0].find("registerAlgorithm with the dispatcher of its world"), std::string::npos);
   }
 }
 
@@ -139,20 +131,20 @@ TEST(UnregisteredWorld, IsNotSeenInOneThatIsRegistered) {
   world.run(0.5);
   falls.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 10000)));
   world.add(makeShape(latticeBox({1, 1, 1}, 2)), 0, btVector3(5, 0, 20));  // is met by nobody, and stays
-  const Messages messages;
+  const CaptureLog log;
   world.run(40);
   EXPECT_LT(falls.getWorldTransform().getOrigin().z(), 9000);
-  EXPECT_TRUE(messages.all.empty());
+  EXPECT_TRUE(log.messages.empty());
 }
 
 /// Shapes of a world that nobody registered are met by their triangles where Bullet can.
 TEST(UnregisteredWorld, DoesNotSpeakOnceADispatcherIsRegistered) {
   TestWorld registered;
-  const Messages messages;
+  const CaptureLog log;
   const auto shape = makeShape(latticeBox({1, 1, 1}, 2));
   btVector3 min, max;
   for (int i = 0; i < 5000; ++i) shape->getAabb(btTransform::getIdentity(), min, max);
-  EXPECT_TRUE(messages.all.empty());
+  EXPECT_TRUE(log.messages.empty());
 }
 
 }  // namespace

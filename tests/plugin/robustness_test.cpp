@@ -8,21 +8,12 @@
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <LinearMath/btThreads.h>
 
-#include "innersphere/log.hpp"
+#include "capture_log.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
 namespace innersphere::test {
 namespace {
-
-class CaptureLog {
- public:
-  CaptureLog() {
-    setLogCallback([this](const std::string& message) { messages.push_back(message); });
-  }
-  ~CaptureLog() { setLogCallback(nullptr); }
-  std::vector<std::string> messages;
-};
 
 TEST(Robustness, ABodyAtNanIsSkippedAndReportedOnce) {
   CaptureLog log;

@@ -70,10 +70,10 @@ bool DistanceSurface::boxIsAsBefore(const btCollisionShape& shape) {
   btVector3 min, max;
   shape.getAabb(btTransform::getIdentity(), min, max);
   min[3] = max[3] = 0;  // == compares it, and some of Bullet's shapes do not set it
-  const bool same = min == box_min_ && max == box_max_;
+  if (min == box_min_ && max == box_max_) return true;
   box_min_ = min;
   box_max_ = max;
-  return same;
+  return false;
 }
 
 btScalar DistanceSurface::lowerBound(const btVector3& p) const {
