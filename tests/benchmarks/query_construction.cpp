@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "cuda_grid.hpp"
+#include "cuda/device_grid.hpp"
 #include "greedy_ball.hpp"
-#include "hash_grid.hpp"
+#include "grid/hash_grid.hpp"
 #include "innersphere/error.hpp"
 #include "machine.hpp"
 #include "timing.hpp"

@@ -11,9 +11,9 @@
 #include "innersphere/packer.hpp"
 #include "innersphere/query.hpp"
 #include "machine.hpp"
-#include "points_file.hpp"
-#include "named_meshes.hpp"
 #include "peer.hpp"
+#include "points_file.hpp"
+#include "solids/named_meshes.hpp"
 #include "timing.hpp"
 #include "true_overlap.hpp"
 

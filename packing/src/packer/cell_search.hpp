@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "packer/cells.hpp"
+#include "packer/clearance_cache.hpp"
 #include "packer/container.hpp"
-#include "packer/max_min.hpp"
-#include "packer/soundings.hpp"
+#include "packer/dual_simplex.hpp"
 #include "packer/sphere_grid.hpp"
 
 namespace innersphere {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "frame_origin.hpp"
+#include "common/frame_origin.hpp"
+#include "common/vec3.hpp"
 #include "innersphere/error.hpp"
-#include "mesh_report.hpp"
-#include "vec3.hpp"
+#include "mesh/mesh_report.hpp"
 
 namespace innersphere {
 namespace {

@@ -4,10 +4,10 @@
 #include <numeric>
 #include <optional>
 
-#include "mass_properties.hpp"
-#include "mesh_report.hpp"
-#include "vec3.hpp"
-#include "winding_tree.hpp"
+#include "common/vec3.hpp"
+#include "mesh/mass_properties.hpp"
+#include "mesh/mesh_report.hpp"
+#include "mesh/winding_tree.hpp"
 
 namespace innersphere {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "innersphere/packing.hpp"
+#include "packer/cell_volumes.hpp"
 #include "packer/container.hpp"
-#include "packer/shares.hpp"
 
 namespace innersphere {
 

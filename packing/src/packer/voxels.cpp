@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "packer/clearance_cache.hpp"
 #include "packer/jitter.hpp"
-#include "packer/soundings.hpp"
 
 namespace innersphere {
 namespace {

@@ -1,0 +1,43 @@
+// Checks a query and brings it into the form that the backends read.
+#pragma once
+
+#include <cstddef>
+
+#include "core/setup.hpp"
+#include "grid/model_grid.hpp"
+#include "innersphere/query.hpp"
+
+namespace innersphere {
+
+struct PreparedQuery {
+  core::Setup setup;  ///< its grids have no arrays; see bringToCpu()
+  const ModelGrid* grid_a;
+  const ModelGrid* grid_b;
+
+  std::size_t clusters() const { return std::size_t{setup.a.clusters} + setup.b.clusters; }
+};
+
+/// The grids of neighbouring queries are often the same: found without the model's lock. Not for use by
+/// several threads.
+class KnownGrids {
+ public:
+  const ModelGrid& of(const CollisionModel& model, std::uint32_t prefix, Estimator estimator, int side);
+
+ private:
+  struct Known {
+    const CollisionModel* model = nullptr;
+    std::uint32_t prefix = 0;
+    const ModelGrid* grid = nullptr;
+  };
+  Known known_[2];
+};
+
+/// Throws Error as QueryContext::run says; `index` is the query's place in its batch, for messages. Bodies
+/// whose bounding balls or boxes are apart get no clusters to walk. Builds no grids. All calls with the same
+/// `grids` have one estimator.
+PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estimator, KnownGrids& grids);
+
+/// For a walk on the CPU: builds the grids there if this is their first use.
+void bringToCpu(PreparedQuery& query);
+
+}  // namespace innersphere

@@ -1,0 +1,218 @@
+#include "cpu/kernels.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "cpu/traversal.hpp"
+
+namespace innersphere {
+
+namespace {
+
+/// The spheres of some pairs, an array for each coordinate.
+template <std::size_t kSize>
+struct SpherePairs {
+  alignas(64) float columns[8][kSize];
+
+  /// Pairs from `count` on repeat the last one, up to whole lanes. Returns how many there are then.
+  template <typename Lanes>
+  std::size_t load(const core::Setup& setup, const std::uint32_t* places_a, const std::uint32_t* places_b,
+                   std::size_t count) {
+    const std::size_t whole = count / kLanes * kLanes;
+    for (std::size_t k = 0; k < whole; k += kLanes) loadLanes<Lanes>(setup, places_a + k, places_b + k, k);
+    if (whole == count) return whole;
+    std::uint32_t a[kLanes], b[kLanes];
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      a[k] = places_a[std::min(whole + k, count - 1)];
+      b[k] = places_b[std::min(whole + k, count - 1)];
+    }
+    loadLanes<Lanes>(setup, a, b, whole);
+    return whole + kLanes;
+  }
+
+  template <typename Lanes>
+  void loadLanes(const core::Setup& setup, const std::uint32_t* places_a, const std::uint32_t* places_b,
+                 std::size_t k) {
+    Lanes::load(setup.a.grid.spheres, places_a,
+                {columns[0] + k, columns[1] + k, columns[2] + k, columns[3] + k});
+    Lanes::load(setup.b.grid.spheres, places_b,
+                {columns[4] + k, columns[5] + k, columns[6] + k, columns[7] + k});
+  }
+
+  Sphere a(std::size_t k) const { return {columns[0][k], columns[1][k], columns[2][k], columns[3][k]}; }
+  Sphere b(std::size_t k) const { return {columns[4][k], columns[5][k], columns[6][k], columns[7][k]}; }
+};
+
+template <typename Lanes, bool kWrench>
+inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally) {
+  constexpr std::size_t kSize = Candidates::kSize;
+  constexpr int kTerms = kWrench ? core::kTerms : core::kVolumeTerms;
+  SpherePairs<kSize> spheres;
+  const std::size_t n = spheres.template load<Lanes>(
+      setup, (from_a ? candidates.walker : candidates.partner).data(),
+      (from_a ? candidates.partner : candidates.walker).data(), candidates.count);
+  double(*const terms)[kSize] = tally.terms;
+  alignas(64) std::int64_t hits[kSize];
+  const core::Frame frame = setup.frame;
+  const std::int64_t last = static_cast<std::int64_t>(candidates.count);
+  for (std::size_t k = 0; k < n; ++k) {
+    core::Pair pair = core::makePair(frame, spheres.a(k), spheres.b(k));
+    const bool hit = static_cast<std::int64_t>(k) < last ? core::isHit(pair, from_a) : false;
+    hits[k] = hit ? 1 : 0;
+    const double sum = pair.ra + pair.rb;
+    pair.distance2 = hit ? pair.distance2 : sum * sum;  // two balls that touch from outside add nothing
+    const core::Terms added = core::makeTerms<kWrench>(pair);
+    for (int i = 0; i < kTerms; ++i) terms[i][k] = added.terms[i];
+  }
+  tally.pairs = 0;
+  for (std::size_t k = 0; k < n; ++k) tally.pairs += static_cast<std::size_t>(hits[k]);
+  for (std::size_t k = 0; k < n; ++k) tally.hit[k] = static_cast<std::uint8_t>(hits[k]);
+  for (int i = 0; i < kTerms; ++i) {
+    const core::Unit unit = core::unitOf(setup.units, i);
+    core::ShortSum sum{0, 0};
+    for (std::size_t k = 0; k < n; ++k) core::addBits(sum, terms[i][k], unit);
+    tally.sums[static_cast<std::size_t>(i)] = core::withoutMagic(sum, n);
+  }
+}
+
+template <typename Lanes>
+inline void writeValuesImpl(const Tally& tally, std::size_t count, HitValues* values) {
+  constexpr std::size_t kRows = Lanes::kRows;
+  static_assert(HitValues::kVolume == 1 && HitValues::kMoment == 2 && HitValues::kArea == 5);
+  const auto& terms = tally.terms;
+  const double* const columns[] = {terms[core::kVolume],     terms[core::kMoment], terms[core::kMoment + 1],
+                                   terms[core::kMoment + 2], terms[core::kArea],   terms[core::kArea + 1],
+                                   terms[core::kArea + 2]};
+  for (std::size_t k = 0; k < count; k += kRows) {
+    std::size_t here = 0, hits = 0;
+    for (; here < kRows && k + here < count; ++here) hits += tally.hit[k + here];
+    if (hits == kRows) {
+      Lanes::writeRows(columns, k, values);
+      values += kRows;
+      continue;
+    }
+    HitValues rows[kRows];
+    Lanes::writeRows(columns, k, rows);
+    for (std::size_t row = 0; row < here; ++row) {
+      if (tally.hit[k + row]) *values++ = rows[row];
+    }
+  }
+}
+
+inline void addValues(const double* values, double (&sums)[HitValues::kCount]) {
+  for (std::size_t i = 0; i < HitValues::kCount; ++i) sums[i] += values[i];
+}
+
+/// Those of a sphere with many partners are summed in kContactShares shares, every so many of them, then
+/// these sums: so a device can sum them side by side, to the same bits.
+inline void sumContactsImpl(const HitValues* values, const std::uint32_t* order, const std::size_t* heads,
+                            std::size_t begin, std::size_t end, SphereContact* contacts) {
+  constexpr std::size_t kCount = HitValues::kCount, kMoment = HitValues::kMoment;
+  for (std::size_t c = begin; c < end; ++c) {
+    const std::uint32_t* const hits = order + heads[c];
+    const std::size_t count = heads[c + 1] - heads[c];
+    double sums[kCount] = {};
+    if (count <= kContactShares) {
+      for (std::size_t k = 0; k < count; ++k) addValues(values[hits[k]].of, sums);
+    } else {
+      for (std::size_t share = 0; share < kContactShares; ++share) {
+        double of_share[kCount] = {};
+        for (std::size_t k = share; k < count; k += kContactShares) addValues(values[hits[k]].of, of_share);
+        addValues(of_share, sums);
+      }
+    }
+    const double volume = sums[HitValues::kVolume], inverse = volume > 0 ? 1 / volume : 0;
+    for (std::size_t i = 0; i < 3; ++i) sums[kMoment + i] *= inverse;
+    float numbers[kCount];
+    for (std::size_t i = 0; i < kCount; ++i) numbers[i] = static_cast<float>(sums[i]);
+    SphereContact& contact = contacts[c];
+    static_assert(sizeof contact == sizeof numbers);
+    const std::uint32_t sphere = contact.sphere;
+    std::memcpy(&contact, numbers, sizeof contact);
+    contact.sphere = sphere;
+  }
+}
+
+inline void nearestDirectionsImpl(const float* x, const float* y, const float* z, std::size_t count,
+                                  const core::Vec3f* directions, std::size_t direction_count,
+                                  std::uint32_t* nearest) {
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    alignas(64) float best[kLanes];
+    alignas(64) std::uint32_t found[kLanes];
+    std::fill_n(best, kLanes, -2.0f);
+    std::fill_n(found, kLanes, 0u);
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      const core::Vec3f n = directions[d];
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const float cosine = x[first + k] * n.x + y[first + k] * n.y + z[first + k] * n.z;
+        const bool nearer = cosine > best[k];
+        best[k] = nearer ? cosine : best[k];
+        found[k] = nearer ? static_cast<std::uint32_t>(d) : found[k];
+      }
+    }
+    std::copy_n(found, kLanes, nearest + first);
+  }
+}
+
+// Each variant is the same code, inlined into a function for its instructions.
+#define INNERSPHERE_KERNELS(name, Lanes, attributes)                                                       \
+  struct name {                                                                                            \
+    attributes static std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy,   \
+                                                 const Sphere* balls, std::uint32_t count) {               \
+      return innersphere::ballsMeeting(walker, occupancy, balls, count);                                   \
+    }                                                                                                      \
+    attributes static bool walk(const core::Walker& walker, const SphereColumns& listed,                   \
+                                const std::uint32_t* clusters, std::size_t count, Candidates& candidates,  \
+                                CandidateSink& sink) {                                                     \
+      return walkClusters<Lanes>(walker, listed, clusters, count, candidates, sink);                       \
+    }                                                                                                      \
+    attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
+                                  Tally& tally) {                                                          \
+      sumImpl<Lanes, true>(setup, from_a, candidates, tally);                                              \
+    }                                                                                                      \
+    attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates, \
+                                      Tally& tally) {                                                      \
+      sumImpl<Lanes, false>(setup, from_a, candidates, tally);                                             \
+    }                                                                                                      \
+    attributes static void writeValues(const Tally& tally, std::size_t count, HitValues* values) {         \
+      writeValuesImpl<Lanes>(tally, count, values);                                                        \
+    }                                                                                                      \
+    attributes static void sumContacts(const HitValues* values, const std::uint32_t* order,                \
+                                       const std::size_t* heads, std::size_t begin, std::size_t end,       \
+                                       SphereContact* contacts) {                                          \
+      sumContactsImpl(values, order, heads, begin, end, contacts);                                         \
+    }                                                                                                      \
+    attributes static void nearestDirections(const float* x, const float* y, const float* z,               \
+                                             std::size_t count, const core::Vec3f* directions,             \
+                                             std::size_t direction_count, std::uint32_t* nearest) {        \
+      nearestDirectionsImpl(x, y, z, count, directions, direction_count, nearest);                         \
+    }                                                                                                      \
+    static constexpr CpuKernels kKernels{ballsMeeting, walk,        sumAll,           sumVolumes,          \
+                                         writeValues,  sumContacts, nearestDirections};                    \
+  }
+
+INNERSPHERE_KERNELS(Baseline, LanesAny, __attribute__((flatten)));
+#ifdef INNERSPHERE_X86
+INNERSPHERE_KERNELS(Avx2, LanesAvx2, __attribute__((target("avx2"), flatten)));
+INNERSPHERE_KERNELS(Avx512, LanesAvx512, __attribute__((target("avx512f,avx512dq,avx512vl"), flatten)));
+#endif
+#undef INNERSPHERE_KERNELS
+
+}  // namespace
+
+const std::vector<const CpuKernels*>& supportedKernels() {
+  static const std::vector<const CpuKernels*> kernels = [] {
+    std::vector<const CpuKernels*> all;
+#ifdef INNERSPHERE_X86
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
+      all.push_back(&Avx512::kKernels);
+    if (__builtin_cpu_supports("avx2")) all.push_back(&Avx2::kKernels);
+#endif
+    all.push_back(&Baseline::kKernels);
+    return all;
+  }();
+  return kernels;
+}
+
+}  // namespace innersphere

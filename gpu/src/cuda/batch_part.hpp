@@ -1,0 +1,80 @@
+// Some neighbouring queries of a batch on their way over the device and back.
+#pragma once
+
+#include <vector>
+
+#include "batch/prepare.hpp"
+#include "common/workers.hpp"
+#include "cuda/hits.hpp"
+#include "cuda/kernels.hpp"
+#include "cuda/memory.hpp"
+
+namespace innersphere::device {
+
+/// Where a part runs.
+struct Device {
+  int number = 0;
+  unsigned processors = 1;
+  cudaStream_t stream = nullptr;
+  bool time_kernels = false;
+};
+
+/// Keeps its memory from one run to the next. What goes to the device is one copy, or for a single query the
+/// arguments of its launch; sums come home through memory of the host that the kernels write to, so the host
+/// needs no copy and no call to the driver to have them.
+class Part {
+ public:
+  struct Range {
+    std::size_t begin = 0, end = 0;
+    std::size_t size() const { return end - begin; }
+  };
+
+  /// Where the part that begins with query `begin` should end: its memory is bounded.
+  static std::size_t endOf(const std::vector<PreparedQuery>& queries, std::size_t begin);
+
+  void start(const Device& device, const std::vector<PreparedQuery>& queries, Range range, Want want,
+             Workers& workers);
+
+  /// Moves on what the device is done with. True if results() are there.
+  bool advance();
+  void wait();
+
+  Range range() const { return range_; }
+  const core::Totals* results() const { return results_.data(); }
+  /// Where contacts or pairs are wanted.
+  const HitLists& lists() const { return hits_.lists(); }
+  double kernelTime() const { return kernel_time_; }
+
+ private:
+  enum class Stage { walk, walked, sort, done };
+
+  void gather(const std::vector<PreparedQuery>& queries, Workers& workers);
+  void launch();
+  bool walked() const;
+  void takeResult();
+  void sort();
+
+  Device device_;
+  Range range_;
+  Want want_ = Want::wrench;
+  Stage stage_ = Stage::done;
+  Batch batch_{};
+  unsigned most_clusters_ = 0;
+  std::size_t most_items_ = 0;
+  std::size_t found_ = 0;  ///< hits
+  double kernel_time_ = 0;
+  Event start_, stop_;
+
+  unsigned run_ = 0;
+  bool clean_ = false;  ///< sums and counters of the device are zero
+  PinnedArray<HostSignal> signal_;
+  PinnedArray<Query> queries_;
+  PinnedArray<core::Totals> results_;
+  DeviceArray<Counters> counters_;
+  DeviceArray<Query> device_queries_;
+  DeviceArray<DeviceSums> sums_;
+  DeviceArray<unsigned long long> items_;
+  CudaHits hits_;
+};
+
+}  // namespace innersphere::device

@@ -1,0 +1,84 @@
+// What several kernels call.
+#pragma once
+
+#include "cuda/batch.hpp"
+
+namespace innersphere::device {
+
+/// Some of kItem neighbouring clusters of one body of a query.
+struct Item {
+  unsigned query;
+  unsigned side;   ///< 0: A
+  unsigned first;  ///< cluster
+  unsigned mask;   ///< a bit for each that is active
+};
+inline __device__ unsigned long long packItem(const Item& item) {
+  return static_cast<unsigned long long>(item.query) << 40 |
+         static_cast<unsigned long long>(item.side) << 39 |
+         static_cast<unsigned long long>(item.first / kItem) << kItem | item.mask;
+}
+
+inline __device__ Item unpackItem(unsigned long long bits) {
+  return {static_cast<unsigned>(bits >> 40), static_cast<unsigned>(bits >> 39 & 1),
+          static_cast<unsigned>(bits >> kItem & 0x7fffffffu) * kItem,
+          static_cast<unsigned>(bits & ((1u << kItem) - 1))};
+}
+
+inline __device__ Sphere load(const Sphere* sphere) {
+  const float4 s = __ldg(reinterpret_cast<const float4*>(sphere));
+  return {s.x, s.y, s.z, s.w};
+}
+
+/// Of what the same launch has written.
+inline __device__ Sphere loadNew(const Sphere* sphere) {
+  const float4 s = *reinterpret_cast<const float4*>(sphere);
+  return {s.x, s.y, s.z, s.w};
+}
+
+/// Stays where it stands: to save registers the compiler would have each of several loads wait for the one
+/// before.
+inline __device__ EntryPair load(const EntryPair* pair) {
+  EntryPair p;
+  asm volatile("ld.global.v4.u32 {%0, %1, %2, %3}, [%4];"
+               : "=r"(p.x), "=r"(p.y), "=r"(p.z), "=r"(p.radius)
+               : "l"(pair)
+               : "memory");
+  return p;
+}
+
+/// False if nothing in the ball, which is in the walker's frame, can meet the grid.
+inline __device__ bool ballMeets(const core::GridView& grid, const core::Search& search, const Sphere& ball) {
+  return core::ballMeets(search, grid, ball);
+}
+
+/// Over all lanes.
+template <typename T>
+inline __device__ T maximum(T x) {
+  for (unsigned step = 1; step < kWarp; step *= 2) x = max(x, __shfl_xor_sync(kAll, x, step));
+  return x;
+}
+
+inline __device__ int maximum(int x) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_max_sync(kAll, x);
+#else
+  return maximum<int>(x);
+#endif
+}
+
+/// By the order of their bits. Of zeros, the one without a sign.
+inline __device__ float maximum(float x) {
+  const auto swapped = [](int bits) { return bits < 0 ? bits ^ 0x7fffffff : bits; };
+  return __int_as_float(swapped(maximum(swapped(__float_as_int(x)))));
+}
+
+/// The sum over this lane and all before it.
+inline __device__ unsigned scan(unsigned x, unsigned lane) {
+  for (unsigned step = 1; step < kWarp; step *= 2) {
+    const unsigned before = __shfl_up_sync(kAll, x, step);
+    if (lane >= step) x += before;
+  }
+  return x;
+}
+
+}  // namespace innersphere::device

@@ -1,0 +1,123 @@
+#include "innersphere/collision_model.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <string>
+
+#include "grid/model_impl.hpp"
+#include "innersphere/error.hpp"
+
+namespace innersphere {
+
+namespace {
+
+constexpr float kLargest = 1e15f;  ///< leaves room for squares and margins in single precision [m]
+
+bool isTooLarge(const Sphere& s) {
+  return std::fabs(s.x) > kLargest || std::fabs(s.y) > kLargest || std::fabs(s.z) > kLargest ||
+         s.radius > kLargest;
+}
+
+[[noreturn]] void tooLarge(const std::string& what) {
+  throw Error(ErrorCode::bad_argument, what + " is beyond 1e15 m; scale the packing down");
+}
+
+void checkMoved(const Sphere& s, std::size_t number) {
+  const auto where = [&] { return "sphere " + std::to_string(number); };
+  if (!std::isfinite(s.x) || !std::isfinite(s.y) || !std::isfinite(s.z) || !std::isfinite(s.radius))
+    throw Error(ErrorCode::not_finite, where() + " has a number that is not finite");
+  if (!(s.radius > 0)) throw Error(ErrorCode::bad_argument, where() + " has a radius that is not positive");
+  if (isTooLarge(s)) tooLarge(where());
+}
+
+}  // namespace
+
+CollisionModel::Impl::Impl(std::shared_ptr<const Packing> p) : packing(std::move(p)) {
+  if (!packing) throw Error(ErrorCode::bad_argument, "a collision model needs a packing, not a null pointer");
+  validate(*packing);
+  if (packing->spheres.size() >= std::size_t{1} << 29) {
+    throw Error(ErrorCode::bad_argument, "the packing has 2^29 spheres or more; use fewer");
+  }
+  for (std::size_t i = 0; i < packing->spheres.size(); ++i) {
+    if (isTooLarge(packing->spheres[i])) tooLarge("sphere " + std::to_string(i));
+  }
+  for (const VolumeTrueRadii& radii : packing->volume_true) {
+    for (float r : radii.radii) {
+      if (r > kLargest) tooLarge("a volume-true radius of prefix " + std::to_string(radii.count));
+    }
+  }
+}
+
+const ModelGrid& CollisionModel::Impl::grid(std::uint32_t prefix, Estimator estimator) {
+  const std::size_t all = packing->spheres.size();
+  std::size_t count = prefix == 0 || prefix > all ? all : prefix;
+  const VolumeTrueRadii* radii =
+      estimator == Estimator::volume_true ? volumeTrueRadii(*packing, count) : nullptr;
+  if (radii) count = radii->count;
+  const std::lock_guard lock(mutex_);
+  return grids_.try_emplace(Key(static_cast<std::uint32_t>(count), radii), *this, count, radii).first->second;
+}
+
+void CollisionModel::Impl::withSpheres(std::size_t count, const VolumeTrueRadii* radii, const Use& use) {
+  // Isolated: while it waits for its own tasks, this thread must not pick up a caller's task that wants the
+  // same grid.
+  const auto isolated = [&](const Sphere* spheres, GridScratch& scratch) {
+    tbb::this_task_arena::isolate([&] { use(spheres, scratch); });
+  };
+  const auto withRadii = [&](const std::vector<Sphere>& from, std::vector<Sphere>& to) {
+    to.assign(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t i = 0; i < count; ++i) to[i].radius = radiusOf(i, *radii);
+    return to.data();
+  };
+  if (moved_.empty()) {
+    GridScratch scratch;
+    std::vector<Sphere> spheres;
+    return isolated(radii ? withRadii(packing->spheres, spheres) : packing->spheres.data(), scratch);
+  }
+  const std::lock_guard lock(scratch_.mutex);
+  isolated(radii ? withRadii(moved_, scratch_.spheres) : moved_.data(), scratch_.grid);
+}
+
+float CollisionModel::Impl::radiusOf(std::size_t sphere, const VolumeTrueRadii& radii) const {
+  if (moved_.empty()) return radii.radii[sphere];
+  return static_cast<float>(double{radii.radii[sphere]} * moved_[sphere].radius /
+                            packing->spheres[sphere].radius);
+}
+
+void CollisionModel::Impl::update(const Sphere* spheres, std::size_t count) {
+  if (!spheres) throw Error(ErrorCode::bad_argument, "the moved spheres are a null pointer");
+  if (count != packing->spheres.size()) {
+    throw Error(ErrorCode::bad_argument, "there are " + std::to_string(count) +
+                                             " moved spheres for a packing of " +
+                                             std::to_string(packing->spheres.size()));
+  }
+  for (std::size_t i = 0; i < count; ++i) checkMoved(spheres[i], i);
+  for (const VolumeTrueRadii& radii : packing->volume_true) {
+    for (std::size_t i = 0; i < radii.count; ++i) {
+      const double grown = double{spheres[i].radius} / packing->spheres[i].radius;
+      const double radius = radii.radii[i] * grown;
+      if (!(radius <= kLargest)) tooLarge("the volume-true radius of sphere " + std::to_string(i));
+      if (static_cast<float>(radius) == 0) {
+        throw Error(ErrorCode::bad_argument,
+                    "sphere " + std::to_string(i) + " became too small for a radius; scale the packing up");
+      }
+    }
+  }
+  moved_.assign(spheres, spheres + count);
+  ++version_;
+}
+
+CollisionModel::CollisionModel(std::shared_ptr<const Packing> packing)
+    : impl_(std::make_unique<Impl>(std::move(packing))) {}
+CollisionModel::~CollisionModel() = default;
+
+const Packing& CollisionModel::packing() const {
+  return *impl_->packing;
+}
+
+void CollisionModel::update(const Sphere* spheres, std::size_t count) {
+  impl_->update(spheres, count);
+}
+
+}  // namespace innersphere

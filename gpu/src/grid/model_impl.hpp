@@ -1,0 +1,49 @@
+// The grids of a model: one for each prefix and set of radii that was asked for.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "grid/model_grid.hpp"
+#include "innersphere/collision_model.hpp"
+
+namespace innersphere {
+
+struct CollisionModel::Impl : GridSource {
+  explicit Impl(std::shared_ptr<const Packing> packing);
+
+  /// The grid for the first `prefix` spheres (0: all). Safe to call from several threads at once.
+  const ModelGrid& grid(std::uint32_t prefix, Estimator estimator);
+
+  /// See CollisionModel::update().
+  void update(const Sphere* spheres, std::size_t count);
+
+  std::uint64_t version() const override { return version_; }
+  void withSpheres(std::size_t count, const VolumeTrueRadii* radii, const Use& use) override;
+
+  std::shared_ptr<const Packing> packing;
+
+ private:
+  using Key = std::pair<std::uint32_t, const VolumeTrueRadii*>;
+
+  float radiusOf(std::size_t sphere, const VolumeTrueRadii& radii) const;
+
+  std::mutex mutex_;
+  std::map<Key, ModelGrid> grids_;
+  std::uint64_t version_ = 1;  ///< of the spheres
+  std::vector<Sphere> moved_;  ///< those of the last update; empty: those of the packing
+
+  /// Kept from update to update.
+  struct Scratch {
+    std::mutex mutex;
+    GridScratch grid;
+    std::vector<Sphere> spheres;
+  };
+  Scratch scratch_;
+};
+
+}  // namespace innersphere

@@ -1,0 +1,20 @@
+// Where a packing has its origin.
+#pragma once
+
+#include "common/vec3.hpp"
+
+namespace innersphere {
+
+/// The middle of the box, rounded to about its size, so that spheres in it lose little in single precision.
+/// Zero if the box is nearer than eight of its sizes: such a solid shall keep its coordinates.
+inline Vec3d frameOrigin(const Bounds& box) {
+  const Vec3d size = box.max - box.min;
+  const double longest = std::max({size[0], size[1], size[2]});
+  Vec3d origin = centre(box);
+  if (!(norm(origin) > 8 * longest)) return {};
+  const double step = std::exp2(std::ilogb(longest));
+  for (double& x : origin) x = step * std::round(x / step) + 0.0;  // never -0
+  return origin;
+}
+
+}  // namespace innersphere

@@ -1,0 +1,91 @@
+#include "file/file_io.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "innersphere/error.hpp"
+
+namespace innersphere {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLargest = std::size_t{2} << 30;
+
+struct Close {
+  void operator()(FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<FILE, Close>;
+
+bool exists(const std::string& path) {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(path, error));
+}
+
+}  // namespace
+
+std::string endingOf(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  if (!ending.empty()) ending.erase(0, 1);
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+std::string readFile(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    throw Error(ErrorCode::file_not_found, path + " is a folder; name a file in it");
+  }
+  const File file(std::fopen(path.c_str(), "rb"));
+  if (!file) {
+    throw Error(ErrorCode::file_not_found,
+                "cannot open " + path + " (" + std::strerror(errno) + "); check the path");
+  }
+  std::string bytes;
+  char block[1 << 16];
+  while (const std::size_t n = std::fread(block, 1, sizeof block, file.get())) {
+    bytes.append(block, n);
+    if (bytes.size() > kLargest)
+      throw Error(ErrorCode::bad_format, path + " is over 2 GiB, too large for a packing");
+  }
+  if (std::ferror(file.get())) {
+    throw Error(ErrorCode::bad_format, path + " could not be read to its end (" + std::strerror(errno) + ")");
+  }
+  return bytes;
+}
+
+void writeFile(const std::string& path, const std::string& bytes, bool overwrite) {
+  if (!overwrite && exists(path)) {
+    throw Error(ErrorCode::file_exists, path + " exists already; choose another name or ask for overwriting");
+  }
+  static std::atomic<unsigned> counter{0};
+  const std::string temporary =
+      path + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
+  const auto fail = [&](int code) {
+    throw Error(ErrorCode::write_failed, "cannot write " + path + " (" + std::strerror(code) +
+                                             "); check the folder and the free space");
+  };
+  FILE* file = std::fopen(temporary.c_str(), "wbx");
+  if (!file) fail(errno);
+  errno = 0;
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const bool closed = std::fclose(file) == 0;
+  int code = errno;
+  if (written && closed) {
+    if (std::rename(temporary.c_str(), path.c_str()) == 0) return;
+    code = errno;
+  }
+  std::remove(temporary.c_str());
+  fail(code);
+}
+
+}  // namespace innersphere

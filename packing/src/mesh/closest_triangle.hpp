@@ -1,0 +1,38 @@
+// Nearest point of a set of triangles.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "innersphere/mesh.hpp"
+#include "innersphere/solid.hpp"
+#include "mesh/embree.hpp"
+#include "mesh/triangle.hpp"
+
+namespace innersphere {
+
+/// Embree's tree over the triangles. Embree works in float, so the tree is built over a centred copy of unit
+/// diagonal with boxes rounded outwards, and serves only to leave out triangles that are certainly too far;
+/// distances and the choice among the rest are in double and equal brute force bit for bit (the lowest index
+/// wins a tie).
+class TriangleTree {
+ public:
+  explicit TriangleTree(const Mesh& mesh);
+  ClosestPoint closest(const Vec3d& p, double cutoff) const;
+
+ private:
+  struct Release {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  };
+
+  Bounds unitBox(const Mesh& mesh, std::size_t triangle) const;
+
+  std::vector<Triangle> triangles_;
+  Vec3d centre_{};
+  double to_unit_ = 1;
+  std::unique_ptr<RTCDeviceTy, Release> device_;
+  std::unique_ptr<RTCSceneTy, Release> scene_;
+};
+
+}  // namespace innersphere

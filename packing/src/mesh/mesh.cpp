@@ -1,0 +1,176 @@
+#include "innersphere/mesh.hpp"
+
+#include "common/vec3.hpp"
+#include "innersphere/error.hpp"
+#include "mesh/mesh_clean.hpp"
+#include "mesh/mesh_cuts.hpp"
+#include "mesh/mesh_report.hpp"
+#include "mesh/mesh_shells.hpp"
+#include "mesh/mesh_solid.hpp"
+#include "mesh/mesh_topology.hpp"
+
+namespace innersphere {
+namespace {
+
+// Positions this much of the diagonal apart are one point, if the mesh is open otherwise.
+constexpr double kWeldTolerance = 1e-7;
+// Longest sides [m] outside of these make the user check the units.
+constexpr double kSmall = 0.005;
+constexpr double kLarge = 50;
+// Steps of single precision at a mesh's place, relative to its diagonal, that spoil it.
+constexpr double kCoarse = 1e-5;
+
+// Tries what may close an open mesh without moving its surface; keeps what helps.
+void mendOpenEdges(Mesh& mesh, Topology& topology, MeshReport& report) {
+  Bounds box = emptyBounds();
+  for (const Vec3d& v : mesh.vertices) extend(box, v);
+  const double tolerance = kWeldTolerance * diagonal(box);
+  const auto keepIfBetter = [&](Mesh&& mended, const std::string& note) {
+    const Topology after = topologyOf(mended);
+    if (mended.triangles.empty() || after.unbalanced.size() >= topology.unbalanced.size()) return;
+    mesh = std::move(mended);
+    topology = after;
+    report.notes.push_back(note);
+  };
+
+  Mesh welded = mesh;
+  const std::size_t merged = weldClose(welded, tolerance);
+  const std::size_t collapsed = dropCollapsed(welded);
+  keepIfBetter(std::move(welded), counted(merged, "vertex pair") + " closer than " + text(tolerance) +
+                                      " m merged, because the mesh was open between them, and " +
+                                      counted(collapsed, "triangle") + " that collapsed removed");
+  Mesh without_flat = mesh;
+  const std::size_t flat = dropFlat(without_flat);
+  keepIfBetter(std::move(without_flat), counted(flat, "triangle") + " without area removed");
+}
+
+// Closes each loop of unbalanced edges with a fan around its middle, so that no sphere bulges far through a
+// hole and the winding number is an integer everywhere.
+std::size_t closeLoops(Mesh& mesh, const Topology& topology) {
+  std::vector<Vec3d> sum(topology.loops);
+  std::vector<double> count(topology.loops);
+  for (std::size_t i = 0; i < topology.unbalanced.size(); ++i) {
+    const std::uint32_t loop = topology.loop[i];
+    sum[loop] = sum[loop] + mesh.vertices[topology.unbalanced[i].from];
+    count[loop] += 1;
+  }
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (std::size_t i = 0; i < topology.loops; ++i) mesh.vertices.push_back((1 / count[i]) * sum[i]);
+  for (std::size_t i = 0; i < topology.unbalanced.size(); ++i) {
+    const HalfEdge& e = topology.unbalanced[i];
+    mesh.triangles.push_back({e.to, e.from, first + topology.loop[i]});
+  }
+  return topology.unbalanced.size();
+}
+
+void noteShells(const ShellsReport& shells, MeshReport& report) {
+  if (shells.turned > 0) {
+    report.inside_out = shells.turned == shells.count;
+    report.notes.push_back(report.inside_out
+                               ? "the mesh was inside-out (negative volume): all triangles were turned"
+                               : counted(shells.turned, "shell") + " of " + std::to_string(shells.count) +
+                                     " inside-out: turned");
+  }
+  if (shells.cavities > 0) {
+    report.notes.push_back(counted(shells.cavities, "closed shell") +
+                           " inside another and facing inwards: kept as hollow");
+  }
+  if (shells.removed > 0) {
+    report.notes.push_back(
+        counted(shells.removed, "closed shell") +
+        " inside solid material but facing outwards: removed; if it was meant to be hollow, "
+        "turn its triangles");
+  }
+}
+
+void noteUnits(MeshReport& report) {
+  const Vec3d size = report.bounds.max - report.bounds.min;
+  const double longest = std::max({size[0], size[1], size[2]});
+  if (longest < kSmall || longest > kLarge) {
+    report.notes.push_back("the longest side is " + text(longest) +
+                           " m; if the file is not in metres, give a scale (0.001 for millimetres)");
+  }
+}
+
+void notePlace(MeshReport& report) {
+  double farthest = 0;
+  for (int k = 0; k < 3; ++k) {
+    farthest = std::max({farthest, std::abs(report.bounds.min[k]), std::abs(report.bounds.max[k])});
+  }
+  const double size = diagonal(report.bounds), step = farthest * std::numeric_limits<float>::epsilon();
+  if (step > kCoarse * size) {
+    report.notes.push_back("the mesh is " + text(farthest / size) +
+                           " of its sizes away from the origin; mesh files are read in single precision, "
+                           "whose numbers are " +
+                           text(step) + " m apart there: move it to the origin before it is exported");
+  }
+}
+
+void noteCuts(const Cuts& cuts, MeshReport& report) {
+  report.cuts = cuts.pairs;
+  report.cut_at = cuts.at;
+  if (cuts.pairs == 0) return;
+  report.notes.push_back(
+      counted(cuts.pairs, "pair") + " of triangles cut each other, one near " + text(cuts.at) +
+      ": spheres keep away from all of them, also inside; a union in a mesh editor gives a "
+      "better fill");
+}
+
+}  // namespace
+
+std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshOptions& options,
+                                 MeshReport* report_out) {
+  MeshReport local;
+  MeshReport& report = report_out ? *report_out : local;
+  report = {};
+  requireTriangles(mesh, name);
+
+  weldEqual(mesh);
+  report.degenerate = dropCollapsed(mesh);
+  if (mesh.triangles.empty()) {
+    throw Error(ErrorCode::empty_input, name + " has only degenerate triangles (" +
+                                            std::to_string(report.degenerate) + " with two equal corners)");
+  }
+  if (report.degenerate > 0) {
+    report.notes.push_back(counted(report.degenerate, "triangle") + " with two equal corners removed");
+  }
+  Topology topology = topologyOf(mesh);
+  if (!topology.unbalanced.empty()) mendOpenEdges(mesh, topology, report);
+  report.flipped_edges = topology.flipped_edges;
+  if (topology.flipped_edges > 0) {
+    const std::size_t turned = orientAlike(mesh);
+    topology = topologyOf(mesh);
+    report.notes.push_back(counted(turned, "triangle") + " turned to wind like the neighbours");
+  }
+  describe(topology, mesh, report);
+  noteUnits(report);
+  notePlace(report);
+  if (report.non_manifold_edges > 0) {
+    report.notes.push_back(counted(report.non_manifold_edges, "edge") + " used by more than two triangles");
+  }
+
+  if (!topology.unbalanced.empty()) {
+    if (!options.repair) refuse(report, name);
+    const std::size_t added = closeLoops(mesh, topology);
+    report.notes.push_back("repaired: " + counted(report.open_loops, "hole") + " closed with " +
+                           counted(added, "triangle") +
+                           ", distances there are to the closing triangles; inside is where the winding "
+                           "number exceeds 1/2");
+    topology = topologyOf(mesh);
+  }
+  const ShellsReport shells = orderShells(mesh, topology);
+  noteShells(shells, report);
+  noteCuts(findCuts(mesh), report);
+  const bool may_overlap = report.cuts > 0 || shells.boxes_meet;
+
+  auto solid = std::make_unique<MeshSolid>(std::move(mesh), name, may_overlap);
+  const double size = diagonal(solid->bounds());
+  if (!(solid->massProperties().volume > 1e-12 * size * size * size)) {
+    throw Error(ErrorCode::not_a_solid, name + " encloses no volume (" +
+                                            text(solid->massProperties().volume) +
+                                            " m^3); it is a sheet, give it a thickness in a mesh editor");
+  }
+  return solid;
+}
+
+}  // namespace innersphere

@@ -1,0 +1,104 @@
+#include "mesh/mesh_clean.hpp"
+
+#include <bit>
+#include <cmath>
+#include <unordered_map>
+
+#include "common/vec3.hpp"
+
+namespace innersphere {
+namespace {
+
+std::uint64_t mix(std::uint64_t h, std::uint64_t x) {
+  h = (h ^ x) * 0x9e3779b97f4a7c15u;
+  return h ^ (h >> 32);
+}
+
+struct HashPosition {
+  std::size_t operator()(const Vec3d& p) const {
+    std::uint64_t h = 0;
+    for (double x : p) h = mix(h, std::bit_cast<std::uint64_t>(x + 0.0));  // -0 and 0 are equal
+    return h;
+  }
+};
+
+using Cell = std::array<std::int64_t, 3>;
+struct HashCell {
+  std::size_t operator()(const Cell& c) const {
+    std::uint64_t h = 0;
+    for (std::int64_t x : c) h = mix(h, static_cast<std::uint64_t>(x));
+    return h;
+  }
+};
+
+bool collapsed(const std::array<std::uint32_t, 3>& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+// Replaces the corners by place(vertex), a number in a new list.
+template <class Place>
+void renumber(Mesh& mesh, const Place& place) {
+  std::vector<Vec3d> vertices;
+  std::vector<std::uint32_t> done(mesh.vertices.size(), UINT32_MAX);
+  for (auto& t : mesh.triangles) {
+    for (std::uint32_t& v : t) {
+      if (done[v] == UINT32_MAX) done[v] = place(mesh.vertices[v], vertices);
+      v = done[v];
+    }
+  }
+  mesh.vertices = std::move(vertices);
+}
+
+}  // namespace
+
+void flip(std::array<std::uint32_t, 3>& triangle) {
+  std::swap(triangle[1], triangle[2]);
+}
+
+void weldEqual(Mesh& mesh) {
+  std::unordered_map<Vec3d, std::uint32_t, HashPosition> known;
+  known.reserve(mesh.vertices.size());
+  renumber(mesh, [&](const Vec3d& p, std::vector<Vec3d>& vertices) {
+    const auto [entry, added] = known.try_emplace(p, static_cast<std::uint32_t>(vertices.size()));
+    if (added) vertices.push_back(p);
+    return entry->second;
+  });
+}
+
+std::size_t weldClose(Mesh& mesh, double tolerance) {
+  const std::size_t before = mesh.vertices.size();
+  const Vec3d origin = mesh.vertices.empty() ? Vec3d{} : mesh.vertices.front();
+  std::unordered_multimap<Cell, std::uint32_t, HashCell> cells;
+  renumber(mesh, [&](const Vec3d& p, std::vector<Vec3d>& vertices) {
+    Cell home;
+    for (int k = 0; k < 3; ++k) home[k] = std::llround((p[k] - origin[k]) / tolerance);
+    std::uint32_t nearest = UINT32_MAX;
+    for (int n = 0; n < 27; ++n) {
+      const Cell cell{home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1};
+      const auto [first, last] = cells.equal_range(cell);
+      for (auto i = first; i != last; ++i) {
+        if (norm(vertices[i->second] - p) <= tolerance) nearest = std::min(nearest, i->second);
+      }
+    }
+    if (nearest != UINT32_MAX) return nearest;
+    const auto added = static_cast<std::uint32_t>(vertices.size());
+    vertices.push_back(p);
+    cells.emplace(home, added);
+    return added;
+  });
+  return before - mesh.vertices.size();
+}
+
+std::size_t dropCollapsed(Mesh& mesh) {
+  return std::erase_if(mesh.triangles, collapsed);
+}
+
+std::size_t dropFlat(Mesh& mesh) {
+  return std::erase_if(mesh.triangles, [&](const std::array<std::uint32_t, 3>& t) {
+    const Vec3d& a = mesh.vertices[t[0]];
+    const Vec3d n = cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a);
+    return dot(n, n) == 0;
+  });
+}
+
+}  // namespace innersphere

@@ -1,0 +1,48 @@
+#include "mesh/mesh_solid.hpp"
+
+#include "common/hash.hpp"
+#include "common/vec3.hpp"
+#include "mesh/mass_properties.hpp"
+
+namespace innersphere {
+namespace {
+
+// Cells along the longest side when a mesh is searched for points that it winds around more than once.
+constexpr int kOverlapCells = 64;
+
+}  // namespace
+
+MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once)
+    : mesh_(std::move(closed)), name_(name), bounds_(emptyBounds()), tree_(mesh_), winding_(mesh_) {
+  for (const Vec3d& v : mesh_.vertices) extend(bounds_, v);
+  Moments moments = momentsOf(mesh_);
+  if (count_once) {
+    // The divergence theorem integrates the winding number; the solid counts as 1 where that exceeds 1/2.
+    moments.add(integrate(bounds_, kOverlapCells, [&](const Vec3d& p, double reach, double) {
+      const double winding = std::round(winding_.windingNumber(p));
+      return Probe{(winding > 0.5 ? 1 : 0) - winding, tree_.closest(p, reach).distance};
+    }));
+  }
+  mass_ = moments.massProperties();
+}
+
+ClosestPoint MeshSolid::closestPoint(const Vec3d& p, double cutoff) const {
+  return tree_.closest(p, cutoff);
+}
+
+bool MeshSolid::contains(const Vec3d& p) const {
+  return holds(bounds_, p) && winding_.windingNumber(p) > 0.5;
+}
+
+std::string MeshSolid::hash() const {
+  Hash hash;
+  for (const Vec3d& v : mesh_.vertices) {
+    for (double x : v) hash.add(x);
+  }
+  for (const auto& t : mesh_.triangles) {
+    for (std::uint32_t v : t) hash.add(std::uint64_t{v});
+  }
+  return hash.text();
+}
+
+}  // namespace innersphere

@@ -1,0 +1,35 @@
+// A triangle mesh as a solid.
+#pragma once
+
+#include "innersphere/mesh.hpp"
+#include "innersphere/solid.hpp"
+#include "mesh/closest_triangle.hpp"
+#include "mesh/winding_tree.hpp"
+
+namespace innersphere {
+
+class MeshSolid : public Solid {
+ public:
+  /// `closed`: each edge is used as often in one direction as in the other. Inside is where the winding
+  /// number exceeds 1/2. If it may be other than 0 and 1 somewhere, `count_once` corrects the mass properties
+  /// for that by sampling.
+  MeshSolid(Mesh closed, const std::string& name, bool count_once);
+
+  ClosestPoint closestPoint(const Vec3d& p, double cutoff) const override;
+  bool contains(const Vec3d& p) const override;
+  Bounds bounds() const override { return bounds_; }
+  MassProperties massProperties() const override { return mass_; }
+  Mesh surface() const override { return mesh_; }
+  std::string name() const override { return name_; }
+  std::string hash() const override;
+
+ private:
+  Mesh mesh_;
+  std::string name_;
+  Bounds bounds_;
+  TriangleTree tree_;
+  WindingTree winding_;
+  MassProperties mass_;
+};
+
+}  // namespace innersphere

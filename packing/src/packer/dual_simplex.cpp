@@ -1,0 +1,96 @@
+#include "packer/dual_simplex.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace innersphere {
+namespace {
+
+// Digits of a function that count. The solid's distances carry rounding errors that depend on its size and
+// place; without them, the search takes the same way for all sizes and places, also where two ways are
+// equally good.
+constexpr double kDigits = 0x1p22;
+
+double rounded(double x, double unit) {
+  return std::nearbyint(x / unit * kDigits) * unit / kDigits;
+}
+
+}  // namespace
+
+void MaxMin::add(double value, const Point& gradient) {
+  if (rows_.empty()) {
+    rows_.reserve(kFaces + 24);
+    for (int k = 0; k < 3; ++k) {
+      for (double sign : {1.0, -1.0}) {
+        Row face{Eigen::Vector4d::Zero(), half_};
+        face.normal[1 + k] = sign;
+        rows_.push_back(face);
+      }
+    }
+  }
+  const auto slope = [&](int k) { return -rounded(gradient[k], 1); };
+  rows_.push_back(
+      {Eigen::Vector4d(1, slope(0), slope(1), slope(2)), rounded(value, std::exp2(std::ilogb(half_)))});
+  if (size() == 1) {
+    start();
+    return;
+  }
+  // Each pivot lowers the optimum; the cap only guards against rounding.
+  const double tolerance = 1e-13;
+  for (int pivots = 0; pivots < 64; ++pivots) {
+    int worst = -1;
+    double excess = tolerance;
+    for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
+      const double e = rows_[k].excess(optimum_);
+      if (e > excess) {
+        excess = e;
+        worst = k;
+      }
+    }
+    if (worst < 0) return;
+    enter(worst);
+  }
+}
+
+void MaxMin::start() {
+  const Row& first = rows_[kFaces];
+  Eigen::Matrix4d normals;
+  Eigen::Vector4d bounds;
+  basis_[0] = kFaces;
+  for (int k = 0; k < 3; ++k) basis_[1 + k] = 2 * k + (first.normal[1 + k] <= 0 ? 0 : 1);
+  for (int i = 0; i < 4; ++i) {
+    normals.row(i) = rows_[basis_[i]].normal;
+    bounds[i] = rows_[basis_[i]].bound;
+  }
+  inverse_ = normals.inverse();
+  optimum_ = inverse_ * bounds;
+}
+
+void MaxMin::enter(int row) {
+  // The new normal as a combination of the basis; the first dual variable that it drives to zero leaves.
+  const Eigen::RowVector4d mix = rows_[row].normal.transpose() * inverse_;
+  int leaving = -1;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 4; ++i) {
+    if (mix[i] < 1e-12) continue;
+    const double ratio = inverse_(0, i) / mix[i];
+    if (ratio < smallest) {
+      smallest = ratio;
+      leaving = i;
+    }
+  }
+  if (leaving < 0) return;
+  const Eigen::Vector4d column = inverse_.col(leaving) / mix[leaving];
+  for (int i = 0; i < 4; ++i) {
+    if (i != leaving) inverse_.col(i) -= mix[i] * column;
+  }
+  inverse_.col(leaving) = column;
+  basis_[leaving] = row;
+  Eigen::Vector4d bounds;
+  for (int i = 0; i < 4; ++i) bounds[i] = rows_[basis_[i]].bound;
+  optimum_ = inverse_ * bounds;
+}
+
+}  // namespace innersphere

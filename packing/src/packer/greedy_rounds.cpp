@@ -1,0 +1,125 @@
+#include "packer/greedy_rounds.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace innersphere {
+namespace {
+
+// The first spheres decide most of the density and cost little: they are placed with a tight delta.
+constexpr std::size_t kTightSpheres = 300;
+constexpr double kTightDelta = 0.01;
+
+// Unless this many cells would have to be looked at in one round: the solid is equally thick over a large
+// part, where proofs with a tight delta are expensive and gain nothing.
+constexpr std::size_t kMostTightCells = 50000;
+
+// The part of delta that is left between the radii wanted and the bound to be proven. Smaller: fewer rounds;
+// more work where the solid is equally thick everywhere.
+constexpr double kUndecided = 0.25;
+
+// Side of a brick, in wanted radii, at least. Larger bricks: fewer look-ups of spheres, longer lists of them.
+constexpr double kBrick = 4;
+
+struct Active {
+  std::uint64_t brick;
+  Cell cell;
+};
+
+int brickLevel(double wanted) {
+  return std::clamp(static_cast<int>(std::floor(-std::log2(kBrick * wanted))), 0, 20);
+}
+
+// Active cells in the order of bricks, and where each brick begins.
+std::vector<std::size_t> sortIntoBricks(std::vector<Active>& active, int level) {
+  tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t i) {
+    active[i].brick = mortonCode(active[i].cell, level) << 1 | (active[i].cell.level < level);
+  });
+  tbb::parallel_sort(active.begin(), active.end(), [](const Active& a, const Active& b) {
+    const auto key = [](const Active& c) {
+      return std::make_tuple(c.brick, c.cell.level, c.cell.at[2], c.cell.at[1], c.cell.at[0]);
+    };
+    return key(a) < key(b);
+  });
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    const bool large = active[i].cell.level < level;  // larger than a brick: alone
+    if (i == 0 || large || active[i].brick != active[i - 1].brick) begins.push_back(i);
+  }
+  begins.push_back(active.size());
+  return begins;
+}
+
+}  // namespace
+
+Rounds::Placed Rounds::run(tbb::task_arena& arena, const std::function<bool(const Placed&)>& stop,
+                           const std::function<bool(const Placed&, double)>& pause) {
+  // The ladder's rungs are the bounds of rounds with the tight delta; a round with a larger delta takes
+  // several at once.
+  const double tight = std::min(kTightDelta, delta_);
+  const auto strides = static_cast<std::size_t>(std::log1p(delta_) / std::log1p(tight) + 1e-9);
+  if (min_radius_ >= 0.5) return {};
+  const Ladder ladder(1, min_radius_ * std::pow(1 + tight, kUndecided), std::pow(1 + tight, 1 - kUndecided));
+  CellQueue queue(ladder);
+  queue.push(Cell{});
+  Placed placed;
+  SphereGrid& grid = placed.grid;
+
+  while (!queue.empty()) {
+    const std::size_t rung = queue.top();
+    const bool early = placed.top.size() < kTightSpheres && queue.countAbove(rung + 1) < kMostTightCells;
+    const std::size_t next = rung + (early ? 1 : strides);
+    const float top = ladder[rung], bound = ladder[next];
+    const double wanted = std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_);
+    placed.largest_missing = top;
+    std::vector<Active> active;
+    for (const Cell& cell : queue.takeAbove(next)) active.push_back({0, cell});
+    while (!active.empty()) {
+      if (pause(placed, bound)) return placed;
+      std::vector<CellSearch::Result> results;
+      arena.execute([&] {
+        const std::vector<std::size_t> begins = sortIntoBricks(active, brickLevel(wanted));
+        results.resize(begins.size() - 1);
+        tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t brick) {
+          std::vector<Cell> cells;
+          for (std::size_t i = begins[brick]; i < begins[brick + 1]; ++i) cells.push_back(active[i].cell);
+          results[brick] = CellSearch(container_, grid, top, bound, wanted).search(cells);
+        });
+      });
+      active.clear();
+      std::vector<CellSearch::Candidate> candidates;
+      for (const CellSearch::Result& result : results) {
+        for (const Cell& cell : result.cells) {
+          if (cell.upper > bound) {
+            active.push_back({0, cell});
+          } else {
+            queue.push(cell);
+          }
+        }
+        candidates.insert(candidates.end(), result.candidates.begin(), result.candidates.end());
+      }
+      std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+        // In single precision: what differs by rounding only is equal.
+        const auto r = static_cast<float>(a.ball.radius), s = static_cast<float>(b.ball.radius);
+        return r != s ? r > s : a.order < b.order;
+      });
+      for (const CellSearch::Candidate& candidate : candidates) {
+        const Ball& ball = candidate.ball;
+        if (grid.nearest(ball.centre, ball.radius).distance < ball.radius) continue;
+        grid.insert(ball);
+        placed.rounded.push_back(container_.rounded(ball));
+        placed.top.push_back(top);
+        if (stop(placed)) return placed;
+      }
+    }
+    placed.largest_missing = bound;
+  }
+  placed.largest_missing = ladder[ladder.size() - 1];
+  return placed;
+}
+
+}  // namespace innersphere

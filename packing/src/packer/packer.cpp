@@ -1,0 +1,219 @@
+#include "innersphere/packer.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "common/vec3.hpp"
+#include "innersphere/error.hpp"
+#include "packer/cell_volumes.hpp"
+#include "packer/container.hpp"
+#include "packer/empty_parts.hpp"
+#include "packer/greedy_rounds.hpp"
+#include "packer/mass_weights.hpp"
+#include "packer/overlap_errors.hpp"
+#include "packer/surface_samples.hpp"
+#include "packer/volume_true.hpp"
+
+namespace innersphere {
+namespace {
+
+constexpr double kBallVolume = 4.0 / 3.0 * std::numbers::pi;
+
+// A solid filled to this fraction counts as full: a ball, after its first sphere.
+constexpr double kFull = 1 - 1e-6;
+
+// The first prefix with volume-true radii of its own; the next ones double.
+constexpr std::size_t kFirstPrefix = 64;
+
+void require(bool condition, const char* message) {
+  if (!condition) throw Error(ErrorCode::bad_argument, message);
+}
+
+void checkOptions(const PackOptions& options) {
+  require(std::isfinite(options.min_radius) && options.min_radius >= 0,
+          "min_radius must be a length of 0 or more");
+  require(options.density >= 0 && options.density <= 1, "density must lie between 0 and 1");
+  require(std::isfinite(options.gap) && options.gap >= 0, "gap must be a length of 0 or more");
+  require(options.delta >= 0.001 && options.delta <= 1, "delta must lie between 0.001 and 1");
+  require(options.threads >= 0, "threads must be 0 or more");
+}
+
+std::string commandLine(const PackOptions& options) {
+  std::string line = "--spheres " + std::to_string(options.spheres);
+  const auto add = [&](const char* name, double x) {
+    char digits[32];  // as few as give the same number back
+    line.append(name).append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+  };
+  if (options.min_radius > 0) add(" --min-radius ", options.min_radius);
+  if (options.density > 0) add(" --density ", options.density);
+  if (options.gap > 0) add(" --gap ", options.gap);
+  add(" --delta ", options.delta);
+  return line;
+}
+
+double volumeOf(const Ball& ball) {
+  return kBallVolume * ball.radius * ball.radius * ball.radius;
+}
+
+/// The solid and the limits in the packer's coordinates.
+struct Task {
+  Task(const Solid& solid, const PackOptions& wishes, const MassProperties& mass, const Mesh& surface)
+      : container(solid), options(wishes), samples(surface, container) {
+    const double side = container.side();
+    volume = mass.volume / (side * side * side);
+    enough = std::min(options.density > 0 ? options.density : 1.0, kFull) * volume;
+    gap = options.gap / side - 2 * container.coarseness();
+    const Bounds box = solid.bounds();
+    const double diagonal =
+        std::hypot(box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]);
+    const double asked = options.min_radius > 0 ? options.min_radius : 1e-4 * diagonal;
+    // Rounding makes a sphere smaller, and gaps larger.
+    smallest = std::max((1 + 1e-6) * asked / side + container.coarseness(), 1e-5);
+  }
+
+  Container container;
+  const PackOptions& options;
+  SurfaceSamples samples;
+  double volume, enough, gap, smallest;
+};
+
+/// Calls the user back, and ends the work if the user wants that.
+class Reporter {
+ public:
+  Reporter(const Progress& progress, const std::string& name) : progress_(progress), name_(name) {}
+  void operator()(const char* stage, double fraction) const {
+    if (progress_ && !progress_(stage, std::clamp(fraction, 0.0, 1.0))) {
+      throw Error(ErrorCode::cancelled, "packing '" + name_ + "' was cancelled");
+    }
+  }
+
+ private:
+  const Progress& progress_;
+  const std::string name_;
+};
+
+Rounds::Placed place(const Task& task, tbb::task_arena& arena, const Reporter& report) {
+  const PackOptions& options = task.options;
+  double filled = 0;
+  std::size_t uncovered = 0;
+  const auto stop = [&](const Rounds::Placed& now) {
+    filled += volumeOf(now.rounded.back());
+    return now.top.size() == options.spheres || filled >= task.enough;
+  };
+  const auto pause = [&](const Rounds::Placed& now, double bound) {
+    // The number of spheres that fit grows with this power of their radius.
+    const double by_radius = std::pow(task.smallest / bound, 2.5);
+    const double by_count =
+        options.spheres > 0 ? static_cast<double>(now.top.size()) / static_cast<double>(options.spheres) : 0;
+    const double by_density = options.density > 0 ? std::pow(filled / task.enough, 10) : 0;
+    report("packing", std::max({by_radius, by_count, by_density}));
+    return options.gap > 0 && task.samples.covered(now.grid, task.gap, uncovered);
+  };
+  return Rounds(task.container, options.delta, task.smallest).run(arena, stop, pause);
+}
+
+/// The spheres by falling radius, as many as the limits ask for, and what is certain about them.
+struct Chosen {
+  std::vector<Ball> balls;
+  double filled = 0;
+  double delta = 0;
+  double largest_missing = 0;
+};
+
+Chosen choose(const Task& task, const Rounds::Placed& placed) {
+  std::vector<std::size_t> order(placed.top.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::vector<Ball>& balls = placed.rounded;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return balls[a].radius > balls[b].radius; });
+  // A sphere's bound holds once everything that was placed before it is there, wherever sorting has put that.
+  std::vector<double> top(order.size() + 1, placed.largest_missing);
+  for (std::size_t i = order.size(); i-- > 0;) top[i] = std::max<double>(top[i + 1], placed.top[order[i]]);
+
+  Chosen chosen;
+  for (std::size_t i : order) chosen.balls.push_back(balls[i]);
+  if (task.options.gap > 0) {
+    const SphereGrid grid(chosen.balls);
+    if (const auto count = task.samples.prefixWithin(grid, task.gap)) chosen.balls.resize(*count);
+  }
+  std::size_t count = 0;
+  while (count < chosen.balls.size() && chosen.filled < task.enough) {
+    chosen.delta = std::max(chosen.delta, top[count] / chosen.balls[count].radius - 1);
+    chosen.filled += volumeOf(chosen.balls[count++]);
+  }
+  chosen.balls.resize(count);
+  const double room = std::max(0.0, task.volume - chosen.filled);
+  chosen.largest_missing = std::min(top[count], std::cbrt(room / kBallVolume));
+  return chosen;
+}
+
+}  // namespace
+
+Packing pack(const Solid& solid, const PackOptions& options, const Progress& progress) {
+  checkOptions(options);
+  Packing packing;
+  packing.solid = solid.massProperties();
+  require(packing.solid.volume > 0, "the solid's mass properties must have a volume greater than 0");
+  packing.provenance = {solid.name(), solid.hash(), commandLine(options), INNERSPHERE_VERSION};
+  const Mesh surface = solid.surface();
+  const Task task(solid, options, packing.solid, surface);
+  require(options.gap == 0 || !task.samples.empty(),
+          "a gap can only be asked for if the solid has a surface");
+
+  const Reporter report(progress, solid.name());
+  tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
+  const Chosen chosen = choose(task, place(task, arena, report));
+  if (chosen.balls.empty()) {
+    throw Error(ErrorCode::no_sphere_fits, "no sphere of the smallest allowed radius fits into '" +
+                                               solid.name() + "'; ask for a smaller min_radius");
+  }
+  const double side = task.container.side();
+  packing.origin = task.container.origin();
+  packing.surface = task.container.toSurface(surface);
+  for (const Ball& ball : chosen.balls) packing.spheres.push_back(task.container.toSphere(ball));
+  packing.certificate = {chosen.delta, side * chosen.largest_missing};
+
+  report("quality", 0);
+  arena.execute([&] { packing.quality = task.samples.measure(SphereGrid(chosen.balls)); });
+  packing.quality.density = chosen.filled / task.volume;
+  packing.quality.gap_mean *= side;
+  packing.quality.gap_p95 *= side;
+  packing.quality.gap_max *= side;
+
+  const std::size_t count = chosen.balls.size();
+  Shares shares;
+  for (std::size_t prefix = std::min(kFirstPrefix, count);; prefix = std::min(2 * prefix, count)) {
+    report("shares", static_cast<double>(prefix) / static_cast<double>(2 * count));
+    const auto balls = std::span(chosen.balls).first(prefix);
+    arena.execute([&] {
+      shares = findShares(task.container, balls, task.volume);
+      packing.volume_true.push_back(volumeTrueRadii(task.container, balls, shares));
+    });
+    if (prefix == count) break;
+  }
+  report("measuring", 0);
+  arena.execute([&] {
+    packing.overlap_errors = findOverlapErrors(task.container, chosen.balls, packing.volume_true, task.volume,
+                                               task.container.fromWorld(packing.solid.centre_of_mass));
+  });
+  packing.solid.centre_of_mass = packing.solid.centre_of_mass - packing.origin;
+  for (double& share : shares.volumes) share *= side * side * side;
+  packing.mass_weights = findMassWeights(packing.spheres, shares.volumes, packing.solid);
+  const Mat3d& inertia = packing.solid.inertia;
+  if (packing.mass_weights.empty() && inertia[0] + inertia[4] + inertia[8] > 0) {
+    packing.warnings.push_back(
+        "no masses of the spheres give the inertia of the solid; use that of the solid");
+  }
+  for (std::string& sentence : nameEmptyParts(surface, packing)) {
+    packing.warnings.push_back(std::move(sentence));
+  }
+  report("measuring", 1);
+  return packing;
+}
+
+}  // namespace innersphere

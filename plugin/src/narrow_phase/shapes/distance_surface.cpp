@@ -1,0 +1,94 @@
+#include "narrow_phase/shapes/distance_surface.hpp"
+
+#include <algorithm>
+
+#include "narrow_phase/shapes/face_on_edge.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+void DistanceSurface::touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) {
+  facets_.expire();
+  const btTransform to_shape = world.inverseTimes(body.world);
+  const btScalar scale = body.scale();
+  const auto near = [&](const btVector3& min, const btVector3& max) {
+    const btScalar radius = btScalar(0.5) * (max - min).length() * scale;
+    return lowerBound(to_shape((min + max) * (btScalar(0.5) * scale))) <= radius + body.largestExcess();
+  };
+  const auto test = [&](std::size_t i) {
+    Touch found;
+    found.sphere = static_cast<std::uint32_t>(i);
+    if (touchOne(body, world, to_shape, found) && found.distance < body.reach(i)) touches.push_back(found);
+  };
+  body.sphereTree().forEach(near, test);
+}
+
+bool DistanceSurface::touchAgain(const PackingBody& body, const btTransform& world,
+                                 std::vector<Touch>& touches) {
+  const btTransform to_shape = world.inverseTimes(body.world);
+  return std::all_of(touches.begin(), touches.end(),
+                     [&](Touch& touch) { return touchOne(body, world, to_shape, touch); });
+}
+
+/// Of the sphere that `touch` names.
+bool DistanceSurface::touchOne(const PackingBody& body, const btTransform& world, const btTransform& to_shape,
+                               Touch& touch) const {
+  Nearest found;
+  const Sphere& sphere = body.shape().packing().spheres[touch.sphere];
+  if (!nearest(to_shape(centre(sphere) * body.scale()), found)) return false;
+  touch.distance = found.distance;
+  touch.normal = world.getBasis() * found.normal;
+  touch.curvature = found.curvature;
+  touch.aside.setZero();
+  if (found.edged != nullptr && found.distance > 0) {
+    layFaceOn(body, touch, [&](const btVector3& edge, const btVector3& out, btScalar tolerance) {
+      const btTransform from_world = world.inverse();
+      const btVector3 direction = from_world.getBasis() * out;
+      const btVector3 outermost = found.edged->localGetSupportingVertex(direction);
+      return (outermost - from_world(edge + body.origin())).dot(direction) < tolerance;
+    });
+  }
+  return true;
+}
+
+bool DistanceSurface::distanceOf(const PackingBody& body, const btTransform& world, const btVector3& place,
+                                 btScalar& distance) {
+  Nearest found;
+  if (!nearest(world.invXform(body.origin() + place), found)) return false;
+  distance = found.distance;
+  return true;
+}
+
+bool DistanceSurface::facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) {
+  const btPolyhedralConvexShape* const shape = polyhedron();
+  if (shape == nullptr) return false;
+  if (facets_.isExpired()) facets_.setHull(*shape);
+  return facets_.place(world, body.origin(), solid);
+}
+
+bool DistanceSurface::boxIsAsBefore(const btCollisionShape& shape) {
+  btVector3 min, max;
+  shape.getAabb(btTransform::getIdentity(), min, max);
+  min[3] = max[3] = 0;  // == compares it, and some of Bullet's shapes do not set it
+  if (min == box_min_ && max == box_max_) return true;
+  box_min_ = min;
+  box_max_ = max;
+  return false;
+}
+
+btScalar DistanceSurface::lowerBound(const btVector3& p) const {
+  Nearest found;
+  return nearest(p, found) ? found.distance : BT_LARGE_FLOAT;
+}
+
+btScalar DistanceSurface::boxDistance(const btCollisionShape& shape, const btVector3& p) {
+  btVector3 min, max;
+  shape.getAabb(btTransform::getIdentity(), min, max);
+  btVector3 beyond = min - p;
+  beyond.setMax(p - max);
+  beyond.setMax(btVector3(0, 0, 0));
+  return beyond.length();
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

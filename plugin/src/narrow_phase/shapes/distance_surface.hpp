@@ -1,0 +1,60 @@
+// Shapes with one nearest point: convex ones, planes and distance fields.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+
+#include "narrow_phase/shapes/facets.hpp"
+#include "narrow_phase/shapes/shape_surface.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+class DistanceSurface : public OtherSurface {
+ public:
+  void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override;
+  bool touchAgain(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) final;
+  bool distanceOf(const PackingBody& body, const btTransform& world, const btVector3& place,
+                  btScalar& distance) final;
+  bool facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) final;
+
+ protected:
+  struct Nearest {
+    btScalar distance;       ///< [m], negative inside
+    btVector3 normal;        ///< unit, outwards
+    btScalar curvature = 0;  ///< [1/m]
+    /// The shape, if it may have an edge or a corner there.
+    const btConvexShape* edged = nullptr;
+  };
+  /// In the frame of the shape. False where the distance is unknown; the point is then taken as far away.
+  virtual bool nearest(const btVector3& p, Nearest& nearest) const = 0;
+  /// At most the distance of p, and cheaper; only its comparison with a radius matters.
+  virtual btScalar lowerBound(const btVector3& p) const;
+  /// Null if it is none.
+  virtual const btPolyhedralConvexShape* polyhedron() const { return nullptr; }
+  /// Whether the bounding box of a shape is what it was at the last call. What moves less than the box shows
+  /// is not noticed before the bodies move.
+  bool boxIsAsBefore(const btCollisionShape& shape);
+  /// Distance of p from the bounding box of a shape.
+  static btScalar boxDistance(const btCollisionShape& shape, const btVector3& p);
+
+ private:
+  bool touchOne(const PackingBody& body, const btTransform& world, const btTransform& to_shape,
+                Touch& touch) const;
+
+  btVector3 box_min_{0, 0, 0};
+  btVector3 box_max_{0, 0, 0};
+  Facets facets_;
+};
+
+// One maker a kind; each in its own file.
+std::unique_ptr<OtherSurface> makePlaneSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeSphereSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeBoxSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeCapsuleSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeConvexSurface(const btCollisionShape& shape);
+/// Null if the shape is no btSdfCollisionShape.
+std::unique_ptr<OtherSurface> makeSdfSurface(const btCollisionShape& shape);
+std::unique_ptr<OtherSurface> makeTriangleSurface(const btCollisionShape& shape);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,23 @@
+#include "narrow_phase/shapes/face_on_edge.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// A place this deep under the face, in spheres, has a well-defined direction to it.
+constexpr btScalar kSunk = btScalar(0.1);
+
+}  // namespace
+
+bool faceOver(const PackingBody& body, const Touch& touch, btVector3& normal) {
+  if (!body.shape().hasSurface()) return false;
+  const btScalar sunk = kSunk * body.ownRadius(touch.sphere) + body.margin;
+  const btVector3 place = body.centreOf(touch.sphere) - touch.normal * (touch.distance - sunk);
+  SurfaceTree::Nearest nearest;
+  if (!body.nearest(place, 2 * body.reach(touch.sphere), nearest)) return false;
+  normal = nearest.normal;
+  return nearest.distance < 0;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

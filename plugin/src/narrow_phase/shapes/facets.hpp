@@ -1,0 +1,42 @@
+// The flat faces of a shape that is no packing, as triangles that know their neighbours.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletCollision/CollisionShapes/btPolyhedralConvexShape.h>
+
+#include "shape/sharp_edges.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Made anew only where the points that it is made of have changed.
+class Facets {
+ public:
+  /// It is time to look at the shape again.
+  void expire() { expired_ = true; }
+  bool isExpired() const { return expired_; }
+  /// Of a mesh's triangles in a box, and some around it.
+  void setMesh(const btConcaveShape& mesh, const btVector3& min, const btVector3& max);
+  /// Of the hull of a polyhedron's vertices, that the shape may be larger than on all sides.
+  void setHull(const btPolyhedralConvexShape& shape);
+
+  /// Relative to a place, axes of the world. False if there are none.
+  bool place(const btTransform& world, const btVector3& relative_to, EdgedSolid& solid) const;
+
+ private:
+  void set(const std::vector<btVector3>& points, Surface (*make)(const std::vector<btVector3>&));
+
+  bool expired_ = true;
+  std::vector<btVector3> points_;  ///< in the frame of the shape
+  btVector3 min_{0, 0, 0};         ///< where a mesh's come from
+  btVector3 max_{0, 0, 0};
+  Surface surface_;
+  std::unique_ptr<SurfaceTree> tree_;
+  btScalar margin_ = 0;  ///< [m]
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,58 @@
+// The surface of a shape that is not a packing, as the spheres of a packing see it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "shape/placed_packing.hpp"
+#include "shape/sharp_edges.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// A sphere near the other solid. A sphere in a concave corner has several.
+struct Touch {
+  std::uint32_t sphere = 0;
+  btScalar distance = 0;      ///< of its centre from the other surface [m], negative inside the other solid
+  btVector3 normal{0, 0, 0};  ///< unit, out of the other solid at the nearest point; axes of the world
+  btScalar curvature = 0;     ///< of the other surface there [1/m]; 0 if flat, or not known
+  /// From the line through its centre along the normal to the nearest point: not zero where that lies on an
+  /// edge of the other surface that a face of the solid lies on. Then the normal is that of the face [m].
+  btVector3 aside{0, 0, 0};
+
+  bool isOnEdge() const { return !aside.isZero(); }
+};
+
+/// One implementation for each kind of shape. An object belongs to one pair of bodies and may remember things
+/// of it.
+class OtherSurface {
+ public:
+  virtual ~OtherSurface() = default;
+
+  /// Appends the spheres of `body` whose centre is closer than their reach (body.reach) to this shape placed
+  /// at `world`.
+  virtual void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) = 0;
+
+  /// Whether the shape is as it was when it was asked last. False if that cannot be told.
+  virtual bool isAsBefore() { return false; }
+  /// Renews touches, of the same spheres, for where the bodies are now; they may be beyond reach by then.
+  /// False if that cannot be done.
+  virtual bool touchAgain(const PackingBody&, const btTransform&, std::vector<Touch>&) { return false; }
+
+  /// How far away from it a place outside is, relative to body.origin(), near the last touches [m]. False if
+  /// that is not known.
+  virtual bool distanceOf(const PackingBody&, const btTransform&, const btVector3&, btScalar&) {
+    return false;
+  }
+
+  /// Its flat faces, those near the last touches at least, relative to body.origin(). False if it has none.
+  virtual bool facets(const PackingBody&, const btTransform&, EdgedSolid&) { return false; }
+};
+
+/// The surface of `shape`, or null for a shape without one (fluids, invalid types). The shape must outlive
+/// it.
+std::unique_ptr<OtherSurface> makeOtherSurface(const btCollisionShape& shape);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,296 @@
+// Triangle meshes, heightfields and every other shape that answers processAllTriangles.
+//
+// A sphere can touch several triangles at once (floor and wall), so every local minimum of the distance
+// counts: a nearest point in the interior of a triangle, or on an edge that two triangles agree on; other
+// edge points belong to a triangle whose neighbour is nearer. Meshes are two-sided, as everywhere in Bullet:
+// which side is outside is decided by where the body's spheres are when they first touch, and kept while the
+// pair lives, so that small spheres which have gone through are pushed back the right way.
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <tuple>
+
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
+#include <LinearMath/btAabbUtil2.h>
+
+#include "narrow_phase/shapes/distance_surface.hpp"
+#include "narrow_phase/shapes/face_on_edge.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Directions of contact of one sphere closer than this are one contact.
+constexpr btScalar kSameDirection = btScalar(0.866);  // cos 30 degrees
+
+/// Nearest point of one triangle to the centre of one sphere, lengths in the packing's frame.
+struct Candidate {
+  std::uint32_t sphere;
+  std::uint32_t order;  ///< in which it was found
+  bool interior;        ///< not on an edge or corner
+  btScalar distance;
+  btScalar height;  ///< signed distance from the triangle's plane
+  btVector3
+      direction;  ///< unit, from the nearest point to the centre; the triangle's normal if they coincide
+  btVector3 point;
+  std::array<btVector3, 3> corners;
+};
+
+class Collector : public btTriangleCallback {
+ public:
+  Collector(const PackingBody& body, const btTransform& to_packing, std::vector<Candidate>& candidates)
+      : body_(body), to_packing_(to_packing), candidates_(candidates) {}
+
+  void processTriangle(btVector3* triangle, int, int) override {
+    std::array<btVector3, 3> v;
+    for (std::size_t i = 0; i < 3; ++i) v[i] = to_packing_(triangle[i]) / body_.scale();
+    btVector3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
+    const btScalar length = normal.length();
+    if (!(length > 0)) return;
+    normal /= length;
+
+    btVector3 min = v[0], max = v[0];
+    for (int i = 1; i < 3; ++i) {
+      min.setMin(v[i]);
+      max.setMax(v[i]);
+    }
+    const btScalar excess = body_.largestExcess() / body_.scale();
+    min -= btVector3(excess, excess, excess);
+    max += btVector3(excess, excess, excess);
+    const auto near = [&](const btVector3& low, const btVector3& high) {
+      return TestAabbAgainstAabb2(low, high, min, max);
+    };
+    body_.sphereTree().forEach(near, [&](std::size_t i) { test(i, v, normal); });
+  }
+
+ private:
+  void test(std::size_t i, const std::array<btVector3, 3>& v, const btVector3& normal) {
+    const btVector3 c = centre(body_.shape().packing().spheres[i]);
+    btSubSimplexClosestResult result;
+    result.reset();
+    solver_.closestPtPointTriangle(c, v[0], v[1], v[2], result);
+    const btVector3 offset = c - result.m_closestPointOnSimplex;
+    const btScalar distance = offset.length();
+    const btScalar reach = body_.reach(i) / body_.scale();
+    if (!(distance < reach)) return;
+    const btUsageBitfield& used = result.m_usedVertices;
+    const bool interior = used.usedVertexA && used.usedVertexB && used.usedVertexC;
+    const auto order = static_cast<std::uint32_t>(candidates_.size());
+    Candidate candidate{
+        static_cast<std::uint32_t>(i),  order, interior, distance, normal.dot(c - v[0]), normal,
+        result.m_closestPointOnSimplex, v};
+    if (distance > SIMD_EPSILON * reach) {
+      candidate.direction = offset / distance;
+    } else {
+      candidate.height = SIMD_EPSILON * reach;  // a centre on the surface counts as in front of it
+    }
+    candidates_.push_back(candidate);
+  }
+
+  const PackingBody& body_;
+  const btTransform& to_packing_;
+  std::vector<Candidate>& candidates_;
+  btVoronoiSimplexSolver solver_;
+};
+
+/// Whether several threads may ask for triangles at once: a GImpact mesh notes who reads it, and what a
+/// user's own shape does is not known.
+bool isSharable(const btConcaveShape& mesh) {
+  switch (mesh.getShapeType()) {
+    case TRIANGLE_MESH_SHAPE_PROXYTYPE:
+    case SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE:
+    case MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE:
+    case TERRAIN_SHAPE_PROXYTYPE:
+      return true;
+    default:
+      return false;
+  }
+}
+
+class TriangleSurface : public OtherSurface {
+ public:
+  explicit TriangleSurface(const btConcaveShape& mesh) : mesh_(mesh), sharable_(isSharable(mesh)) {}
+
+  void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override {
+    static thread_local std::vector<Candidate> candidates;
+    facets_.expire();
+    candidates.clear();
+    collect(body, world, candidates);
+    if (candidates.empty()) return;
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+      return std::tie(a.sphere, a.distance, a.order) < std::tie(b.sphere, b.distance, b.order);
+    });
+    if (side_ == 0) side_ = sideOf(body, candidates);
+    setNear(body, world, candidates);
+
+    for (auto first = candidates.begin(); first != candidates.end();) {
+      auto last = std::find_if(first, candidates.end(),
+                               [&](const Candidate& c) { return c.sphere != first->sphere; });
+      resolve(body, &*first, &*first + (last - first), touches);
+      first = last;
+    }
+  }
+
+  bool distanceOf(const PackingBody& body, const btTransform& world, const btVector3& place,
+                  btScalar& distance) override {
+    EdgedSolid faces;
+    return facets(body, world, faces) && faces.distanceOf(place, distance);
+  }
+
+  bool facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) override {
+    if (facets_.isExpired()) {
+      const std::unique_lock<std::mutex> lock = turnToRead();
+      facets_.setMesh(mesh_, near_min_, near_max_);
+    }
+    solid.inside_out = side_ < 0;
+    return facets_.place(world, body.origin(), solid);
+  }
+
+ private:
+  std::unique_lock<std::mutex> turnToRead() const {
+    static std::mutex mutex;
+    std::unique_lock<std::mutex> lock(mutex, std::defer_lock);
+    if (!sharable_) lock.lock();
+    return lock;
+  }
+
+  void collect(const PackingBody& body, const btTransform& world, std::vector<Candidate>& candidates) const {
+    const btVector3 slack(body.largestExcess(), body.largestExcess(), body.largestExcess());
+    const btTransform shape_to_packing = body.shape().solid->frame.from_packing;
+    // The shape's box in the mesh's frame, through the packing's placement.
+    const btTransform packing_to_mesh = world.inverseTimes(body.world);
+    btVector3 min, max;
+    btTransformAabb(body.shape().solid->box_min, body.shape().solid->box_max, 0, shape_to_packing.inverse(),
+                    min, max);
+    btTransformAabb(min * body.scale() - slack, max * body.scale() + slack, 0, packing_to_mesh, min, max);
+    const btTransform mesh_to_packing = packing_to_mesh.inverse();
+    Collector collector(body, mesh_to_packing, candidates);
+    const std::unique_lock<std::mutex> lock = turnToRead();
+    mesh_.processAllTriangles(&collector, min, max);
+  }
+
+  void setNear(const PackingBody& body, const btTransform& world, const std::vector<Candidate>& candidates) {
+    btVector3 min = candidates[0].point, max = min;
+    btScalar reach = 0;
+    for (const Candidate& c : candidates) {
+      min.setMin(c.point);
+      max.setMax(c.point);
+      reach = btMax(reach, body.reach(c.sphere));
+    }
+    btTransformAabb(min * body.scale(), max * body.scale(), reach, world.inverseTimes(body.world), near_min_,
+                    near_max_);
+    near_min_[3] = near_max_[3] = 0;  // == compares it
+  }
+
+  /// +1 if the body is on the side that the triangles' winding calls outside, -1 on the other. Large spheres
+  /// decide.
+  static int sideOf(const PackingBody& body, const std::vector<Candidate>& candidates) {
+    double sum = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (i > 0 && candidates[i].sphere == candidates[i - 1].sphere) continue;  // nearest triangle only
+      const double r = body.ownRadius(candidates[i].sphere);
+      sum += (candidates[i].height >= 0 ? 1 : -1) * r * r * r;
+    }
+    return sum >= 0 ? 1 : -1;
+  }
+
+  /// Candidates of one sphere, nearest first, to its contacts.
+  void resolve(const PackingBody& body, const Candidate* first, const Candidate* last,
+               std::vector<Touch>& touches) const {
+    const std::size_t start = touches.size();
+    const auto known = [&](const btVector3& normal) {
+      return std::any_of(touches.begin() + static_cast<std::ptrdiff_t>(start), touches.end(),
+                         [&](const Touch& t) { return btFabs(t.normal.dot(normal)) > kSameDirection; });
+    };
+    const btScalar same = btScalar(1e-4) * body.prefix->median_radius;
+    for (const Candidate* c = first; c != last; ++c) {
+      const btVector3 direction = body.world.getBasis() * c->direction;
+      if (known(direction) || (!c->interior && isNearerBeside(c, first, same))) continue;
+      const Corner corner = cornerAt(c, first, last, same);
+      const bool rim = !c->interior && corner.triangles == 1;
+      if (rim && c != first) continue;
+      // Nothing lies behind the rim of an open mesh.
+      const bool inside = corner.height * side_ < 0 && !rim;
+      const btScalar distance = c->distance * body.scale();
+      Touch touch{c->sphere, inside ? -distance : distance, inside ? -direction : direction};
+      if (!c->interior && touch.distance > 0) {
+        layFaceOn(body, touch, [&](const btVector3&, const btVector3& out, btScalar tolerance) {
+          return isOutermost(c, first, last, same, out * body.world.getBasis(), tolerance / body.scale());
+        });
+        if (touch.isOnEdge() && known(touch.normal)) continue;
+      }
+      touches.push_back(touch);
+    }
+  }
+
+  /// Visits the triangles that share the nearest point of `c`.
+  template <typename Visit>
+  static void forEachSharing(const Candidate* c, const Candidate* first, const Candidate* last,
+                             btScalar tolerance, const Visit& visit) {
+    const auto test = [&](const Candidate& other) {
+      if (!(other.point.distance2(c->point) > tolerance * tolerance)) visit(other);
+    };
+    visit(*c);
+    for (const Candidate* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o)
+      test(*(o - 1));
+    for (const Candidate* o = c + 1; o != last && o->distance - c->distance <= tolerance; ++o) test(*o);
+  }
+
+  static bool hasCorner(const Candidate& c, const btVector3& point, btScalar same) {
+    return std::any_of(c.corners.begin(), c.corners.end(),
+                       [&](const btVector3& corner) { return corner.distance2(point) < same * same; });
+  }
+
+  /// Whether a nearest point is a corner of a triangle that comes nearer elsewhere.
+  static bool isNearerBeside(const Candidate* c, const Candidate* first, btScalar same) {
+    return std::any_of(first, c, [&](const Candidate& other) {
+      return c->distance - other.distance > same && hasCorner(other, c->point, same);
+    });
+  }
+
+  struct Corner {
+    int triangles;
+    btScalar height;
+  };
+  /// Of the heights of the triangles that share the nearest point of `c`, the largest in size tells inside
+  /// from outside.
+  static Corner cornerAt(const Candidate* c, const Candidate* first, const Candidate* last,
+                         btScalar tolerance) {
+    Corner corner{0, 0};
+    forEachSharing(c, first, last, tolerance, [&](const Candidate& sharing) {
+      if (corner.triangles++ == 0 || btFabs(sharing.height) > btFabs(corner.height))
+        corner.height = sharing.height;
+    });
+    return corner;
+  }
+
+  /// Whether the triangles that share the nearest point of `c` have nothing further out than it, up to
+  /// `tolerance`.
+  static bool isOutermost(const Candidate* c, const Candidate* first, const Candidate* last, btScalar same,
+                          const btVector3& direction, btScalar tolerance) {
+    bool outermost = true;
+    forEachSharing(c, first, last, same, [&](const Candidate& sharing) {
+      for (const btVector3& v : sharing.corners)
+        outermost = outermost && (v - c->point).dot(direction) < tolerance;
+    });
+    return outermost;
+  }
+
+  const btConcaveShape& mesh_;
+  const bool sharable_;
+  int side_ = 0;
+  btVector3 near_min_{0, 0, 0};  ///< where the last search met the mesh, in its frame
+  btVector3 near_max_{0, 0, 0};
+  Facets facets_;
+};
+
+}  // namespace
+
+std::unique_ptr<OtherSurface> makeTriangleSurface(const btCollisionShape& shape) {
+  return std::make_unique<TriangleSurface>(static_cast<const btConcaveShape&>(shape));
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

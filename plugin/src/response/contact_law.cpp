@@ -1,0 +1,168 @@
+#include "response/contact_law.hpp"
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+#include "common/body_velocity.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Default stiffness in units of m / dt^2, and damping as a multiple of critical damping. Stiffer or less
+/// damped, a stack sways: ten iterations of Bullet's solver do not bring all its contacts to rest. Softer,
+/// chains sink into each other and give back more energy (tests/benchmarks/results/contact-law.md).
+constexpr btScalar kStiffness = 24, kDamping = 4;
+/// Depth at which that stiffness has doubled, in sizes of the smaller body: what carries many times its own
+/// mass needs more than what lies still.
+constexpr btScalar kStiffening = btScalar(0.002);
+/// Contacts deeper than 0.04 m lose their spring to Bullet's split impulse by default; stay above.
+constexpr btScalar kSplitImpulseDepth = btScalar(0.03);
+/// Fastest push of the default law, in sizes of the body per second.
+constexpr btScalar kFastest = btScalar(0.5);
+
+/// Part of a slip that Bullet undoes in a step: m_frictionERP, by default.
+constexpr btScalar kUndone = btScalar(0.2);
+
+/// How far ahead of bodies that roll their load lies, in sizes of the smaller one: a fiftieth of what it does
+/// for steel on steel. Enough to lie still on slopes of a micrometre, which measured surfaces have.
+constexpr btScalar kRolling = btScalar(1e-5);
+/// Points this near to a line, in lengths of it, are on it.
+constexpr btScalar kOnLine = btScalar(0.02);
+
+/// Whether bodies that touch in the points of a patch could roll on it.
+bool canRollOn(const ContactPatch& patch) {
+  btVector3 first(0, 0, 0), along(0, 0, 0);
+  int count = 0;
+  for (int i = 0; i < patch.count; ++i) {
+    const ContactPoint& point = patch.points[i];
+    if (!(point.depth > 0)) continue;
+    const btVector3 way = point.on_b - first;
+    if (count == 0) first = point.on_b;
+    if (count == 1) along = way;
+    if (count > 1 && along.cross(way).length() > kOnLine * along.length2()) return false;
+    ++count;
+  }
+  return true;
+}
+
+btScalar inverseMass(const btCollisionObject& object) {
+  if (object.isStaticOrKinematicObject()) return 0;
+  if (const btRigidBody* body = btRigidBody::upcast(&object)) return body->getInvMass();
+  if (const btMultiBodyLinkCollider* collider = btMultiBodyLinkCollider::upcast(&object)) {
+    const btMultiBody* body = collider->m_multiBody;
+    if (collider->m_link < 0 && body->hasFixedBase()) return 0;
+    const btScalar mass = collider->m_link < 0 ? body->getBaseMass() : body->getLinkMass(collider->m_link);
+    return mass > 0 ? 1 / mass : btScalar(0);
+  }
+  return 0;
+}
+
+btVector3 velocityAt(const btCollisionObject& object, const btVector3& point) {
+  const BodyVelocity velocity(object);
+  return velocity.linear + velocity.spin.cross(point - object.getWorldTransform().getOrigin());
+}
+
+btVector3 centripetal(const btCollisionObject& object, const btVector3& point) {
+  const btVector3 spin = BodyVelocity(object).spin;
+  return spin.cross(spin.cross(point - object.getWorldTransform().getOrigin()));
+}
+
+}  // namespace
+
+ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step,
+                       btScalar size)
+    : response_(options.response),
+      given_stiffness_(btScalar(options.stiffness)),
+      damping_ratio_(btScalar(options.damping)),
+      mass_(reduced_mass > 0 ? reduced_mass : btScalar(1)),
+      time_step_(time_step > 0 ? time_step : btScalar(1) / 60),
+      size_(size) {
+  if (defaultSpring()) damping_ratio_ *= kDamping;
+  if (!penalty()) return;
+  damping_ratio_ = 1;  // the points' own restitution has a say in it
+  if (given_stiffness_ == 0) given_stiffness_ = mass_ / (time_step_ * time_step_ * SIMD_PI * size * size);
+}
+
+ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std::size_t index) const {
+  const ContactPatch& patch = patches[index];
+  btScalar area = 0;
+  for (const ContactPatch& other : patches)
+    area += other.area * btMax(btScalar(0), patch.normal.dot(other.normal));
+  const btScalar stiffness =
+      defaultSpring() ? kStiffness * mass_ / (time_step_ * time_step_) : given_stiffness_ * area;
+  const btScalar share = area > 0 ? patch.area / (area * btScalar(patch.count)) : btScalar(0);
+  OfPatch law;
+  law.law_ = this;
+  law.stiffness_ = stiffness * share;
+  law.damping_ = damping_ratio_ * 2 * btSqrt(stiffness * mass_) * share;
+  law.rolling_ = canRollOn(patch) ? kRolling * size_ : btScalar(0);
+  return law;
+}
+
+PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
+  PointLaw law;
+  law.depth = depth;
+  law.time_step = law_->time_step_;
+  law.rolling = rolling_;
+  if (law_->response_ == Response::rigid) return law;
+  law.stiffness = stiffness_;
+  law.damping = damping_;
+  law.penalty = law_->penalty();
+  if (law.penalty) return law;
+  law.spring = true;
+  // Fraction of the depth that the solver removes in a second.
+  const auto rate = [&] {
+    const btScalar spring = law_->time_step_ * law.stiffness;
+    return spring > 0 ? spring / (spring + law.damping) / law_->time_step_ : btScalar(0);
+  };
+  if (law_->defaultSpring()) {
+    const btScalar fastest = kFastest * law_->size_;
+    const auto hold = [&] {
+      if (law.depth * rate() > fastest) law.depth = fastest / rate();
+    };
+    law.depth = btMin(depth, kSplitImpulseDepth);
+    hold();
+    const btScalar stiffening = 1 + btMax(law.depth, btScalar(0)) / (kStiffening * law_->size_);
+    law.stiffness *= stiffening;
+    law.damping *= btSqrt(stiffening);
+    hold();
+  } else if (depth > kSplitImpulseDepth) {
+    // The same force from a smaller depth.
+    law.stiffness *= depth / kSplitImpulseDepth;
+    law.depth = kSplitImpulseDepth;
+  }
+  law.push = btMax(law.depth, btScalar(0)) * rate();
+  if (law.depth == depth) law.bears = law_->time_step_ * law.stiffness * btMax(depth, btScalar(0));
+  return law;
+}
+
+btScalar ContactLaw::OfPatch::slipUndoneBy(btScalar impulse) const {
+  return impulse * law_->time_step_ / (kUndone * law_->mass_);
+}
+
+btVector3 relativeVelocity(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point) {
+  return velocityAt(a, point) - velocityAt(b, point);
+}
+
+btVector3 relativeSpin(const btCollisionObject& a, const btCollisionObject& b) {
+  return BodyVelocity(a).spin - BodyVelocity(b).spin;
+}
+
+btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
+                       const btVector3& normal) {
+  return relativeVelocity(a, b, point).dot(normal);
+}
+
+btScalar approachByTurning(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
+                           const btVector3& normal) {
+  return (centripetal(a, point) - centripetal(b, point)).dot(normal);
+}
+
+btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b) {
+  const btScalar inverse = inverseMass(a) + inverseMass(b);
+  return inverse > 0 ? 1 / inverse : btScalar(0);
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,281 @@
+#include "response/manifold_writer.hpp"
+
+#include <algorithm>
+
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+
+#include "common/parallel.hpp"
+#include "response/patch_friction.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Bullet's default, of which the algorithm is not told.
+constexpr btScalar kWarmStarting = btScalar(0.85);
+/// Patches whose normals differ by more than about 45 degrees are not the same patch.
+constexpr btScalar kSamePatch = btScalar(0.7);
+
+/// Share of the friction that slips may ask for; the rest is there for what pushes.
+constexpr btScalar kSlipShare = btScalar(0.5);
+/// A slip of more than this share of the threshold at which Bullet drops contacts is given up.
+constexpr btScalar kFarthestSlip = btScalar(0.2);
+
+using PointIndices = std::array<int, kPatchPoints>;
+
+struct NewPoint {
+  PointLaw law;
+  btScalar depth = 0;
+  btVector3 normal{0, 0, 0};   ///< from A to B
+  btVector3 on_b{0, 0, 0};     ///< in the world
+  btVector3 local_a{0, 0, 0};  ///< the point on A, in the frame of A's object
+  btVector3 slip{0, 0, 0};     ///< of A on B, that friction is to undo
+  btScalar friction = 1;       ///< share of it
+  btScalar curvature = 0;      ///< of both surfaces [1/m]
+};
+
+/// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.
+PointIndices matchPoints(const btPersistentManifold& manifold, const NewPoint* points, int count) {
+  PointIndices match;
+  match.fill(-1);
+  std::array<bool, kPatchPoints> taken{};
+  const int old_count = manifold.getNumContacts();
+  for (int round = 0; round < std::min(count, old_count); ++round) {
+    int best_new = -1, best_old = -1;
+    btScalar best = BT_LARGE_FLOAT;
+    for (int i = 0; i < count; ++i) {
+      if (match[i] >= 0) continue;
+      for (int j = 0; j < old_count; ++j) {
+        const btScalar distance = manifold.getContactPoint(j).m_localPointA.distance2(points[i].local_a);
+        if (!taken[j] && distance < best) {
+          best = distance;
+          best_new = i;
+          best_old = j;
+        }
+      }
+    }
+    if (best_new < 0) break;
+    match[best_new] = best_old;
+    taken[best_old] = true;
+  }
+  return match;
+}
+
+void removeUnmatched(btPersistentManifold& manifold, PointIndices& match) {
+  for (int j = manifold.getNumContacts() - 1; j >= 0; --j) {
+    if (std::find(match.begin(), match.end(), j) != match.end()) continue;
+    const int last = manifold.getNumContacts() - 1;
+    manifold.removeContactPoint(j);  // moves the last point to j
+    std::replace(match.begin(), match.end(), last, j);
+  }
+}
+
+btManifoldPoint* pointAt(btPersistentManifold& manifold, const btVector3& on_b) {
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    if (manifold.getContactPoint(i).m_positionWorldOnB == on_b) return &manifold.getContactPoint(i);
+  }
+  return nullptr;
+}
+
+/// Points of bodies that the user has given friction anchors are kept by Bullet as they are, their depth too,
+/// while friction holds. Here all friction that holds is anchored: the point is to be replaced.
+void letGo(const btCollisionObject& a, const btCollisionObject& b, btManifoldPoint& cached) {
+  if (((a.getCollisionFlags() | b.getCollisionFlags()) & btCollisionObject::CF_HAS_FRICTION_ANCHOR) == 0)
+    return;
+  constexpr btScalar kSome = btScalar(1e-15);  // more than friction of 0 holds
+  cached.m_combinedFriction = 0;
+  if (cached.m_appliedImpulseLateral1 == 0) cached.m_appliedImpulseLateral1 = kSome;
+}
+
+/// Stiffness, damping and the depth they act on, and the slip that friction is to undo, unless the user has
+/// set a law of their own, through the bodies or in a material callback. The callback has seen the true
+/// depth.
+void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObject& a,
+            const btCollisionObject& b) {
+  constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
+                            BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+  const PointLaw& law = from.law;
+  // Directions of the user's own may be those of a belt that moves what lies on it.
+  const bool belt = (point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0;
+  if (!belt) point.m_combinedFriction *= from.friction;
+  if (point.m_combinedFriction > 0 && point.m_combinedRollingFriction == 0)
+    point.m_combinedRollingFriction = law.rolling;
+  // Bullet reads the one only where there is the other.
+  if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
+    point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curvature);
+  if (law.penalty) {
+    point.m_combinedContactStiffness1 = law.stiffness;
+    point.m_combinedContactDamping1 = law.damping;
+    return;
+  }
+  bool spring = law.spring && (point.m_contactPointFlags & kUsersOwn) == 0;
+  btScalar depth = spring ? law.depth : from.depth;
+  // A bounce starts from the surface: the depth that was reached within the step must not add to it, nor the
+  // distance that is left, or the give of the spring, take from it.
+  const btScalar approach = approachSpeed(a, b, from.on_b, from.normal);
+  const bool meets = depth + approach * law.time_step > 0;
+  const bool bounces = point.m_combinedRestitution * approach > law.push;
+  // The solver would begin the bounce before they touch, and brake them on their way.
+  if (!meets) point.m_combinedRestitution = 0;
+  if (meets && bounces && (depth < 0 || spring)) {
+    depth = 0;
+    spring = false;
+  }
+  // The solver lets a gap close at a constant speed; points beside the one that a body rolls on turn away
+  // instead, and would brake it.
+  if (depth < 0) {
+    const btScalar turning = approachByTurning(a, b, from.on_b, from.normal);
+    depth = btMin(btScalar(0), depth + turning * law.time_step * law.time_step / 2);
+  }
+  if (spring) {
+    // The solver starts with a part of the last impulse. What is short of a load that lies still would make
+    // it sink until its spring has replaced it: where the spring bears more, it starts with all of it.
+    point.m_appliedImpulse =
+        btMax(point.m_appliedImpulse, btMin(point.m_appliedImpulse / kWarmStarting, law.bears));
+    point.m_combinedContactStiffness1 = law.stiffness;
+    point.m_combinedContactDamping1 = law.damping;
+    point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+  }
+  const bool driven_apart = law.depth < from.depth;
+  const bool held = !driven_apart && !from.slip.isZero() && !belt;
+  point.m_contactPointFlags &= ~BT_CONTACT_FLAG_FRICTION_ANCHOR;
+  if (held) point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
+  if (depth == from.depth && !held) return;
+  point.m_distance1 = -depth;
+  point.m_positionWorldOnA = from.on_b + from.normal * depth;
+  if (held) point.m_positionWorldOnA += from.slip;
+  point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
+}
+
+/// The points of one patch into the manifold that `result` holds.
+void writePatch(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
+                const ContactPatch& patch, const ContactLaw::OfPatch& law, btManifoldResult* result) {
+  btPersistentManifold& manifold = *result->getPersistentManifold();
+  std::array<NewPoint, kPatchPoints> points;
+  int count = 0;
+  for (int i = 0; i < patch.count; ++i) {
+    NewPoint& point = points[count];
+    point.depth = patch.points[i].depth;
+    point.law = law.at(point.depth);
+    if (-point.depth > manifold.getContactBreakingThreshold()) continue;
+    point.normal = patch.points[i].normal;
+    point.curvature = patch.points[i].curvature_a + patch.points[i].curvature_b;
+    point.on_b = origin + patch.points[i].on_b;
+    point.local_a = a.getWorldTransform().invXform(point.on_b + point.normal * point.depth);
+    ++count;
+  }
+  PointIndices match = matchPoints(manifold, points.data(), count);
+  removeUnmatched(manifold, match);
+  const btScalar friction = slidingShare(a, b, patch, manifold);
+  const btScalar largest_slip = law.slipUndoneBy(kSlipShare * mostFriction(manifold));
+  const btScalar farthest_slip = kFarthestSlip * manifold.getContactBreakingThreshold();
+  for (int i = 0; i < count; ++i) {
+    NewPoint& point = points[i];
+    point.friction = friction;
+    // Bullet keeps impulses and lifetime of the cached point nearest to the new one: move the match there
+    // first.
+    if (match[i] >= 0) {
+      btManifoldPoint& cached = manifold.getContactPoint(match[i]);
+      point.slip = slipOf(cached, a, b, point.normal, largest_slip, farthest_slip);
+      cached.m_localPointA = point.local_a;
+      letGo(a, b, cached);
+    }
+    result->addContactPoint(-point.normal, point.on_b, -point.depth);
+    if (btManifoldPoint* added = pointAt(manifold, point.on_b)) setLaw(*added, point, a, b);
+  }
+  result->refreshContactPoints();
+}
+
+}  // namespace
+
+ManifoldSet::~ManifoldSet() {
+  for (const Entry& entry : entries_) dispatcher_->releaseManifold(entry.manifold);
+}
+
+void ManifoldSet::report(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
+                         const std::vector<ContactPatch>& patches, btManifoldResult* result) {
+  // The result looks up the order of the bodies in its manifold.
+  btPersistentManifold order(&a, &b, 0, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  btPersistentManifold* const before = result->getPersistentManifold();
+  result->setPersistentManifold(&order);
+  for (const ContactPatch& patch : patches) {
+    for (int i = 0; i < patch.count; ++i) {
+      const ContactPoint& point = patch.points[i];
+      result->addContactPoint(-point.normal, origin + point.on_b, -point.depth);
+    }
+  }
+  result->setPersistentManifold(before);
+}
+
+void ManifoldSet::append(btManifoldArray& manifolds) const {
+  for (const Entry& entry : entries_) manifolds.push_back(entry.manifold);
+}
+
+void ManifoldSet::fetch() const {
+  for (const Entry& entry : entries_) innersphere::fetch(entry.manifold);
+}
+
+void ManifoldSet::assign(const btTransform& a, const std::vector<ContactPatch>& patches) {
+  owner_.assign(entries_.size(), -1);
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const ContactPatch& patch = patches[p];
+    const btVector3 normal = patch.normal * a.getBasis();
+    const btVector3 centre = patch.centre * a.getBasis();
+    const btScalar extent = btSqrt(patch.area) + btScalar(1e-30);
+    int best = -1;
+    btScalar best_cost = BT_LARGE_FLOAT;
+    for (std::size_t e = 0; e < entries_.size(); ++e) {
+      const btScalar cosine = normal.dot(entries_[e].normal);
+      const btScalar cost = 1 - cosine + entries_[e].centre.distance(centre) / extent;
+      if (owner_[e] < 0 && cosine > kSamePatch && cost < best_cost) {
+        best_cost = cost;
+        best = static_cast<int>(e);
+      }
+    }
+    if (best >= 0) owner_[best] = static_cast<int>(p);
+  }
+}
+
+/// Gives patches that match no manifold an idle one, or a new one.
+void ManifoldSet::provide(const btCollisionObject& a, const btCollisionObject& b, std::size_t count) {
+  for (std::size_t p = 0; p < count; ++p) {
+    if (std::find(owner_.begin(), owner_.end(), static_cast<int>(p)) != owner_.end()) continue;
+    auto idle = std::find(owner_.begin(), owner_.end(), -1);
+    if (idle == owner_.end()) {
+      btPersistentManifold* manifold = dispatcher_->getNewManifold(&a, &b);
+      if (manifold == nullptr)
+        return;  // the user has limited their number; Bullet's own algorithms go without, too
+      entries_.push_back({manifold, manifold->getContactBreakingThreshold(),
+                          manifold->getContactProcessingThreshold(), btVector3(0, 0, 0), btVector3(0, 0, 0)});
+      idle = owner_.insert(owner_.end(), -1);
+    }
+    *idle = static_cast<int>(p);
+  }
+}
+
+void ManifoldSet::write(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
+                        const std::vector<ContactPatch>& patches, const ContactLaw& law, btScalar separation,
+                        btManifoldResult* result) {
+  if (patches.empty() && entries_.empty()) return;
+  assign(a.getWorldTransform(), patches);
+  provide(a, b, patches.size());
+  btPersistentManifold* const before = result->getPersistentManifold();
+  for (std::size_t e = 0; e < entries_.size(); ++e) {
+    Entry& entry = entries_[e];
+    if (owner_[e] < 0) {
+      while (entry.manifold->getNumContacts() > 0) entry.manifold->removeContactPoint(0);
+      continue;
+    }
+    const std::size_t p = static_cast<std::size_t>(owner_[e]);
+    entry.normal = patches[p].normal * a.getWorldTransform().getBasis();
+    entry.centre = patches[p].centre * a.getWorldTransform().getBasis();
+    entry.manifold->setContactBreakingThreshold(btMax(entry.threshold, separation));
+    entry.manifold->setContactProcessingThreshold(law.penalty() ? -BT_LARGE_FLOAT : entry.processing);
+    result->setPersistentManifold(entry.manifold);
+    writePatch(a, b, origin, patches[p], law.of(patches, p), result);
+  }
+  result->setPersistentManifold(before);
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,78 @@
+#include "response/patch_friction.hpp"
+
+#include "response/contact_law.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Friction that used less than this share of what its cone allows (squared) has held.
+constexpr btScalar kHeld = btScalar(0.98);
+/// The part of the speeds of turning, squared, that counts: small ones are across the way of sliding, half of
+/// them.
+constexpr btScalar kAcross = btScalar(0.5);
+
+/// Mean distance from the middle of a line, of that of its ends. Few spheres may tell less of an area.
+constexpr btScalar kLine = btScalar(0.5);
+
+bool held(const btManifoldPoint& point) {
+  const btScalar most = point.m_combinedFriction * point.m_appliedImpulse;
+  const btScalar first = point.m_appliedImpulseLateral1, second = point.m_appliedImpulseLateral2;
+  return first * first + second * second < kHeld * most * most;
+}
+
+}  // namespace
+
+btScalar mostFriction(const btPersistentManifold& manifold) {
+  btScalar friction = 0;
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    friction += point.m_combinedFriction * btMax(point.m_appliedImpulse, btScalar(0));
+  }
+  return friction;
+}
+
+btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, const btCollisionObject& b,
+                 const btVector3& normal, btScalar largest, btScalar farthest) {
+  if (!(cached.m_combinedFriction * cached.m_appliedImpulse > 0)) return btVector3(0, 0, 0);
+  const btVector3 apart =
+      a.getWorldTransform() * cached.m_localPointA - b.getWorldTransform() * cached.m_localPointB;
+  const btVector3 slip = apart - normal * normal.dot(apart);
+  const btScalar length = slip.length();
+  if (length > farthest) return btVector3(0, 0, 0);
+  return length > largest ? slip * (largest / length) : slip;
+}
+
+btScalar slidingShare(const btCollisionObject& a, const btCollisionObject& b, const ContactPatch& patch,
+                      const btPersistentManifold& manifold) {
+  btScalar load = 0;
+  btVector3 centre(0, 0, 0);
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    if (!(point.m_appliedImpulse > 0)) continue;
+    if (held(point)) return 1;
+    load += point.m_appliedImpulse;
+    centre += point.m_positionWorldOnB * point.m_appliedImpulse;
+  }
+  if (!(load > 0)) return 1;
+  centre /= load;
+  btScalar rim = 0;
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    const btScalar weight = btMax(point.m_appliedImpulse, btScalar(0)) / load;
+    rim += point.m_positionWorldOnB.distance(centre) * weight;
+  }
+  const btVector3 speed = relativeVelocity(a, b, centre);
+  const btScalar slide = (speed - patch.normal * speed.dot(patch.normal)).length2();
+  const btScalar spin = relativeSpin(a, b).dot(patch.normal);
+  const auto work = [&](btScalar radius) { return slide + kAcross * spin * spin * radius * radius; };
+  const btScalar radius = btMax(patch.radius, kLine * rim);
+  return radius < rim && spin != 0 ? btSqrt(work(radius) / work(rim)) : btScalar(1);
+}
+
+btScalar spinningLever(btScalar depth, btScalar curvature) {
+  return depth > 0 && curvature > 0 ? 3 * SIMD_PI / 16 * btSqrt(depth / curvature) : btScalar(0);
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,84 @@
+// What all shapes of one collision model share.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "common/lazy.hpp"
+#include "innersphere/collision_model.hpp"
+#include "shape/principal_frame.hpp"
+#include "shape/sphere_bvh.hpp"
+#include "surface/surface_queries.hpp"
+#include "surface/vertex_hill_climb.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// The first spheres of a packing. Lengths are for scale 1 [m].
+class Prefix {
+ public:
+  Prefix(const Packing& packing, std::size_t count);
+
+  const SphereTree& tree() const;
+  bool hasTree() const { return tree_.made(); }
+  /// How far the spheres may end inside of the surface; 0 if the packing has none.
+  btScalar recess() const;
+
+  const std::size_t count;
+  const VolumeTrueRadii* const volume_true;  ///< the longest list that is not longer, or null
+  const btScalar largest_bulge;              ///< largest of them minus the sphere's own radius; 0 if none
+  const btScalar median_radius;
+
+ private:
+  const Packing& packing_;
+  Lazy<SphereTree> tree_;
+  Lazy<btScalar> recess_;
+};
+
+/// Trees are built when they are first asked for. Const members are safe to call from several threads at
+/// once.
+class PackedSolid {
+ public:
+  explicit PackedSolid(std::shared_ptr<const CollisionModel> collision_model);
+  /// The one of a model: the same as long as somebody holds it.
+  static std::shared_ptr<const PackedSolid> of(std::shared_ptr<const CollisionModel> model);
+
+  const Packing& packing() const { return model->packing(); }
+  bool hasSurface() const { return !packing().surface.triangles.empty(); }
+  /// `count` from 1 to the number of spheres.
+  const Prefix& prefix(std::size_t count) const;
+  /// The shortest of 64, 128, 256, ... spheres, fewer than `most`, that are nowhere further than `gap` [m]
+  /// from the surface; `most` if there is none, or no surface.
+  const Prefix& prefixWithin(btScalar gap, const Prefix& most) const;
+  /// Only if hasSurface(). In the packing's frame.
+  const SurfaceTree& surfaceTree() const;
+  /// The triangle that is nearest to the centre of a sphere.
+  std::size_t triangleNear(std::size_t sphere) const;
+  const VertexClimb& vertexClimb() const;
+  /// What has been built so far.
+  struct Built {
+    bool sphere_tree, surface_tree, vertex_climb;
+  };
+  Built built() const;
+
+  const std::shared_ptr<const CollisionModel> model;
+  PrincipalFrame frame;
+  btVector3 box_min{0, 0, 0};  ///< of the surface and the spheres, in the shape's frame
+  btVector3 box_max{0, 0, 0};
+  btVector3 sphere_centre{0, 0, 0};
+  btScalar sphere_radius = 0;
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::map<std::size_t, Prefix> prefixes_;
+  Lazy<SurfaceTree> surface_tree_;
+  /// Plus one; 0 until it is asked for.
+  using Triangles = std::unique_ptr<std::atomic<std::uint32_t>[]>;
+  Lazy<Triangles> triangles_near_;
+  Lazy<VertexClimb> vertex_climb_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

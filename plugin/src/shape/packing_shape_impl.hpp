@@ -1,0 +1,43 @@
+// What the collision algorithm knows of a PackingShape beyond its public face.
+#pragma once
+
+#include "innersphere/packing_shape.hpp"
+#include "shape/packed_model.hpp"
+#include "shape/registration_check.hpp"
+#include "shape/serialized_spheres.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Bullet's table has no free type numbers. This one is used by no shape of Bullet's, and where our algorithm
+/// is not registered it leads to the triangle path, which is safe; CUSTOM_CONCAVE_SHAPE_TYPE would lead to a
+/// cast to btSdfCollisionShape.
+constexpr int kPackingShapeType = FAST_CONCAVE_MESH_PROXYTYPE;
+
+struct PackingShape::Impl {
+  explicit Impl(std::shared_ptr<const CollisionModel> model);
+
+  const Packing& packing() const { return solid->packing(); }
+  bool hasSurface() const { return solid->hasSurface(); }
+  const SurfaceTree& surfaceTree() const { return solid->surfaceTree(); }
+  const VertexClimb& vertexClimb() const { return solid->vertexClimb(); }
+  /// By how much volume-true spheres reach out of the boxes below: without a surface they are what collides.
+  btScalar bulge() const { return hasSurface() ? btScalar(0) : prefix->largest_bulge; }
+  /// The spheres to use where gaps of `accuracy` [m] at the surface are allowed; 0: those the user chose.
+  const Prefix& prefixFor(btScalar accuracy) const {
+    return accuracy > 0 ? solid->prefixWithin(accuracy / scaling.x(), *prefix) : *prefix;
+  }
+  /// From the packing's frame to the world for a body at `body`: x_world = result(scale * x).
+  btTransform toWorld(const btTransform& body) const;
+
+  std::shared_ptr<const PackedSolid> solid;
+  const Prefix* prefix;  ///< that the user chose
+  btVector3 scaling{1, 1, 1};
+  btScalar disc = 0;        ///< asked for many times in a step
+  std::size_t version = 0;  ///< rises with each change
+  mutable SerializedSpheres serialized;
+  mutable StepWatch watch;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,56 @@
+// A packing placed in the world, for one collision.
+#pragma once
+
+#include "common/bullet_vectors.hpp"
+#include "innersphere/contact_options.hpp"
+#include "innersphere/placement.hpp"
+#include "shape/packing_shape_impl.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+struct PackingBody {
+  /// `slack` [m]: how far beyond its radius and the shape's margin a sphere looks for contacts. `prefix`: the
+  /// spheres to use, null for those the shape uses; with Estimator::volume_true as many of them as there are
+  /// such radii for.
+  PackingBody(const PackingShape& packing_shape, const btTransform& body, Estimator estimator, btScalar slack,
+              const Prefix* prefix = nullptr);
+
+  const PackingShape::Impl& shape() const { return *impl; }
+  std::size_t count() const { return prefix->count; }
+  const SphereTree& sphereTree() const { return prefix->tree(); }
+  btScalar scale() const { return impl->scaling.x(); }
+  const btVector3& origin() const { return world.getOrigin(); }
+
+  /// Centre of sphere i relative to origin(), axes of the world.
+  btVector3 centreOf(std::size_t i) const {
+    return world.getBasis() * (centre(impl->packing().spheres[i]) * scale());
+  }
+  /// The sphere's own radius [m].
+  btScalar ownRadius(std::size_t i) const { return btScalar(impl->packing().spheres[i].radius) * scale(); }
+  /// Its radius for the estimator [m].
+  btScalar radiusOf(std::size_t i) const {
+    return radii == nullptr ? ownRadius(i) : btScalar(radii[i]) * scale();
+  }
+  /// How close to the other surface its centre must be to be reported.
+  btScalar reach(std::size_t i) const { return radiusOf(i) + margin + slack; }
+  /// No sphere reaches further beyond its own radius than this.
+  btScalar largestExcess() const { return slack + margin + excess; }
+
+  Placement placement() const;
+
+  /// Of the solid's surface, without the margin: `place` relative to origin(), axes of the world, and the
+  /// normal of the result, too. False if the surface is further away than `reach` [m].
+  bool nearest(const btVector3& place, btScalar reach, SurfaceTree::Nearest& nearest) const;
+
+  const PackingShape::Impl* impl;
+  const Prefix* prefix;
+  btTransform world;             ///< from the packing's frame, scaled, to the world
+  const float* radii = nullptr;  ///< volume-true radii, or null for the spheres' own
+  btScalar margin;               ///< of the shape: the solid is this much larger on all sides [m]
+  btScalar slack;
+  btScalar excess = 0;  ///< largest volume-true radius minus own radius [m]
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,219 @@
+#include "surface/smooth_normals.hpp"
+
+#include <algorithm>
+
+#include "common/bullet_vectors.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+constexpr btScalar kSmooth = btScalar(0.866);  // cos 30 degrees
+/// Normals that differ by less are those of a flat face, but for rounding [rad].
+constexpr btScalar kFlat = btScalar(1e-4);
+/// How far beyond an edge, in weights, a line still meets a triangle: no rounding leaves a gap between two.
+constexpr btScalar kBeyond = btScalar(1e-4);
+/// Added to the triangle across a sharp edge. Instead of one across an edge that no other triangle shares.
+constexpr std::uint32_t kSharp = std::uint32_t(1) << 31, kSeam = kSharp - 1;
+/// Edges that are crossed to look for one, for the bulge of a triangle and for where a face ends.
+constexpr std::uint32_t kCrossed = 4;
+constexpr std::uint32_t kCrossedFar = 12;
+/// Triangles that are looked at on the way to the one that a line meets.
+constexpr int kNearby = 8;
+
+btVector3 unit(const btVector3& v) {
+  const btScalar length = v.length();
+  return length > 0 ? v / length : btVector3(0, 0, 0);
+}
+
+constexpr std::size_t next(std::size_t k) {
+  return k == 2 ? 0 : k + 1;
+}
+
+}  // namespace
+
+SmoothNormals::SmoothNormals(const Surface& surface) : facets_(surface.triangles.size()) {
+  setCorners(surface);
+  setNormals(surface);
+  countToSharp();
+}
+
+void SmoothNormals::setCorners(const Surface& surface) {
+  for (std::size_t t = 0; t < facets_.size(); ++t) {
+    Facet& facet = facets_[t];
+    for (std::size_t k = 0; k < 3; ++k)
+      facet.corners[k] = toBullet(surface.vertices[surface.triangles[t][k]]);
+    const btVector3 normal = (facet.corners[1] - facet.corners[0]).cross(facet.corners[2] - facet.corners[0]);
+    facet.face = unit(normal);
+    if (facet.face.isZero()) continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      facet.inwards[k] = facet.face.cross(facet.corners[next(k)] - facet.corners[k]) / normal.length();
+  }
+}
+
+void SmoothNormals::setNormals(const Surface& surface) {
+  std::vector<std::vector<std::uint32_t>> around(surface.vertices.size());
+  for (std::size_t t = 0; t < facets_.size(); ++t) {
+    for (std::uint32_t v : surface.triangles[t]) around[v].push_back(static_cast<std::uint32_t>(t));
+  }
+  for (std::size_t t = 0; t < facets_.size(); ++t) {
+    Facet& facet = facets_[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = surface.triangles[t][k];
+      facet.across[k] = kSeam;
+      btVector3 sum(0, 0, 0);
+      for (std::uint32_t other : around[v]) {
+        const auto& triangle = surface.triangles[other];
+        const btVector3* corners = facets_[other].corners;
+        const bool smooth = !(facet.face.dot(facets_[other].face) < kSmooth);
+        if (other != t &&
+            std::find(triangle.begin(), triangle.end(), surface.triangles[t][next(k)]) != triangle.end())
+          facet.across[k] = smooth ? other : kSharp + other;
+        if (!smooth) continue;
+        // Weighted by the angle at the corner, so that it does not matter how faces are cut.
+        const std::size_t at = triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
+        const btVector3 e1 = unit(corners[next(at)] - corners[at]);
+        const btVector3 e2 = unit(corners[next(next(at))] - corners[at]);
+        sum += facets_[other].face * btAcos(btClamped(e1.dot(e2), btScalar(-1), btScalar(1)));
+      }
+      facet.normals[k] = unit(sum);
+    }
+    facet.curvature = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const btVector3 turn = facet.normals[next(k)] - facet.normals[k];
+      const btVector3 edge = facet.corners[next(k)] - facet.corners[k];
+      // The parabola with these normals along the edge; on a ball that is its height over the triangle, to
+      // second order.
+      facet.bulges[k] = turn.dot(edge) / 2;
+      if (turn.length() < kFlat || !(edge.length2() > 0)) continue;
+      const btScalar along = turn.dot(edge) / edge.length2();
+      if (btFabs(along) > btFabs(facet.curvature)) facet.curvature = along;
+    }
+  }
+}
+
+void SmoothNormals::countToSharp() {
+  for (Facet& facet : facets_) {
+    const bool sharp = *std::max_element(facet.across, facet.across + 3) >= kSharp;
+    facet.to_sharp = sharp ? 1 : kCrossedFar + 1;
+  }
+  for (std::uint32_t count = 1; count < kCrossedFar; ++count) {
+    for (Facet& facet : facets_) {
+      for (const std::uint32_t other : facet.across) {
+        if (other < kSeam && facets_[other].to_sharp == count)
+          facet.to_sharp = std::min(facet.to_sharp, count + 1);
+      }
+    }
+  }
+}
+
+/// False if the line is parallel to the triangle's plane.
+bool SmoothNormals::crossPlane(const Facet& facet, const btVector3& from, const btVector3& direction,
+                               Crossing& crossing) {
+  const btScalar along = facet.face.dot(direction);
+  if (along == 0) return false;
+  crossing.distance = facet.face.dot(facet.corners[0] - from) / along;
+  const btVector3 at = from + direction * crossing.distance;
+  // Each corner's is the height over the edge across.
+  for (std::size_t k = 0; k < 3; ++k)
+    crossing.weights[k] = facet.inwards[next(k)].dot(at - facet.corners[next(k)]);
+  return true;
+}
+
+bool SmoothNormals::cross(std::size_t t, const btVector3& from, const btVector3& direction,
+                          Crossing& crossing) const {
+  if (!crossPlane(facets_[t], from, direction, crossing)) return false;
+  const std::array<btScalar, 3>& w = crossing.weights;
+  return w[0] > -kBeyond && w[1] > -kBeyond && w[2] > -kBeyond;
+}
+
+bool SmoothNormals::crossNear(std::size_t& triangle, const btVector3& from, const btVector3& direction,
+                              Crossing& crossing) const {
+  std::size_t t = triangle;
+  for (int i = 0; i < kNearby; ++i) {
+    if (!crossPlane(facets_[t], from, direction, crossing)) return false;
+    const std::array<btScalar, 3>& w = crossing.weights;
+    const std::size_t corner = w[0] < w[1] ? (w[0] < w[2] ? 0 : 2) : (w[1] < w[2] ? 1 : 2);
+    if (w[corner] > -kBeyond) {
+      triangle = t;
+      return true;
+    }
+    // Over the edge that it is furthest beyond.
+    t = facets_[t].across[next(corner)];
+    if (t >= kSeam) return false;
+  }
+  return false;
+}
+
+SmoothNormals::Place SmoothNormals::at(std::size_t t, const Crossing& crossing) const {
+  const Facet& facet = facets_[t];
+  btVector3 sum(0, 0, 0);
+  btScalar bulge = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum += facet.normals[k] * crossing.weights[k];
+    bulge += crossing.weights[k] * crossing.weights[next(k)] * facet.bulges[k];
+  }
+  return {unit(sum), bulge};
+}
+
+bool SmoothNormals::isPastSharpEdge(std::size_t t, const btVector3& point) const {
+  for (std::uint32_t i = 0; i + facets_[t].to_sharp <= kCrossed; ++i) {
+    const Facet& facet = facets_[t];
+    std::size_t edge = 3;
+    for (std::size_t k = 0; k < 3 && edge == 3; ++k) {
+      if (facet.inwards[k].dot(point - facet.corners[k]) < 0) edge = k;
+    }
+    if (edge == 3) return false;
+    t = facet.across[edge];
+    if (t >= kSeam) return t >= kSharp;
+  }
+  return false;
+}
+
+SmoothNormals::Ending SmoothNormals::untilSharpEdge(std::size_t t, const btVector3& point,
+                                                    const btVector3& towards) const {
+  btVector3 at = point;
+  btScalar way = 0;
+  for (std::uint32_t i = 0; i + facets_[t].to_sharp <= kCrossedFar; ++i) {
+    const Facet& facet = facets_[t];
+    const btVector3 along = towards - facet.face * towards.dot(facet.face);
+    // The edge by which the line along the triangle leaves it.
+    std::size_t edge = 3;
+    btScalar nearest = BT_LARGE_FLOAT;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const btScalar speed = -along.dot(facet.inwards[k]);
+      if (!(speed > 0)) continue;
+      const btScalar time = btMax(btScalar(0), (at - facet.corners[k]).dot(facet.inwards[k]) / speed);
+      if (time < nearest) {
+        nearest = time;
+        edge = k;
+      }
+    }
+    if (edge == 3) break;
+    way += nearest * along.length();
+    at += along * nearest;
+    if (facet.across[edge] >= kSharp)
+      return {way, static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(edge)};
+    t = facet.across[edge];
+    if (t == kSeam) break;
+  }
+  return {};
+}
+
+SmoothNormals::SharpEdge SmoothNormals::sharpEdge(const Ending& ending) const {
+  const Facet& facet = facets_[ending.triangle];
+  const std::uint32_t across = facet.across[ending.edge] - kSharp;
+  const Facet& other = facets_[across];
+  std::size_t back = 0;
+  while (back < 2 && other.across[back] != kSharp + ending.triangle) ++back;
+  SharpEdge edge;
+  edge.from = facet.corners[ending.edge];
+  edge.to = facet.corners[next(ending.edge)];
+  edge.inwards[0] = unit(facet.inwards[ending.edge]);
+  edge.inwards[1] = unit(other.inwards[back]);
+  edge.id = std::min(3 * ending.triangle + ending.edge, 3 * across + static_cast<std::uint32_t>(back));
+  return edge;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

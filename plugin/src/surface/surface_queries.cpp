@@ -1,0 +1,148 @@
+#include "surface/surface_queries.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+
+#include "common/bullet_vectors.hpp"
+#include "surface/nearest_triangle.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+using Lanes = TriangleTree::Lanes;
+constexpr float kFar = std::numeric_limits<float>::infinity();
+/// Rays that are flatter to a triangle meet it itself, not the curved surface that it stands for.
+constexpr btScalar kShared = btScalar(1e-5);
+constexpr btScalar kGrazing = btScalar(0.1);
+
+/// How far along a ray its parts inside of boxes begin.
+class EntersAt {
+ public:
+  EntersAt(const btVector3& from, const btVector3& direction) {
+    for (int k = 0; k < 3; ++k) {
+      from_[k] = static_cast<float>(from[k]);
+      // Large, but finite: times nothing it is nothing.
+      inverse_[k] =
+          static_cast<float>(1 / std::copysign(btMax(btFabs(direction[k]), btScalar(1e-20)), direction[k]));
+    }
+  }
+  Lanes operator()(const TriangleTree::Boxes& boxes) const {
+    Lanes enter{}, leave = enter + kFar;
+    for (int k = 0; k < 3; ++k) {
+      const Lanes a = (boxes.min[k] - from_[k]) * inverse_[k], b = (boxes.max[k] - from_[k]) * inverse_[k];
+      enter = TriangleTree::greater(enter, TriangleTree::lesser(a, b));
+      leave = TriangleTree::lesser(leave, TriangleTree::greater(a, b));
+    }
+    return enter <= leave ? enter : Lanes{} + kFar;
+  }
+
+ private:
+  std::array<float, 3> from_, inverse_;
+};
+
+/// What the curved surface is like where its triangle is hit.
+void complete(const SmoothNormals& normals, const SmoothNormals::Crossing& crossing, const btVector3& from,
+              const btVector3& direction, SurfaceTree::Hit& hit) {
+  hit.distance = crossing.distance;
+  hit.face = normals.face(hit.triangle);
+  hit.curvature = normals.curvature(hit.triangle);
+  const SmoothNormals::Place place = normals.at(hit.triangle, crossing);
+  hit.normal = place.normal;
+  const btScalar facing = hit.face.dot(direction);
+  if (!(btFabs(facing) > kGrazing)) return;
+  // Past an edge it is another face that ends the solid, and sooner.
+  const btScalar further = hit.distance + place.bulge / facing;
+  if (place.bulge > 0 && normals.isPastSharpEdge(hit.triangle, from + direction * further)) return;
+  hit.distance = further;
+}
+
+}  // namespace
+
+SurfaceTree::SurfaceTree(const Surface& surface) : surface_(surface), tree_(surface) {}
+
+void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3& min,
+                                   const btVector3& max) const {
+  const auto apart = [&](const TriangleTree::Boxes& boxes) {
+    Lanes distances{};
+    for (std::size_t lane = 0; lane < TriangleTree::kWidth; ++lane) {
+      for (int k = 0; k < 3; ++k) {
+        if (boxes.max[k][lane] < min[k] || boxes.min[k][lane] > max[k]) distances[lane] = kFar;
+      }
+    }
+    return distances;
+  };
+  tree_.search(0, apart, [&](std::uint32_t t) {
+    btVector3 corners[3];
+    for (int k = 0; k < 3; ++k) corners[k] = toBullet(surface_.vertices[surface_.triangles[t][k]]);
+    callback->processTriangle(corners, 0, static_cast<int>(t));
+    return btScalar(0);
+  });
+}
+
+bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScalar length,
+                       const btVector3& towards, Hit& hit) const {
+  const SmoothNormals& normals = this->normals();
+  SmoothNormals::Crossing nearest;
+  nearest.distance = length;
+  bool found = false;
+  tree_.search(length, EntersAt(from, direction), [&](std::uint32_t t) {
+    SmoothNormals::Crossing crossing;
+    if (!normals.cross(t, from, direction, crossing) || !(crossing.distance > 0))
+      return nearest.distance * (1 + kShared);
+    const bool shared = found && btFabs(crossing.distance - nearest.distance) < kShared * nearest.distance;
+    if (shared ? normals.face(t).dot(towards) > normals.face(hit.triangle).dot(towards)
+               : crossing.distance < nearest.distance) {
+      nearest = crossing;
+      hit.triangle = t;
+      found = true;
+    }
+    return nearest.distance * (1 + kShared);
+  });
+  if (found) complete(normals, nearest, from, direction, hit);
+  return found;
+}
+
+bool SurfaceTree::castNear(std::size_t triangle, const btVector3& from, const btVector3& direction,
+                           btScalar length, Hit& hit) const {
+  const SmoothNormals& normals = this->normals();
+  SmoothNormals::Crossing crossing;
+  if (!normals.crossNear(triangle, from, direction, crossing) || !(btFabs(crossing.distance) < length))
+    return false;
+  hit.triangle = triangle;
+  complete(normals, crossing, from, direction, hit);
+  return true;
+}
+
+btScalar SurfaceTree::untilSharpEdge(std::size_t triangle, const btVector3& point,
+                                     const btVector3& towards) const {
+  return normals().untilSharpEdge(triangle, point, towards).distance;
+}
+
+bool SurfaceTree::sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
+                            SmoothNormals::SharpEdge& edge) const {
+  const SmoothNormals::Ending ending = normals().untilSharpEdge(triangle, point, towards);
+  if (ending.found()) edge = normals().sharpEdge(ending);
+  return ending.found();
+}
+
+bool SurfaceTree::nearest(const btVector3& point, btScalar reach, Nearest& result) const {
+  NearestTriangle search(normals(), point, reach);
+  tree_.search(
+      search.farthest2(), [&](const TriangleTree::Boxes& boxes) { return search.distances2(boxes); },
+      [&](std::uint32_t t) { return search.test(t); });
+  if (!search.found()) return false;
+  result = {search.distance(), search.normal(), search.triangle(), search.beside()};
+  return true;
+}
+
+const SmoothNormals& SurfaceTree::normals() const {
+  return normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,66 @@
+// Searches on a solid's surface.
+#pragma once
+
+#include <LinearMath/btVector3.h>
+
+#include "common/lazy.hpp"
+#include "innersphere/bullet_precision.hpp"
+#include "innersphere/geometry.hpp"
+#include "surface/smooth_normals.hpp"
+#include "surface/triangle_bvh.hpp"
+
+class btTriangleCallback;
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// In the surface's frame. Refers to the surface: it must stay. Const members are safe to call from several
+/// threads at once.
+class SurfaceTree {
+ public:
+  explicit SurfaceTree(const Surface& surface);
+
+  /// All triangles that meet a box, and some near it.
+  void processTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const;
+
+  /// Where a ray meets the surface first: the curved one that the triangles stand for, see SmoothNormals.
+  struct Hit {
+    std::size_t triangle;
+    btScalar distance;   ///< [m] along the ray
+    btVector3 face;      ///< unit normal of the triangle, out of the solid
+    btVector3 normal;    ///< the same, smoothed over curved surfaces
+    btScalar curvature;  ///< there [1/m]; see SmoothNormals
+  };
+  /// `direction` is a unit vector. False if nothing is met within `length`. On an edge it is the triangle
+  /// whose normal points most along `towards`.
+  bool cast(const btVector3& from, const btVector3& direction, btScalar length, const btVector3& towards,
+            Hit& hit) const;
+  /// The same for a triangle, or others around it on the same face, and for the line on both sides of `from`:
+  /// the distance is negative behind it. Nothing in between is looked at.
+  bool castNear(std::size_t triangle, const btVector3& from, const btVector3& direction, btScalar length,
+                Hit& hit) const;
+  /// See SmoothNormals.
+  btScalar untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const;
+  /// The edge itself; false if there is none.
+  bool sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
+                 SmoothNormals::SharpEdge& edge) const;
+
+  struct Nearest {
+    btScalar distance;  ///< [m], negative inside the solid
+    btVector3 normal;   ///< unit, out of the solid, along the line from the nearest point
+    std::size_t triangle;
+    bool beside;  ///< the nearest point is on an edge, which the triangle shares with another face
+  };
+  /// False if the surface is further away from `point` than `reach`.
+  bool nearest(const btVector3& point, btScalar reach, Nearest& result) const;
+
+  const SmoothNormals& normals() const;
+
+ private:
+  const Surface& surface_;
+  TriangleTree tree_;
+  Lazy<SmoothNormals> normals_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

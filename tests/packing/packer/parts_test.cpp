@@ -1,0 +1,107 @@
+// The packer's tools by themselves, against brute force.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "packer/cells.hpp"
+#include "packer/dual_simplex.hpp"
+#include "packer/sphere_grid.hpp"
+
+namespace innersphere::test {
+namespace {
+
+TEST(MaxMin, EqualsADenseSearch) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  constexpr double kRounding = 1e-6;  // of the functions
+  for (int round = 0; round < 30; ++round) {
+    MaxMin program(0.5);
+    std::vector<std::pair<double, Point>> functions;
+    for (int k = 0; k < 2 + round % 9; ++k) {
+      const Point gradient = Point(unit(random), unit(random), unit(random)).normalized();
+      functions.emplace_back(0.3 * unit(random), gradient);
+      program.add(functions.back().first, gradient);
+    }
+    const auto smallest = [&](const Point& y) {
+      double least = 1e30;
+      for (const auto& [value, gradient] : functions) least = std::min(least, value + gradient.dot(y));
+      return least;
+    };
+    EXPECT_NEAR(smallest(program.argmax()), program.optimum(), kRounding);
+    EXPECT_LE(program.argmax().cwiseAbs().maxCoeff(), 0.5 + 1e-12);
+    const int n = 40;
+    for (int i = 0; i <= n * n * n; ++i) {
+      const Point y = Point(i % n, i / n % n, i / n / n) / n - Point::Constant(0.5);
+      ASSERT_LE(smallest(y), program.optimum() + kRounding);
+    }
+    // The weights prove the optimum: their mix of the functions is nowhere larger.
+    double value = 0, sum = 0;
+    Point gradient = Point::Zero();
+    program.forWeights([&](int k, double weight) {
+      value += weight * functions[k].first;
+      gradient += weight * functions[k].second;
+      sum += weight;
+    });
+    EXPECT_NEAR(sum, 1, 1e-12);
+    EXPECT_NEAR(value + 0.5 * gradient.cwiseAbs().sum(), program.optimum(), kRounding);
+  }
+}
+
+TEST(SphereGrid, FindsTheNearestBall) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Ball> balls;
+  for (int i = 0; i < 3000; ++i) {
+    // Some lie outside of the unit cube, some are smaller than the finest cells.
+    const Point centre = Point(unit(random), unit(random), unit(random)) * 1.2 - Point::Constant(0.1);
+    balls.push_back({centre, std::pow(unit(random), 12) * 0.4});
+  }
+  const SphereGrid grid(balls);
+  for (int i = 0; i < 2000; ++i) {
+    const Point x(unit(random), unit(random), unit(random));
+    double least = 1e30;
+    for (const Ball& ball : balls) least = std::min(least, ball.distance(x));
+    const SphereGrid::Nearest hit = grid.nearestOfAll(x, 0.01);
+    EXPECT_EQ(hit.distance, least);
+    EXPECT_EQ(balls[hit.index].distance(x), least);
+    EXPECT_EQ(grid.nearest(x, least).distance, std::numeric_limits<double>::infinity());
+  }
+}
+
+TEST(Ladder, RungsEncloseEveryRadius) {
+  const Ladder ladder(1, 1e-3, 1.0075);
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<float> exponent(-3, 0);
+  for (int i = 0; i < 10000; ++i) {
+    const float radius = std::pow(10.0f, exponent(random));
+    if (radius <= ladder[ladder.size() - 1]) continue;
+    const std::size_t rung = ladder.below(radius);
+    EXPECT_LE(radius, ladder[rung]);
+    EXPECT_GT(radius, ladder[rung + 1]);
+  }
+  for (std::size_t rung = 0; rung + 1 < ladder.size(); ++rung) EXPECT_EQ(ladder.below(ladder[rung]), rung);
+}
+
+TEST(CellQueue, GivesBackTheLargest) {
+  const Ladder ladder(1, 0.01, 1.1);
+  CellQueue queue(ladder);
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::size_t above = 0, live = 0;
+  const std::size_t rung = 20;
+  for (int i = 0; i < 1000; ++i) {
+    Cell cell;
+    cell.upper = unit(random);
+    queue.push(cell);
+    live += cell.upper > ladder[ladder.size() - 1];
+    above += cell.upper > ladder[rung];
+  }
+  EXPECT_EQ(queue.live(), live);
+  const std::vector<Cell> taken = queue.takeAbove(rung);
+  EXPECT_EQ(taken.size(), above);
+  for (const Cell& cell : taken) EXPECT_GT(cell.upper, ladder[rung]);
+  EXPECT_EQ(queue.top(), rung);
+}
+
+}  // namespace
+}  // namespace innersphere::test

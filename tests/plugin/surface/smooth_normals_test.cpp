@@ -1,0 +1,139 @@
+// Where a surface cut into triangles is curved, and where it ends: on a cylinder both are known.
+#include "surface/smooth_normals.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace innersphere::test {
+namespace {
+
+constexpr double kRadius = 0.3, kHeight = 1;
+constexpr std::uint32_t kSegments = 64, kRings = 4;  // rings of faces up the side
+
+/// Triangles 2 (ring kSegments + segment) and the next are the side's, then come bottom and top. The seam
+/// between the last segment and the first may have vertices of its own on each side.
+Surface cylinder(bool seam) {
+  const std::uint32_t columns = seam ? kSegments + 1 : kSegments;
+  Surface surface;
+  for (std::uint32_t ring = 0; ring <= kRings; ++ring) {
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const double angle = 2 * M_PI * i / kSegments;
+      surface.vertices.push_back({static_cast<float>(kRadius * std::cos(angle)),
+                                  static_cast<float>(kRadius * std::sin(angle)),
+                                  static_cast<float>(kHeight * ring / kRings)});
+    }
+  }
+  const auto at = [&](std::uint32_t ring, std::uint32_t i) { return ring * columns + i % columns; };
+  for (std::uint32_t ring = 0; ring < kRings; ++ring) {
+    for (std::uint32_t i = 0; i < kSegments; ++i) {
+      surface.triangles.push_back({at(ring, i), at(ring, i + 1), at(ring + 1, i)});
+      surface.triangles.push_back({at(ring + 1, i), at(ring, i + 1), at(ring + 1, i + 1)});
+    }
+  }
+  const auto middle = static_cast<std::uint32_t>(surface.vertices.size());
+  surface.vertices.push_back({0, 0, 0});
+  surface.vertices.push_back({0, 0, static_cast<float>(kHeight)});
+  for (std::uint32_t i = 0; i < kSegments; ++i) {
+    surface.triangles.push_back({at(0, i + 1), at(0, i), middle});
+    surface.triangles.push_back({at(kRings, i), at(kRings, i + 1), middle + 1});
+  }
+  return surface;
+}
+
+std::size_t sideTriangle(std::uint32_t ring, std::uint32_t segment) {
+  return 2 * (ring * kSegments + segment);
+}
+
+/// In the first triangle of a face of the side, a third of its way up and across.
+btVector3 placeOn(const Surface& surface, std::size_t triangle) {
+  btVector3 sum(0, 0, 0);
+  for (const std::uint32_t v : surface.triangles[triangle]) {
+    const auto& p = surface.vertices[v];
+    sum += btVector3(btScalar(p[0]), btScalar(p[1]), btScalar(p[2]));
+  }
+  return sum / 3;
+}
+
+/// On the top, and the way from there to the rim.
+struct OnTop {
+  explicit OnTop(const Surface& surface)
+      : place(placeOn(surface, triangle)), outwards(btVector3(place.x(), place.y(), 0).normalized()) {}
+
+  std::size_t triangle = 2 * kRings * kSegments + 2 * 7 + 1;
+  btVector3 place;
+  btVector3 outwards;  ///< unit
+};
+
+TEST(SmoothNormals, ASideGoesOnToTheRims) {
+  const Surface surface = cylinder(false);
+  const SmoothNormals normals(surface);
+  for (std::uint32_t ring = 0; ring < kRings; ++ring) {
+    const std::size_t triangle = sideTriangle(ring, 5);
+    const btVector3 place = placeOn(surface, triangle);
+    EXPECT_NEAR(normals.untilSharpEdge(triangle, place, btVector3(0, 0, 1)).distance, kHeight - place.z(),
+                1e-5);
+    EXPECT_NEAR(normals.untilSharpEdge(triangle, place, btVector3(0, 0, -1)).distance, place.z(), 1e-5);
+  }
+}
+
+TEST(SmoothNormals, AroundACylinderNothingEnds) {
+  const Surface surface = cylinder(false);
+  const SmoothNormals normals(surface);
+  const std::size_t triangle = sideTriangle(1, kSegments - 2);
+  const btVector3 place = placeOn(surface, triangle);
+  const btVector3 around(-place.y(), place.x(), 0);
+  EXPECT_FALSE(normals.untilSharpEdge(triangle, place, around.normalized()).found());
+  EXPECT_FALSE(normals.isPastSharpEdge(triangle, place + around * btScalar(0.3)));
+}
+
+TEST(SmoothNormals, ATopEndsAtItsRim) {
+  const Surface surface = cylinder(false);
+  const SmoothNormals normals(surface);
+  const OnTop top(surface);
+  const double rim = kRadius * std::cos(M_PI / kSegments);
+  EXPECT_NEAR(normals.untilSharpEdge(top.triangle, top.place, top.outwards).distance,
+              rim - std::hypot(double(top.place.x()), double(top.place.y())), 1e-5);
+}
+
+TEST(SmoothNormals, ARimIsTheSameFromBothSides) {
+  const Surface surface = cylinder(false);
+  const SmoothNormals normals(surface);
+  const OnTop top(surface);
+  const auto from_top = normals.untilSharpEdge(top.triangle, top.place, top.outwards);
+  ASSERT_TRUE(from_top.found());
+  const auto rim = normals.sharpEdge(from_top);
+  EXPECT_NEAR(rim.from.z(), kHeight, 1e-6);
+  EXPECT_NEAR(rim.to.z(), kHeight, 1e-6);
+  EXPECT_NEAR(rim.from.distance(rim.to), 2 * kRadius * std::sin(M_PI / kSegments), 1e-5);
+  EXPECT_NEAR(rim.inwards[0].dot(top.outwards), -1, 1e-5);
+  EXPECT_NEAR(rim.inwards[1].z(), -1, 1e-5);
+  const std::size_t side = sideTriangle(kRings - 1, 7);
+  const auto from_side = normals.untilSharpEdge(side, placeOn(surface, side), btVector3(0, 0, 1));
+  ASSERT_TRUE(from_side.found());
+  EXPECT_EQ(normals.sharpEdge(from_side).id, rim.id);
+}
+
+TEST(SmoothNormals, TellWhatIsPastARim) {
+  const Surface surface = cylinder(false);
+  const SmoothNormals normals(surface);
+  for (const std::size_t first : {sideTriangle(kRings - 1, 9), sideTriangle(kRings - 1, 9) + 1}) {
+    const btVector3 place = placeOn(surface, first);
+    const btScalar up = btScalar(kHeight) - place.z();
+    EXPECT_FALSE(normals.isPastSharpEdge(first, place + btVector3(0, 0, btScalar(0.9) * up)));
+    EXPECT_TRUE(normals.isPastSharpEdge(first, place + btVector3(0, 0, btScalar(1.1) * up)));
+  }
+}
+
+TEST(SmoothNormals, ASeamIsNoEdge) {
+  const Surface surface = cylinder(true);
+  const SmoothNormals normals(surface);
+  const std::size_t triangle = sideTriangle(1, kSegments - 1) + 1;
+  const btVector3 place = placeOn(surface, triangle);
+  const btVector3 around(-place.y(), place.x(), 0);
+  EXPECT_FALSE(normals.untilSharpEdge(triangle, place, around.normalized()).found());
+  EXPECT_FALSE(normals.isPastSharpEdge(triangle, place + around * btScalar(0.1)));
+}
+
+}  // namespace
+}  // namespace innersphere::test
