@@ -54,6 +54,11 @@ struct ContactOptions {
   /// four times that for Response::compliant with its default stiffness. Bullet's restitution works on top of
   /// it; with Response::penalty a restitution above 0 sets the damping in its place, if that is less.
   double damping = 1;
+  /// Whether contacts that were found are used again while bodies hardly move against each other: then they
+  /// are moved along with the bodies, or evaluated again where they are, and not searched for. False: contact
+  /// is searched for in each step, which takes several times as long; for tests, and to find out where a
+  /// fault lies. See ContactStatistics.
+  bool reuse_contacts = true;
 };
 
 }  // namespace innersphere

@@ -1,13 +1,11 @@
 #include "innersphere/batched_dispatcher.hpp"
 
-#include <typeinfo>
-
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
 #include "bullet/packing_pair_algorithm.hpp"
 #include "bullet/registration.hpp"
 #include "common/parallel.hpp"
-#include "pair_cache/contact_pair.hpp"
+#include "pair_cache/pair_table.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -25,63 +23,46 @@ btCollisionObjectWrapper wrapped(const btCollisionObject& object) {
   return {nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1};
 }
 
-/// Nowhere if the pair is none of ours, or new.
-PairContact::Place placeOf(const btBroadphasePair& pair) {
-  if (pair.m_algorithm == nullptr || typeid(*pair.m_algorithm) != typeid(PairAlgorithm)) return {};
-  return static_cast<PairAlgorithm&>(*pair.m_algorithm).place();
+/// Null if the pair is none of ours, or new.
+ContactPair* contactPairOf(const btBroadphasePair& pair) {
+  auto* algorithm = dynamic_cast<PairAlgorithm*>(pair.m_algorithm);
+  return algorithm == nullptr ? nullptr : &algorithm->pair();
 }
 
-/// Null if it is no new pair of packings that may collide.
-PackingContact* announce(btCollisionDispatcher& dispatcher, btBroadphasePair& pair, btScalar time_step) {
+/// A pair of packings that is new in this step takes part in its update.
+void announce(btCollisionDispatcher& dispatcher, PairTable& table, btBroadphasePair& pair) {
   const btCollisionObject& a = *objectOf(pair.m_pProxy0);
   const btCollisionObject& b = *objectOf(pair.m_pProxy1);
-  if (PackingShape::from(a.getCollisionShape()) == nullptr) return nullptr;
-  if (PackingShape::from(b.getCollisionShape()) == nullptr) return nullptr;
-  if (!dispatcher.needsCollision(&a, &b)) return nullptr;
+  if (PackingShape::from(a.getCollisionShape()) == nullptr) return;
+  if (PackingShape::from(b.getCollisionShape()) == nullptr) return;
+  if (!dispatcher.needsCollision(&a, &b)) return;
   const btCollisionObjectWrapper wrapped_a = wrapped(a), wrapped_b = wrapped(b);
-  if (pair.m_algorithm == nullptr) {
+  if (pair.m_algorithm == nullptr)
     pair.m_algorithm = dispatcher.findAlgorithm(&wrapped_a, &wrapped_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
-  }
-  auto* algorithm = dynamic_cast<PairAlgorithm*>(pair.m_algorithm);
-  return algorithm == nullptr ? nullptr : algorithm->announce(wrapped_a, wrapped_b, time_step);
+  if (ContactPair* ours = contactPairOf(pair)) table.announce(*ours, wrapped_a, wrapped_b);
 }
 
-/// What Bullet would do for the pairs, but for those that are done.
-void collide(btCollisionDispatcher& dispatcher, Registration& registration, btBroadphasePairArray& pairs,
-             const std::vector<PairContact::Place>& places, const btDispatcherInfo& info) {
+/// What Bullet would do for the pairs, but for those that are done. `ours`: for each pair, or null.
+void collide(btCollisionDispatcher& dispatcher, PairTable& table, btBroadphasePairArray& pairs,
+             const std::vector<ContactPair*>& ours, const btDispatcherInfo& info) {
   static thread_local std::vector<char> kept;
   std::vector<char>& done = kept;  // of this thread, also for the others
-  const std::size_t count = places.size();
   // A device works on while Bullet collides bodies that are no packings.
-  bool any_others = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (places[i].look != nullptr) continue;
-    any_others = true;
-    dispatcher.getNearCallback()(pairAt(pairs, i), dispatcher, info);
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (ours[i] == nullptr) dispatcher.getNearCallback()(pairAt(pairs, i), dispatcher, info);
   }
-  registration.batch().finish();
-  if (any_others) {  // whose callbacks may have moved bodies
-    for (LookBoard* board : {&registration.batch().looks(), &registration.surfaces().looks()}) board->check();
-  }
-  const auto ask = [&](std::size_t i) {
-    const btBroadphasePair& pair = pairAt(pairs, i);
-    if (dispatcher.needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1)))
-      places[i].board->ask(*places[i].look);
-  };
-  // A filter of the user's is asked by one thread, and in turn with what Bullet does for the pairs.
-  const bool own_filter = typeid(dispatcher) != typeid(BatchedDispatcher<>);
-  done.resize(count);
-  inParallel(
-      count,
-      [&](std::size_t i) {
-        done[i] = places[i].look != nullptr && places[i].board->isDone(*places[i].look, info.m_timeStep);
-        if (done[i] && !own_filter) ask(i);
-      },
-      [&](std::size_t i) { fetch(places[i].look); });
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!done[i] && places[i].look != nullptr)
-      dispatcher.getNearCallback()(pairAt(pairs, i), dispatcher, info);
-    if (done[i] && own_filter) ask(i);
+  table.finishUpdate();
+  done.resize(ours.size());
+  inParallel(ours.size(),
+             [&](std::size_t i) { done[i] = ours[i] != nullptr && table.isDone(*ours[i], info.m_timeStep); });
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (ours[i] == nullptr) continue;
+    btBroadphasePair& pair = pairAt(pairs, i);
+    if (!done[i]) {
+      dispatcher.getNearCallback()(pair, dispatcher, info);
+    } else if (dispatcher.needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1))) {
+      ours[i]->asked = true;
+    }
   }
 }
 
@@ -89,30 +70,25 @@ void collide(btCollisionDispatcher& dispatcher, Registration& registration, btBr
 
 bool collideBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pairs,
                   const btDispatcherInfo& info, bool as_bullet_does) {
-  static thread_local std::vector<PackingContact*> fresh;
-  static thread_local std::vector<PairContact::Place> kept;
-  std::vector<PairContact::Place>& places = kept;  // of this thread, also for the others
+  static thread_local std::vector<ContactPair*> kept;
+  std::vector<ContactPair*>& ours = kept;  // of this thread, also for the others
   const std::shared_ptr<Registration> registration = Registration::find(&dispatcher);
   if (!registration) return false;
+  PairTable& table = registration->table();
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
-  places.resize(static_cast<std::size_t>(all.size()));
-  inParallel(
-      places.size(), [&](std::size_t i) { places[i] = placeOf(pairAt(all, i)); },
-      [&](std::size_t i) { fetch(pairAt(all, i).m_algorithm); });
-  fresh.clear();
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i].look != nullptr) continue;
-    btBroadphasePair& pair = pairAt(all, i);
-    if (PackingContact* contact = announce(dispatcher, pair, info.m_timeStep)) fresh.push_back(contact);
-    places[i] = placeOf(pair);
+  ours.resize(static_cast<std::size_t>(all.size()));
+  inParallel(ours.size(), [&](std::size_t i) { ours[i] = contactPairOf(pairAt(all, i)); });
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (ours[i] != nullptr && ours[i]->body_a != nullptr) continue;
+    announce(dispatcher, table, pairAt(all, i));
+    ours[i] = contactPairOf(pairAt(all, i));
   }
-  registration->batch().launch(fresh, info.m_timeStep);
-  registration->surfaces().launch(info.m_timeStep);
+  table.beginUpdate(info.m_timeStep);
   if (!as_bullet_does || info.m_deterministicOverlappingPairs ||
       info.m_dispatchFunc != btDispatcherInfo::DISPATCH_DISCRETE ||
       dispatcher.getNearCallback() != &btCollisionDispatcher::defaultNearCallback)
     return false;
-  collide(dispatcher, *registration, all, places, info);
+  collide(dispatcher, table, all, ours, info);
   return true;
 }
 

@@ -6,8 +6,8 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btIDebugDraw.h>
 
+#include "bullet/registration.hpp"
 #include "innersphere/pair_overlaps.hpp"
-#include "pair_cache/contact_pair.hpp"
 #include "shape/placed_packing.hpp"
 
 namespace innersphere {
@@ -74,7 +74,7 @@ void ContactDrawer::debugDraw(btIDebugDraw* drawer) {
   if (drawer == nullptr || !registration) return;
   static thread_local btManifoldArray manifolds;
   manifolds.resize(0);
-  registration->pairs().forEach([&](const PairContact& pair) { pair.appendManifolds(manifolds); });
+  registration->table().appendManifolds(manifolds);
   for (int m = 0; m < manifolds.size(); ++m) {
     if (options_.patches) drawOutline(*manifolds[m], *drawer);
     if (options_.normals) drawNormals(*manifolds[m], time_step_, *drawer);

@@ -7,6 +7,7 @@
 #include <LinearMath/btPoolAllocator.h>
 
 #include "bullet/packing_pair_algorithm.hpp"
+#include "innersphere/contact_statistics.hpp"
 #include "innersphere/error.hpp"
 #include "shape/registration_check.hpp"
 
@@ -50,20 +51,25 @@ void PackingCollisionAlgorithm::registerAlgorithm(btCollisionDispatcher* dispatc
                                              std::to_string(sizeof(PairAlgorithm)) +
                                              " or more in btDefaultCollisionConstructionInfo.");
   }
-  const std::shared_ptr<Registration> registration = Registration::of(dispatcher);
-  registration->setOptions(options);
+  Registration::of(dispatcher).table().setOptions(options);
   noticeRegistration();
-  registration->fillTables(dispatcher);
 }
 
 void PackingCollisionAlgorithm::unregisterAlgorithm(btCollisionDispatcher* dispatcher) {
-  if (const std::shared_ptr<Registration> registration = Registration::take(dispatcher)) {
-    registration->clearTables(dispatcher);
-  }
+  if (dispatcher != nullptr) Registration::remove(dispatcher);
 }
 
 bool PackingCollisionAlgorithm::isRegistered(const btCollisionDispatcher* dispatcher) {
-  return dispatcher != nullptr && Registration::hasTables(*dispatcher);
+  return Registration::find(dispatcher) != nullptr;
+}
+
+ContactStatistics contactStatistics(btCollisionDispatcher* dispatcher) {
+  const std::shared_ptr<Registration> registration = Registration::find(dispatcher);
+  if (!registration) {
+    throw Error(ErrorCode::bad_argument,
+                "contactStatistics needs a dispatcher that PackingCollisionAlgorithm is registered with.");
+  }
+  return registration->table().statistics();
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

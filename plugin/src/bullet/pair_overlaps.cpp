@@ -1,7 +1,7 @@
 #include "innersphere/pair_overlaps.hpp"
 
+#include "bullet/registration.hpp"
 #include "innersphere/error.hpp"
-#include "pair_cache/contact_pair.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -12,12 +12,7 @@ std::vector<PairOverlap> pairOverlaps(btCollisionDispatcher* dispatcher) {
     throw Error(ErrorCode::bad_argument,
                 "pairOverlaps needs a dispatcher that PackingCollisionAlgorithm is registered with.");
   }
-  std::vector<PairOverlap> overlaps;
-  PairOverlap overlap;
-  registration->pairs().forEach([&](PairContact& pair) {
-    if (pair.read(overlap)) overlaps.push_back(overlap);
-  });
-  return overlaps;
+  return registration->table().overlaps();
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,7 +1,9 @@
 #include "bullet/registration.hpp"
 
-#include <map>
+#include <algorithm>
+#include <mutex>
 #include <new>
+#include <vector>
 
 #include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -23,14 +25,15 @@ btCollisionAlgorithm* CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmC
 
 namespace {
 
-struct Registrations {
+/// Keeps registrations for the tables that lead to them.
+struct Kept {
   std::mutex mutex;
-  std::map<btCollisionDispatcher*, std::shared_ptr<Registration>> of;
+  std::vector<std::shared_ptr<Registration>> registrations;
 };
 
-Registrations& registrations() {
+Kept& kept() {
   // Never destroyed: worlds in static storage may outlive it otherwise.
-  static Registrations& all = *new Registrations;
+  static Kept& all = *new Kept;
   return all;
 }
 
@@ -53,56 +56,26 @@ struct Reader : btCollisionDispatcher {
 
 }  // namespace
 
-std::shared_ptr<Registration> Registration::of(btCollisionDispatcher* dispatcher) {
-  Registrations& all = registrations();
-  const std::lock_guard<std::mutex> lock(all.mutex);
-  std::shared_ptr<Registration>& registration = all.of[dispatcher];
-  if (!registration) registration = std::make_shared<Registration>();
-  return registration;
+Registration& Registration::of(btCollisionDispatcher* dispatcher) {
+  if (const std::shared_ptr<Registration> found = find(dispatcher)) {
+    found->fillTables(dispatcher);
+    return *found;
+  }
+  const auto made = std::make_shared<Registration>(dispatcher);
+  made->fillTables(dispatcher);
+  const std::lock_guard<std::mutex> lock(kept().mutex);
+  return *kept().registrations.emplace_back(made);
 }
 
-std::shared_ptr<Registration> Registration::find(btCollisionDispatcher* dispatcher) {
-  Registrations& all = registrations();
-  const std::lock_guard<std::mutex> lock(all.mutex);
-  const auto found = all.of.find(dispatcher);
-  return found == all.of.end() ? nullptr : found->second;
+std::shared_ptr<Registration> Registration::find(const btCollisionDispatcher* dispatcher) {
+  if (dispatcher == nullptr) return nullptr;
+  const auto* row = dynamic_cast<const CreateFunc*>(Reader::read(*dispatcher));
+  return row == nullptr ? nullptr : row->registration().shared_from_this();
 }
 
-void Registration::setOptions(const ContactOptions& options) {
-  batch_.setOptions(options);
-  surfaces_.setOptions(options);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  options_ = options;
-}
-
-ContactOptions Registration::options() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return options_;
-}
-
-std::shared_ptr<Registration> Registration::take(btCollisionDispatcher* dispatcher) {
-  std::shared_ptr<Registration> taken = find(dispatcher);
-  Registrations& all = registrations();
-  const std::lock_guard<std::mutex> lock(all.mutex);
-  all.of.erase(dispatcher);
-  return taken;
-}
-
-void Registration::fillTables(btCollisionDispatcher* dispatcher) {
-  // Not the dispatcher's own table, which may hold our functions already, but what the configuration started
-  // it with.
-  btCollisionConfiguration* defaults = dispatcher->getCollisionConfiguration();
-  const std::lock_guard<std::mutex> lock(mutex_);
-  create_funcs_.clear();
-  forEachRow([&](int type0, int type1) {
-    create_funcs_.emplace_back(*this, defaults->getCollisionAlgorithmCreateFunc(type0, type1), false);
-    dispatcher->registerCollisionCreateFunc(type0, type1, &create_funcs_.back());
-    create_funcs_.emplace_back(*this, defaults->getClosestPointsAlgorithmCreateFunc(type0, type1), true);
-    dispatcher->registerClosestPointsCreateFunc(type0, type1, &create_funcs_.back());
-  });
-}
-
-void Registration::clearTables(btCollisionDispatcher* dispatcher) {
+void Registration::remove(btCollisionDispatcher* dispatcher) {
+  const std::shared_ptr<Registration> found = find(dispatcher);
+  if (!found) return;
   btCollisionConfiguration* defaults = dispatcher->getCollisionConfiguration();
   forEachRow([&](int type0, int type1) {
     dispatcher->registerCollisionCreateFunc(type0, type1,
@@ -110,10 +83,21 @@ void Registration::clearTables(btCollisionDispatcher* dispatcher) {
     dispatcher->registerClosestPointsCreateFunc(type0, type1,
                                                 defaults->getClosestPointsAlgorithmCreateFunc(type0, type1));
   });
+  const std::lock_guard<std::mutex> lock(kept().mutex);
+  std::erase(kept().registrations, found);
 }
 
-bool Registration::hasTables(const btCollisionDispatcher& dispatcher) {
-  return dynamic_cast<const CreateFunc*>(Reader::read(dispatcher)) != nullptr;
+void Registration::fillTables(btCollisionDispatcher* dispatcher) {
+  // Not the dispatcher's own table, which may hold our functions already, but what the configuration started
+  // it with.
+  btCollisionConfiguration* defaults = dispatcher->getCollisionConfiguration();
+  create_funcs_.clear();
+  forEachRow([&](int type0, int type1) {
+    create_funcs_.emplace_back(*this, defaults->getCollisionAlgorithmCreateFunc(type0, type1), false);
+    dispatcher->registerCollisionCreateFunc(type0, type1, &create_funcs_.back());
+    create_funcs_.emplace_back(*this, defaults->getClosestPointsAlgorithmCreateFunc(type0, type1), true);
+    dispatcher->registerClosestPointsCreateFunc(type0, type1, &create_funcs_.back());
+  });
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -3,30 +3,23 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
-#include "common/body_velocity.hpp"
-
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-Motion::Motion(const btCollisionObject& object) : size(BT_LARGE_FLOAT) {
+Motion::Motion(const btCollisionObject& object, const BodyVelocity& now) : size(BT_LARGE_FLOAT) {
   if (object.getCollisionShape()->isInfinite()) return;
   size = object.getCollisionShape()->getAngularMotionDisc();
   if (object.isStaticObject()) return;
-  const BodyVelocity now(object);
   velocity = now.linear;
   rim_speed = now.spin.length() * size;
 }
 
-btScalar sweepOf(const Motion& a, const Motion& b, btScalar time_step) {
+btScalar speculativeDistance(const Motion& a, const Motion& b, btScalar time_step) {
   const btScalar speed = (a.velocity - b.velocity).length() + a.rim_speed + b.rim_speed;
   return btMin(speed * time_step, btMin(a.size, b.size) / 2);
 }
 
-btScalar sweepOf(const btCollisionObject& a, const btCollisionObject& b, btScalar time_step) {
-  return sweepOf(Motion(a), Motion(b), time_step);
-}
-
-btScalar wayOf(const btTransform& before, const btTransform& now, btScalar size) {
+btScalar travelBetween(const btTransform& before, const btTransform& now, btScalar size) {
   btScalar turned2 = 0;  // a turn by t changes the axes by 2 sqrt(2) sin(t / 2)
   for (int i = 0; i < 3; ++i) turned2 += now.getBasis()[i].distance2(before.getBasis()[i]);
   return now.getOrigin().distance(before.getOrigin()) + size * btSqrt(turned2 / 2);

@@ -1,8 +1,9 @@
-// How far bodies move towards each other in a step.
+// How far bodies can move in a step, and have moved.
 #pragma once
 
 #include <LinearMath/btTransform.h>
 
+#include "common/body_velocity.hpp"
 #include "innersphere/bullet_precision.hpp"
 
 class btCollisionObject;
@@ -10,9 +11,9 @@ class btCollisionObject;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Of a body, at its present velocity.
+/// How fast the points of a body move.
 struct Motion {
-  explicit Motion(const btCollisionObject& object);
+  Motion(const btCollisionObject& object, const BodyVelocity& velocity_now);
 
   btVector3 velocity{0, 0, 0};  ///< of its origin [m/s]
   btScalar rim_speed = 0;       ///< by turning [m/s]
@@ -23,11 +24,10 @@ struct Motion {
 /// velocities [m], at most half the size of the smaller body. Contacts that far apart are handed to the
 /// solver already, which lets them close but not pass, so that a fast body does not go deep into another
 /// before its first contact.
-btScalar sweepOf(const Motion& a, const Motion& b, btScalar time_step);
-btScalar sweepOf(const btCollisionObject& a, const btCollisionObject& b, btScalar time_step);
+btScalar speculativeDistance(const Motion& a, const Motion& b, btScalar time_step);
 
 /// An upper bound for how far any point of a body of this size has moved [m].
-btScalar wayOf(const btTransform& before, const btTransform& now, btScalar size);
+btScalar travelBetween(const btTransform& before, const btTransform& now, btScalar size);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

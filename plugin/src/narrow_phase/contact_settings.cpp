@@ -11,7 +11,7 @@ Measure::Measure(const ContactOptions& options, const PackingShape& a, const btC
                  btScalar needed)
     : spacing(btMin(a.getContactBreakingThreshold(gContactBreakingThreshold),
                     b.getContactBreakingThreshold(gContactBreakingThreshold))),
-      separation(btMax(spacing, needed + ContactMemory::reserve(spacing))) {
+      separation(btMax(spacing, needed + kSearchAgain * spacing)) {
   const PackingShape* packing_b = PackingShape::from(&b);
   on_surfaces = options.stiffness == 0 && options.response != Response::penalty && a.impl().hasSurface() &&
                 (packing_b == nullptr || packing_b->impl().hasSurface());

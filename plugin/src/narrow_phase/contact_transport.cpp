@@ -8,27 +8,13 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// In units of the spacing: bodies that have moved less since a search have the same candidates for contacts,
-constexpr btScalar kMeasureAgain = btScalar(0.5);
-/// and less since they were measured, the same contacts. The error is of second order: on a ball of five
-/// spacings a hundredth of this.
-constexpr btScalar kCarry = btScalar(0.1);
-/// In units of what a gap is wider than needed: where that is more, as it does not matter how wide it is.
-constexpr btScalar kCarryGap = btScalar(0.25);
 /// A body that is held from sides more than 107 degrees apart is enclosed.
 constexpr btScalar kEnclosed = btScalar(-0.3);
 
 /// Of a body of this size, as seen from a frame.
 btScalar motionIn(const btTransform& frame_before, const btTransform& before, const btTransform& frame_now,
                   const btTransform& now, btScalar size) {
-  return wayOf(frame_before.inverseTimes(before), frame_now.inverseTimes(now), size);
-}
-
-/// An upper bound for how far a place on one body moves, as seen from the other, where both reach: that is
-/// within the smaller one.
-btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a, btScalar size_b) {
-  return size_b < size_a ? motionIn(before.a, before.b, now.a, now.b, size_b)
-                         : motionIn(before.b, before.a, now.b, now.a, size_a);
+  return travelBetween(frame_before.inverseTimes(before), frame_now.inverseTimes(now), size);
 }
 
 /// From where `point` and its normal have gone with each body to where the surfaces are deepest in each other
@@ -55,27 +41,12 @@ void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector
 
 }  // namespace
 
-ContactMemory::Age ContactMemory::ageAt(const Placed& now, btScalar size_a, btScalar size_b, btScalar needed,
-                                        btScalar found, btScalar spacing, bool empty) const {
-  const btScalar searched = motionBetween(searched_at_, now, size_a, size_b);
-  if (searched > (enclosed_ ? btScalar(0) : kMeasureAgain * spacing) || needed + searched > found)
-    return Age::stale;
-  if (empty) return Age::current;
-  const btScalar measured = motionBetween(measured_at_, now, size_a, size_b);
-  const btScalar carried = btMax(kCarry * spacing, kCarryGap * (gap_ - needed));
-  return measured > carried ? Age::moved : Age::current;
+btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a, btScalar size_b) {
+  return size_b < size_a ? motionIn(before.a, before.b, now.a, now.b, size_b)
+                         : motionIn(before.b, before.a, now.b, now.a, size_a);
 }
 
-btScalar ContactMemory::reserve(btScalar spacing) {
-  return kMeasureAgain * spacing;
-}
-
-btScalar ContactMemory::leeway(const Placed& now, btScalar size_a, btScalar size_b, btScalar spacing) const {
-  if (!candidates.indices.empty()) return -1;
-  return reserve(spacing) - motionBetween(searched_at_, now, size_a, size_b);
-}
-
-void ContactMemory::searchedAt(const Placed& now) {
+void ContactMemory::noteSearch(const Placed& now) {
   searched_at_ = now;
   enclosed_ = false;
   for (const Candidates::OfPatch& patch : candidates.patches) {
@@ -88,7 +59,7 @@ void ContactMemory::turnTo(const Placed& now) {
   turn(now.a.getBasis() * measured_at_.a.getBasis().transpose(), candidates);
 }
 
-void ContactMemory::measuredAt(const Placed& now, btScalar found) {
+void ContactMemory::noteDepths(const Placed& now, btScalar found) {
   measured_at_ = now;
   measured_ = patches;
   gap_ = found;
@@ -112,7 +83,7 @@ void ContactMemory::carryTo(const Placed& now, const PackingShape& a, btScalar s
       ContactPoint& point = patch.points[i];
       const btVector3 on_a = turn_a * (point.on_b + point.normal * point.depth);
       point.on_b = turn_b * (point.on_b - to_b_then) + to_b_now;
-      rollOn(turn_a * point.normal, turn_b * point.normal, on_a, kCarry * spacing, point);
+      rollOn(turn_a * point.normal, turn_b * point.normal, on_a, kRefineAgain * spacing, point);
     }
   }
 }

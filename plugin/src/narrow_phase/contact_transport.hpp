@@ -5,7 +5,6 @@
 
 #include <LinearMath/btTransform.h>
 
-#include "common/parallel.hpp"
 #include "innersphere/packing_shape.hpp"
 #include "narrow_phase/contact_point.hpp"
 #include "narrow_phase/sample_selection.hpp"
@@ -20,38 +19,36 @@ struct Placed {
   bool operator==(const Placed& other) const { return a == other.a && b == other.b; }
 };
 
+/// In units of the spacing: samples are good for bodies that have moved by less than this since a search. So
+/// searches look so much further than they need to.
+constexpr btScalar kSearchAgain = btScalar(0.5);
+/// In units of the spacing: contacts are moved along with bodies that have moved by less than this since
+/// depths were evaluated. The error is of second order: on a ball of five spacings a hundredth of this.
+constexpr btScalar kRefineAgain = btScalar(0.1);
+
+/// An upper bound for how far a place on one body moves, as seen from the other, where both reach: that is
+/// within the smaller one.
+btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a, btScalar size_b);
+
 /// While bodies do not move much against each other, the spheres that were found in contact are good for
 /// being measured again, and while they hardly move, the contacts themselves are, if they go along.
 class ContactMemory {
  public:
-  enum class Age {
-    current,  ///< patches are right, once carried along
-    moved,    ///< the candidates need to be measured again
-    stale,    ///< contact has to be searched for
-  };
-  /// Contacts up to `needed` [m] apart are wanted now, and were found up to `found`. Sizes [m]: no point of A
-  /// is further than `size_a` from its origin, nor of B than `size_b`. `spacing`: see Measure. `empty`: there
-  /// is nothing to be measured.
-  Age ageAt(const Placed& now, btScalar size_a, btScalar size_b, btScalar needed, btScalar found,
-            btScalar spacing, bool empty) const;
-  /// How much further apart than needed contacts are to be found, so that they are good for later steps.
-  static btScalar reserve(btScalar spacing);
-
-  /// How far bodies without candidates may move on until contact has to be searched for again [m]. Negative
-  /// if there are candidates.
-  btScalar leeway(const Placed& now, btScalar size_a, btScalar size_b, btScalar spacing) const;
+  bool isEmpty() const { return candidates.indices.empty(); }
+  const Placed& searchedAt() const { return searched_at_; }
+  const Placed& measuredAt() const { return measured_at_; }
+  /// A nut on its thread, a peg, teeth that mesh: bodies that rattle in their clearance touch now here and
+  /// now there, so that contact is searched for whenever they move.
+  bool isEnclosed() const { return enclosed_; }
+  /// The narrowest one when depths were evaluated [m]; negative: overlap.
+  btScalar gap() const { return gap_; }
 
   /// candidates have been found anew.
-  void searchedAt(const Placed& now);
+  void noteSearch(const Placed& now);
   /// Turns the candidates along, to be measured again.
   void turnTo(const Placed& now);
   /// patches have been measured, with all contacts up to `found` [m] apart.
-  void measuredAt(const Placed& now, btScalar found);
-  /// Asks for the memory of what is moved along.
-  void fetchPatches() const {
-    fetch(measured_.data(), measured_.size());
-    fetch(patches.data(), patches.size());
-  }
+  void noteDepths(const Placed& now, btScalar found);
   /// Moves the patches along: each contact has a point that moves with A and one that moves with B, and rolls
   /// on where surfaces are curved. A's is the packing that positions are relative to the origin of.
   void carryTo(const Placed& now, const PackingShape& a, btScalar spacing);
@@ -61,11 +58,9 @@ class ContactMemory {
 
  private:
   Placed searched_at_;
-  /// A nut on its thread, a peg, teeth that mesh: bodies that rattle in their clearance touch now here and
-  /// now there, so that contact is searched for whenever they move.
   bool enclosed_ = false;
   Placed measured_at_;
-  btScalar gap_ = 0;  ///< the narrowest there [m]; negative: overlap
+  btScalar gap_ = 0;
   std::vector<ContactPatch> measured_;
 };
 

@@ -66,100 +66,75 @@ Overlap sumOf(const PackingBody& a, const std::vector<Touch>& touches) {
 
 }  // namespace
 
-SurfaceContact::SurfaceContact(const PackingShape& packing, const btCollisionShape& other)
+PackingVsShape::PackingVsShape(const PackingShape& packing, const btCollisionShape& other)
     : packing_(packing), other_(other), surface_(makeOtherSurface(other)) {}
 
-void SurfaceContact::update(const ContactOptions& options, const btTransform& packing,
-                            const btTransform& other, btScalar separation) {
+void PackingVsShape::search(const ContactOptions& options, const Placed& now, btScalar needed) {
   static thread_local std::vector<SphereContact> contacts;
-  std::vector<ContactPatch>& patches = memory_.patches;
+  forget();
   overlap_.reset();
-  leeway_ = -1;
-  if (!surface_) return;
-  const Placed now{packing, other};
-  const Measure measure(options, packing_, other_, separation);
-  const PackingBody a(packing_, packing, measure.estimator, measure.slack_a, measure.prefix_a);
-  if (remember(a, measure, now, separation)) return;
+  if (!surface_) {
+    memory.patches.clear();
+    return;
+  }
+  const Measure measure(options, packing_, other_, needed);
+  const PackingBody a(packing_, now.a, measure.estimator, measure.slack_a, measure.prefix_a);
   touches_.clear();
-  surface_->touch(a, other, touches_);
-  const auto caps = [&](btScalar slack) {
-    contacts.clear();
-    for (const Touch& touch : touches_) {
-      const btScalar reach = a.radiusOf(touch.sphere) + a.margin + slack;
-      if (touch.distance < reach)
-        contacts.push_back(cap(touch, a.centreOf(touch.sphere) + touch.aside, reach));
-    }
-  };
+  surface_->touch(a, now.b, touches_);
+  on_surfaces = measure.on_surfaces;
   if (measure.on_surfaces) {
-    caps(a.slack);
+    capsOf(a, a.slack, contacts);
     assert(contacts.size() == touches_.size());  // the gauge counts on it
-    const SurfaceGauge gauge(a, *surface_, other, touches_);
-    findCandidates(contacts, gauge, measure.spacing, packing.getBasis(), patches, memory_.candidates);
-    const bool near = measurePatches(memory_.candidates, gauge, measure, patches);
-    if (!near) caps(0);
-    if (near || contacts.empty()) {
-      memory_.searchedAt(now);
-      memory_.measuredAt(now, measure.separation);
-      measured_ = measure;
-      margin_ = a.margin;
-      scale_ = a.scale();
-      return;
-    }
+    const SurfaceGauge gauge(a, *surface_, now.b, touches_);
+    findCandidates(contacts, gauge, measure.spacing, now.a.getBasis(), memory.patches, memory.candidates);
+    const bool near = measurePatches(memory.candidates, gauge, measure, memory.patches);
+    // Spheres that overlap where no surface is near: the packing is too deep for them.
+    if (!near) capsOf(a, 0, contacts);
+    on_surfaces = near || contacts.empty();
   } else {
-    caps(0);
+    capsOf(a, 0, contacts);
     if (options.response == Response::penalty) overlap_ = sumOf(a, touches_);
   }
-  volumePatches(contacts, measure.spacing, packing.getBasis(), patches);
+  if (!on_surfaces) volumePatches(contacts, measure.spacing, now.a.getBasis(), memory.patches);
+  memory.noteSearch(now);
+  memory.noteDepths(now, measure.separation);
+  settings = measure;
 }
 
-bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, const Placed& now,
-                              btScalar separation) {
-  // Asked in every step: it remembers what it was asked last.
-  const bool same = surface_->isAsBefore() && measured_ && measure.on_surfaces &&
-                    measure.prefix_a == measured_->prefix_a && measure.spacing == measured_->spacing &&
-                    margin_ == a.margin && scale_ == a.scale();
-  const std::optional<Measure> before = measured_;
-  measured_.reset();
-  if (!same) return false;
-  const btScalar size_b = other_.isInfinite() ? BT_LARGE_FLOAT : other_.getAngularMotionDisc();
-  const ContactMemory::Age age = memory_.ageAt(now, packing_.getAngularMotionDisc(), size_b, separation,
-                                               before->separation, measure.spacing, touches_.empty());
-  if (age == ContactMemory::Age::stale) return false;
-  if (age == ContactMemory::Age::current) {
-    memory_.carryTo(now, packing_, measure.spacing);
-    if (touches_.empty())
-      leeway_ = memory_.leeway(now, packing_.getAngularMotionDisc(), size_b, measure.spacing);
-    reach_ = before->separation - ContactMemory::reserve(measure.spacing);
-  } else {
-    if (!surface_->touchAgain(a, now.b, touches_)) return false;
-    memory_.turnTo(now);
-    const SurfaceGauge gauge(a, *surface_, now.b, touches_);
-    const bool near = measurePatches(memory_.candidates, gauge, *before, memory_.patches);
-    const auto cuts = [&](const Touch& touch) {
-      return touch.distance < a.radiusOf(touch.sphere) + a.margin;
-    };
-    if (!near && std::any_of(touches_.begin(), touches_.end(), cuts)) return false;
-    memory_.measuredAt(now, before->separation);
+void PackingVsShape::capsOf(const PackingBody& a, btScalar slack, std::vector<SphereContact>& caps) const {
+  caps.clear();
+  for (const Touch& touch : touches_) {
+    const btScalar reach = a.radiusOf(touch.sphere) + a.margin + slack;
+    if (touch.distance < reach) caps.push_back(cap(touch, a.centreOf(touch.sphere) + touch.aside, reach));
   }
-  measured_ = before;
-  return true;
 }
 
-bool SurfaceContact::isAsBefore() {
-  const bool same = surface_->isAsBefore();
-  if (!same) measured_.reset();
+bool PackingVsShape::hasSameShapes() {
+  const bool same = surface_ && surface_->isAsBefore();
+  if (!same) forget();
   return same;
 }
 
-const Overlap& SurfaceContact::volumesOf(const ContactOptions& options, const btTransform& packing,
-                                         const btTransform& other) {
+bool PackingVsShape::refine(const Placed& now, btScalar needed) {
+  const btScalar separation = btMax(settings->spacing, needed + kSearchAgain * settings->spacing);
+  const btScalar slack = separation + settings->prefix_a->recess() * packing_.getLocalScaling().x();
+  const PackingBody a(packing_, now.a, settings->estimator, slack, settings->prefix_a);
+  if (!surface_->touchAgain(a, now.b, touches_)) return false;
+  memory.turnTo(now);
+  const SurfaceGauge gauge(a, *surface_, now.b, touches_);
+  const bool near = measurePatches(memory.candidates, gauge, *settings, memory.patches);
+  const auto cuts = [&](const Touch& touch) { return touch.distance < a.radiusOf(touch.sphere) + a.margin; };
+  if (!near && std::any_of(touches_.begin(), touches_.end(), cuts)) return false;
+  memory.noteDepths(now, settings->separation);
+  return true;
+}
+
+Overlap PackingVsShape::volumesAt(const ContactOptions& options, const Placed& now) const {
   static thread_local std::vector<Touch> touches;
-  if (overlap_) return *overlap_;
-  const PackingBody a(packing_, packing, options.estimator, 0,
-                      Measure(options, packing_, other_, 0).prefix_a);
+  const PackingBody a(packing_, now.a, options.estimator, 0, Measure(options, packing_, other_, 0).prefix_a);
   touches.clear();
-  if (surface_) surface_->touch(a, other, touches);
-  return overlap_.emplace(sumOf(a, touches));
+  if (surface_) surface_->touch(a, now.b, touches);
+  return sumOf(a, touches);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -9,48 +9,35 @@
 
 #include "innersphere/contact_options.hpp"
 #include "innersphere/packing_shape.hpp"
-#include "narrow_phase/contact_point.hpp"
-#include "narrow_phase/contact_transport.hpp"
+#include "narrow_phase/found_contact.hpp"
 #include "narrow_phase/shapes/shape_surface.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-class SurfaceContact {
+/// A is the packing, B the shape.
+class PackingVsShape : public FoundContact {
  public:
-  /// `packing` and `other` are what the two wrappers of update() will hold.
-  SurfaceContact(const PackingShape& packing, const btCollisionShape& other);
+  /// Both must outlive it.
+  PackingVsShape(const PackingShape& packing, const btCollisionShape& other);
 
-  /// A is the packing.
-  void update(const ContactOptions& options, const btTransform& packing, const btTransform& other,
-              btScalar separation);
-  const std::vector<ContactPatch>& patches() const { return memory_.patches; }
-  /// How far the bodies may move on, from where they were in the last update, until contact has to be
-  /// searched for again, as long as they come no nearer than reach() in a step [m]; not positive if in every
-  /// step.
-  btScalar leeway() const { return leeway_; }
-  btScalar reach() const { return reach_; }
-  /// Whether the other shape is as it was. If not, contact is searched for in the next update.
-  bool isAsBefore();
-  /// What both share, at the places of the last update. Its torque is about the origin of the packing.
-  const Overlap& volumesOf(const ContactOptions& options, const btTransform& packing,
-                           const btTransform& other);
+  /// Searches for contacts up to `needed` [m] apart.
+  void search(const ContactOptions& options, const Placed& now, btScalar needed);
+
+  bool hasSameShapes() override;
+  bool refine(const Placed& now, btScalar needed) override;
+  const Overlap* overlap() const override { return overlap_ ? &*overlap_ : nullptr; }
+  /// What both share at `now`.
+  Overlap volumesAt(const ContactOptions& options, const Placed& now) const;
 
  private:
+  void capsOf(const PackingBody& a, btScalar slack, std::vector<SphereContact>& caps) const;
+
   const PackingShape& packing_;
   const btCollisionShape& other_;
-  /// Contacts on the surfaces from those of earlier steps. False if they need to be searched for.
-  bool remember(const PackingBody& a, const Measure& measure, const Placed& now, btScalar separation);
-
   std::unique_ptr<OtherSurface> surface_;  ///< null for shapes without one
-  ContactMemory memory_;                   ///< its candidates are indices of touches
-  std::vector<Touch> touches_;             ///< of the last search
-  std::optional<Measure> measured_;        ///< of it, if it found contact of the surfaces
-  btScalar margin_ = 0;                    ///< of the packing, then
-  btScalar scale_ = 0;
-  btScalar leeway_ = -1;
-  btScalar reach_ = 0;
-  std::optional<Overlap> overlap_;  ///< once it was asked for
+  std::vector<Touch> touches_;             ///< of the last search: the samples
+  std::optional<Overlap> overlap_;         ///< where forces need it
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,96 +1,103 @@
-// What a pair of bodies with a packing in it remembers from step to step.
+// A pair of bodies with a packing in it: what is known of its contact, and what Bullet was told of it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
-#include "bullet/registration.hpp"
 #include "innersphere/pair_overlaps.hpp"
-#include "pair_cache/overlap_batch.hpp"
-#include "pair_cache/surface_batch.hpp"
+#include "narrow_phase/packing_vs_packing.hpp"
+#include "narrow_phase/packing_vs_shape.hpp"
+#include "pair_cache/body_snapshot.hpp"
+#include "pair_cache/pair_side.hpp"
 #include "response/manifold_writer.hpp"
 #include "response/penalty.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Bodies without contacts stay apart until they have travelled too far, or could close too wide a gap within
+/// one step.
+struct SafeDistance {
+  bool known = false;
+  std::uint32_t changes = 0;  ///< of both bodies' shapes, together
+  btScalar separation = 0;    ///< as long as they come no nearer than this in a step [m],
+  double travel = 0;          ///< until both together have travelled this far [m]
+};
+
+/// What the contacts of a pair are written with.
+struct ResponseSettings {
+  ContactOptions options;
+  SolverSettings solver;
+  btScalar time_step = 0;  ///< [s]
+};
+
 /// A is the body with the packing, or the first of two packings.
-class PairContact : public ContactReceiver, public ListedPair {
- public:
-  /// `closest`: for one closest-point query, without touching the dispatcher's manifolds.
-  PairContact(btDispatcher* dispatcher, std::shared_ptr<Registration> registration, bool closest);
-  ~PairContact() override;
-  PairContact(const PairContact&) = delete;
-  PairContact& operator=(const PairContact&) = delete;
+struct ContactPair {
+  explicit ContactPair(btDispatcher* dispatcher) : manifolds(dispatcher) {}
 
-  /// `swapped`: B is the first body for Bullet.
-  void process(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, bool swapped,
-               const btDispatcherInfo& dispatch, btManifoldResult* result);
+  /// Takes the pair as Bullet asks for it. `is_swapped`: B is the first body for Bullet.
+  void set(const btCollisionObjectWrapper& wrapper_a, const btCollisionObjectWrapper& wrapper_b,
+           bool is_swapped);
+  /// Nothing is known any more of contacts that were found.
+  void forgetContact();
+  /// As a new pair; gives the manifolds back.
+  void clear();
 
-  /// Where it is on a board of all pairs, if it is.
-  struct Place {
-    LookBoard* board = nullptr;
-    Look* look = nullptr;
-    bool swapped = false;  ///< B is the first body for Bullet
-  };
-  Place place() const;
+  /// Where both were in the last update.
+  Placed placed() const { return {a.transform, b.transform}; }
+  /// Of A's packing in the world: contacts are relative to it.
+  btVector3 origin() const;
 
-  /// Tells the batch of a pair before it is processed. Returns it if it is one of packings that the batch did
-  /// not know.
-  PackingContact* announce(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
-                           btScalar time_step);
+  /// Whether any thread may write the contacts, at any time of a step: Bullet asks for the pair as it does of
+  /// itself, and for no child of a compound, which it names in the points; no code of the user's has a part
+  /// in it; and there are manifolds enough, which only the dispatcher makes.
+  bool canBePublished(const ResponseSettings& settings) const;
+  /// Writes the contacts into the manifolds through a result of its own.
+  void publish(const ResponseSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b);
+  /// Writes them through Bullet's `result`.
+  void write(const ResponseSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
+             btManifoldResult* result);
+  /// Tells `result` of them, and leaves the manifolds alone.
+  void report(btManifoldResult* result) const;
 
-  void appendManifolds(btManifoldArray& manifolds) const { manifolds_.append(manifolds); }
+  ContactLaw lawOf(const ResponseSettings& settings) const;
+  /// True if the manifolds hold contact points.
+  bool hasPoints() const;
+  /// What the user is told of the pair: `shared` by both, and the impulses that the solver has found for its
+  /// points, of which there are some.
+  PairOverlap read(const Overlap& shared) const;
+  /// Logs an error, once for each pair: a body that is lost stays lost.
+  void logOnce(const std::string& message);
 
-  /// As of the last call of process(), with the impulses that the solver found since then. False if nothing
-  /// touches.
-  bool read(PairOverlap& overlap);
+  // What is read for each pair in each step comes first: most pairs of a pile are idle.
+  const BodySnapshot* body_a = nullptr;  ///< null if the pair is in no table
+  const BodySnapshot* body_b = nullptr;
+  std::uint64_t step = 0;    ///< of the last update that it was part of, or that came before it
+  bool asked = false;        ///< by Bullet, since that
+  bool published = false;    ///< in that update
+  bool busy = false;         ///< a thread is at work on it alone
+  bool of_packings = false;  ///< two of them
+  bool swapped = false;      ///< B is the first body for Bullet
+  bool plain = false;        ///< no child of a compound
+  btScalar separation = 0;   ///< asked for [m]
+  SafeDistance safe;
+
+  PairSide a, b;
+  std::unique_ptr<FoundContact> found;
+  ManifoldWriter manifolds;
+  btScalar depth = 0;             ///< of the deepest contact; negative: of the gap [m]
+  btScalar time_step = 0;         ///< of the last update [s]
+  std::uint64_t pushed_step = 0;  ///< when penalty forces acted last
+  PenaltyReport penalty;
+  std::size_t list_index = 0;  ///< see PairList
 
  private:
-  bool hasReceived(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
-                   const btManifoldResult& result, btScalar time_step);
-  bool receive(const std::vector<ContactPatch>& patches, const ContactOptions& options,
-               btScalar time_step) override;
-  void fetchManifolds() const override { manifolds_.fetch(); }
-  static bool isPlain(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
-                      const btManifoldResult& result);
-  const std::vector<ContactPatch>& update(const btCollisionObjectWrapper& a,
-                                          const btCollisionObjectWrapper& b, btScalar separation);
-  void look(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btScalar time_step);
-  bool provide(const PackingSide& a, const PackingSide& b);
-  ContactLaw lawOf(const ContactOptions& options, btScalar time_step) const;
-  void push(const ContactLaw& law, const btDispatcherInfo& dispatch, const btManifoldResult& result);
-  Overlap overlap();
-  /// Of A's packing in the world, and where the torque of overlap() acts.
-  btVector3 origin() const;
-  btVector3 arm() const;
-  void forget();
-  void report(const std::string& message);
-
-  btDispatcher* const dispatcher_;
-  const std::shared_ptr<Registration> registration_;
-  const bool closest_;
-  bool reported_ = false;
-  bool swapped_ = false;    ///< B is the first body for Bullet
-  bool plain_ = false;      ///< see isPlain()
-  ContactOptions options_;  ///< of the last call
-  const btCollisionObject* object_a_ = nullptr;
-  const btCollisionObject* object_b_ = nullptr;
-  const btCollisionShape* shape_a_ = nullptr;
-  const btCollisionShape* shape_b_ = nullptr;
-  btTransform transform_a_;
-  btTransform transform_b_;
-  btScalar time_step_ = 0;         ///< of the last step [s]
-  btScalar depth_ = 0;             ///< of the deepest contact; negative: of the gap [m]
-  std::uint64_t pushed_step_ = 0;  ///< when penalty forces acted last
-  PenaltyReport penalty_;
-  std::optional<PackingContact> packings_;
-  std::optional<SurfacePair> surface_;
-  ManifoldSet manifolds_;
+  bool logged_ = false;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

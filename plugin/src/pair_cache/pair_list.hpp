@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <mutex>
 #include <vector>
 
 #include "common/parallel.hpp"
@@ -11,12 +10,9 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-struct ListedPair {
-  std::size_t list_index = 0;  ///< in the PairList that it is in
-};
-
-/// In the order in which they came. One that goes leaves a gap, and gaps are closed when they are more than
-/// half of the list: so each costs the same, however many there are and whichever goes first.
+/// Things that have a list_index, in the order in which they came. One that goes leaves a gap, and gaps are
+/// closed when they are more than half of the list: so each costs the same, however many there are and
+/// whichever goes first.
 template <typename Pair>
 class PairList {
  public:
@@ -29,7 +25,7 @@ class PairList {
     if (2 * ++gaps_ > pairs_.size()) closeGaps();
   }
 
-  /// At least how many there are.
+  /// No fewer than there are.
   std::size_t size() const { return pairs_.size(); }
   /// What it has room for; grows by multiples.
   std::size_t capacity() const { return pairs_.capacity(); }
@@ -43,17 +39,12 @@ class PairList {
       if (pair != nullptr) visit(*pair);
     }
   }
-  /// With all threads. `fetches` are called before for what a visit reads besides the beginning of the pair,
-  /// as in inParallel().
-  template <typename Visit, typename... Fetches>
-  void forEachInParallel(const Visit& visit, const Fetches&... fetches) const {
-    const auto of = [&](const auto& call) {
-      return [&](std::size_t i) {
-        if (pairs_[i] != nullptr) call(*pairs_[i]);
-      };
-    };
-    inParallel(
-        pairs_.size(), of(visit), [&](std::size_t i) { __builtin_prefetch(pairs_[i]); }, of(fetches)...);
+  /// With all threads.
+  template <typename Visit>
+  void forEachInParallel(const Visit& visit) const {
+    inParallel(pairs_.size(), [&](std::size_t i) {
+      if (pairs_[i] != nullptr) visit(*pairs_[i]);
+    });
   }
 
  private:
@@ -64,29 +55,6 @@ class PairList {
   }
   std::vector<Pair*> pairs_;  ///< null: a gap
   std::size_t gaps_ = 0;
-};
-
-/// One that several threads may use at once.
-template <typename Pair>
-class SharedPairList {
- public:
-  void add(Pair* pair) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    pairs_.add(pair);
-  }
-  void remove(Pair* pair) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    pairs_.remove(pair);
-  }
-  template <typename Visit>
-  void forEach(const Visit& visit) const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    pairs_.forEach(visit);
-  }
-
- private:
-  mutable std::mutex mutex_;
-  PairList<Pair> pairs_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -3,8 +3,6 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include "common/body_velocity.hpp"
-
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -16,13 +14,8 @@ constexpr btScalar kStiffness = 24, kDamping = 4;
 /// Depth at which that stiffness has doubled, in sizes of the smaller body: what carries many times its own
 /// mass needs more than what lies still.
 constexpr btScalar kStiffening = btScalar(0.002);
-/// Contacts deeper than 0.04 m lose their spring to Bullet's split impulse by default; stay above.
-constexpr btScalar kSplitImpulseDepth = btScalar(0.03);
 /// Fastest push of the default law, in sizes of the body per second.
 constexpr btScalar kFastest = btScalar(0.5);
-
-/// Part of a slip that Bullet undoes in a step: m_frictionERP, by default.
-constexpr btScalar kUndone = btScalar(0.2);
 
 /// How far ahead of bodies that roll their load lies, in sizes of the smaller one: a fiftieth of what it does
 /// for steel on steel. Enough to lie still on slopes of a micrometre, which measured surfaces have.
@@ -58,26 +51,17 @@ btScalar inverseMass(const btCollisionObject& object) {
   return 0;
 }
 
-btVector3 velocityAt(const btCollisionObject& object, const btVector3& point) {
-  const BodyVelocity velocity(object);
-  return velocity.linear + velocity.spin.cross(point - object.getWorldTransform().getOrigin());
-}
-
-btVector3 centripetal(const btCollisionObject& object, const btVector3& point) {
-  const btVector3 spin = BodyVelocity(object).spin;
-  return spin.cross(spin.cross(point - object.getWorldTransform().getOrigin()));
-}
-
 }  // namespace
 
 ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step,
-                       btScalar size)
+                       btScalar size, const SolverSettings& solver)
     : response_(options.response),
       given_stiffness_(btScalar(options.stiffness)),
       damping_ratio_(btScalar(options.damping)),
       mass_(reduced_mass > 0 ? reduced_mass : btScalar(1)),
       time_step_(time_step > 0 ? time_step : btScalar(1) / 60),
-      size_(size) {
+      size_(size),
+      solver_(solver) {
   if (defaultSpring()) damping_ratio_ *= kDamping;
   if (!penalty()) return;
   damping_ratio_ = 1;  // the points' own restitution has a say in it
@@ -121,16 +105,16 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     const auto hold = [&] {
       if (law.depth * rate() > fastest) law.depth = fastest / rate();
     };
-    law.depth = btMin(depth, kSplitImpulseDepth);
+    law.depth = btMin(depth, law_->solver_.deepest_spring);
     hold();
     const btScalar stiffening = 1 + btMax(law.depth, btScalar(0)) / (kStiffening * law_->size_);
     law.stiffness *= stiffening;
     law.damping *= btSqrt(stiffening);
     hold();
-  } else if (depth > kSplitImpulseDepth) {
+  } else if (depth > law_->solver_.deepest_spring) {
     // The same force from a smaller depth.
-    law.stiffness *= depth / kSplitImpulseDepth;
-    law.depth = kSplitImpulseDepth;
+    law.stiffness *= depth / law_->solver_.deepest_spring;
+    law.depth = law_->solver_.deepest_spring;
   }
   law.push = btMax(law.depth, btScalar(0)) * rate();
   if (law.depth == depth) law.bears = law_->time_step_ * law.stiffness * btMax(depth, btScalar(0));
@@ -138,25 +122,8 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
 }
 
 btScalar ContactLaw::OfPatch::slipUndoneBy(btScalar impulse) const {
-  return impulse * law_->time_step_ / (kUndone * law_->mass_);
-}
-
-btVector3 relativeVelocity(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point) {
-  return velocityAt(a, point) - velocityAt(b, point);
-}
-
-btVector3 relativeSpin(const btCollisionObject& a, const btCollisionObject& b) {
-  return BodyVelocity(a).spin - BodyVelocity(b).spin;
-}
-
-btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
-                       const btVector3& normal) {
-  return relativeVelocity(a, b, point).dot(normal);
-}
-
-btScalar approachByTurning(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
-                           const btVector3& normal) {
-  return (centripetal(a, point) - centripetal(b, point)).dot(normal);
+  const btScalar undone = law_->solver_.friction_erp;
+  return undone > 0 ? impulse * law_->time_step_ / (undone * law_->mass_) : btScalar(0);
 }
 
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b) {

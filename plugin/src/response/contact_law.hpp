@@ -5,6 +5,7 @@
 
 #include "innersphere/contact_options.hpp"
 #include "narrow_phase/contact_point.hpp"
+#include "response/solver_settings.hpp"
 
 class btCollisionObject;
 
@@ -41,14 +42,15 @@ struct PointLaw {
 class ContactLaw {
  public:
   /// `size` [m] is that of the smaller body.
-  ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step, btScalar size);
+  ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step, btScalar size,
+             const SolverSettings& solver = {});
 
   /// For the points of one patch.
   class OfPatch {
    public:
     PointLaw at(btScalar depth) const;
     /// Slip of the reduced mass that Bullet's friction anchors undo by this impulse [N s] in a step: of a
-    /// slip s they undo a fifth by m s / (5 dt) [m].
+    /// slip s they undo the part e by m e s / dt [m].
     btScalar slipUndoneBy(btScalar impulse) const;
 
    private:
@@ -61,6 +63,7 @@ class ContactLaw {
   OfPatch of(const std::vector<ContactPatch>& patches, std::size_t index) const;
 
   bool penalty() const { return response_ == Response::penalty; }
+  const SolverSettings& solver() const { return solver_; }
   /// Of Response::penalty [N/m^3].
   btScalar penaltyStiffness() const { return given_stiffness_; }
 
@@ -73,21 +76,8 @@ class ContactLaw {
   btScalar mass_;
   btScalar time_step_;
   btScalar size_;
+  SolverSettings solver_;
 };
-
-/// Of `a` as seen from `b`, at a point of the world [m/s].
-btVector3 relativeVelocity(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point);
-
-/// The same of their turning [rad/s].
-btVector3 relativeSpin(const btCollisionObject& a, const btCollisionObject& b);
-
-/// Speed at which two bodies approach each other at a point of the world along `normal`, from a to b [m/s].
-btScalar approachSpeed(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
-                       const btVector3& normal);
-
-/// Acceleration with which their turning brings the bodies nearer there [m/s^2].
-btScalar approachByTurning(const btCollisionObject& a, const btCollisionObject& b, const btVector3& point,
-                           const btVector3& normal);
 
 /// 1 / (1/m_a + 1/m_b), static and kinematic bodies counting as infinitely heavy; 0 if both are.
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b);

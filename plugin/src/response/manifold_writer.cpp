@@ -4,15 +4,12 @@
 
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
-#include "common/parallel.hpp"
 #include "response/patch_friction.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Bullet's default, of which the algorithm is not told.
-constexpr btScalar kWarmStarting = btScalar(0.85);
 /// Patches whose normals differ by more than about 45 degrees are not the same patch.
 constexpr btScalar kSamePatch = btScalar(0.7);
 
@@ -91,7 +88,7 @@ void letGo(const btCollisionObject& a, const btCollisionObject& b, btManifoldPoi
 /// set a law of their own, through the bodies or in a material callback. The callback has seen the true
 /// depth.
 void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObject& a,
-            const btCollisionObject& b) {
+            const PairMotion& motion, btScalar warm_starting) {
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
                             BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   const PointLaw& law = from.law;
@@ -112,7 +109,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   btScalar depth = spring ? law.depth : from.depth;
   // A bounce starts from the surface: the depth that was reached within the step must not add to it, nor the
   // distance that is left, or the give of the spring, take from it.
-  const btScalar approach = approachSpeed(a, b, from.on_b, from.normal);
+  const btScalar approach = motion.approachAt(from.on_b, from.normal);
   const bool meets = depth + approach * law.time_step > 0;
   const bool bounces = point.m_combinedRestitution * approach > law.push;
   // The solver would begin the bounce before they touch, and brake them on their way.
@@ -124,14 +121,15 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   // The solver lets a gap close at a constant speed; points beside the one that a body rolls on turn away
   // instead, and would brake it.
   if (depth < 0) {
-    const btScalar turning = approachByTurning(a, b, from.on_b, from.normal);
+    const btScalar turning = motion.approachByTurningAt(from.on_b, from.normal);
     depth = btMin(btScalar(0), depth + turning * law.time_step * law.time_step / 2);
   }
   if (spring) {
     // The solver starts with a part of the last impulse. What is short of a load that lies still would make
     // it sink until its spring has replaced it: where the spring bears more, it starts with all of it.
-    point.m_appliedImpulse =
-        btMax(point.m_appliedImpulse, btMin(point.m_appliedImpulse / kWarmStarting, law.bears));
+    if (warm_starting > 0)
+      point.m_appliedImpulse =
+          btMax(point.m_appliedImpulse, btMin(point.m_appliedImpulse / warm_starting, law.bears));
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
@@ -148,8 +146,9 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
 }
 
 /// The points of one patch into the manifold that `result` holds.
-void writePatch(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
-                const ContactPatch& patch, const ContactLaw::OfPatch& law, btManifoldResult* result) {
+void writePatch(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
+                const btVector3& origin, const ContactPatch& patch, const ContactLaw::OfPatch& law,
+                btScalar warm_starting, btManifoldResult* result) {
   btPersistentManifold& manifold = *result->getPersistentManifold();
   std::array<NewPoint, kPatchPoints> points;
   int count = 0;
@@ -166,7 +165,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const bt
   }
   PointIndices match = matchPoints(manifold, points.data(), count);
   removeUnmatched(manifold, match);
-  const btScalar friction = slidingShare(a, b, patch, manifold);
+  const btScalar friction = slidingShare(motion, patch, manifold);
   const btScalar largest_slip = law.slipUndoneBy(kSlipShare * mostFriction(manifold));
   const btScalar farthest_slip = kFarthestSlip * manifold.getContactBreakingThreshold();
   for (int i = 0; i < count; ++i) {
@@ -181,19 +180,21 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const bt
       letGo(a, b, cached);
     }
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
-    if (btManifoldPoint* added = pointAt(manifold, point.on_b)) setLaw(*added, point, a, b);
+    if (btManifoldPoint* added = pointAt(manifold, point.on_b))
+      setLaw(*added, point, a, motion, warm_starting);
   }
   result->refreshContactPoints();
 }
 
 }  // namespace
 
-ManifoldSet::~ManifoldSet() {
+void ManifoldWriter::clear() {
   for (const Entry& entry : entries_) dispatcher_->releaseManifold(entry.manifold);
+  entries_.clear();
 }
 
-void ManifoldSet::report(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
-                         const std::vector<ContactPatch>& patches, btManifoldResult* result) {
+void ManifoldWriter::report(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
+                            const std::vector<ContactPatch>& patches, btManifoldResult* result) {
   // The result looks up the order of the bodies in its manifold.
   btPersistentManifold order(&a, &b, 0, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
   btPersistentManifold* const before = result->getPersistentManifold();
@@ -207,15 +208,11 @@ void ManifoldSet::report(const btCollisionObject& a, const btCollisionObject& b,
   result->setPersistentManifold(before);
 }
 
-void ManifoldSet::append(btManifoldArray& manifolds) const {
+void ManifoldWriter::append(btManifoldArray& manifolds) const {
   for (const Entry& entry : entries_) manifolds.push_back(entry.manifold);
 }
 
-void ManifoldSet::fetch() const {
-  for (const Entry& entry : entries_) innersphere::fetch(entry.manifold);
-}
-
-void ManifoldSet::assign(const btTransform& a, const std::vector<ContactPatch>& patches) {
+void ManifoldWriter::assign(const btTransform& a, const std::vector<ContactPatch>& patches) {
   owner_.assign(entries_.size(), -1);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const ContactPatch& patch = patches[p];
@@ -237,7 +234,7 @@ void ManifoldSet::assign(const btTransform& a, const std::vector<ContactPatch>& 
 }
 
 /// Gives patches that match no manifold an idle one, or a new one.
-void ManifoldSet::provide(const btCollisionObject& a, const btCollisionObject& b, std::size_t count) {
+void ManifoldWriter::provide(const btCollisionObject& a, const btCollisionObject& b, std::size_t count) {
   for (std::size_t p = 0; p < count; ++p) {
     if (std::find(owner_.begin(), owner_.end(), static_cast<int>(p)) != owner_.end()) continue;
     auto idle = std::find(owner_.begin(), owner_.end(), -1);
@@ -253,9 +250,9 @@ void ManifoldSet::provide(const btCollisionObject& a, const btCollisionObject& b
   }
 }
 
-void ManifoldSet::write(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
-                        const std::vector<ContactPatch>& patches, const ContactLaw& law, btScalar separation,
-                        btManifoldResult* result) {
+void ManifoldWriter::write(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
+                           const btVector3& origin, const std::vector<ContactPatch>& patches,
+                           const ContactLaw& law, btScalar separation, btManifoldResult* result) {
   if (patches.empty() && entries_.empty()) return;
   assign(a.getWorldTransform(), patches);
   provide(a, b, patches.size());
@@ -272,7 +269,7 @@ void ManifoldSet::write(const btCollisionObject& a, const btCollisionObject& b, 
     entry.manifold->setContactBreakingThreshold(btMax(entry.threshold, separation));
     entry.manifold->setContactProcessingThreshold(law.penalty() ? -BT_LARGE_FLOAT : entry.processing);
     result->setPersistentManifold(entry.manifold);
-    writePatch(a, b, origin, patches[p], law.of(patches, p), result);
+    writePatch(a, b, motion, origin, patches[p], law.of(patches, p), law.solver().warm_starting, result);
   }
   result->setPersistentManifold(before);
 }

@@ -8,6 +8,7 @@
 
 #include "narrow_phase/contact_point.hpp"
 #include "response/contact_law.hpp"
+#include "response/pair_motion.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -15,27 +16,28 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// One manifold a patch. A patch keeps its manifold from step to step, and a point its place in it, so that
 /// Bullet's warm starting works; points that were not found again are removed. Manifolds are given back only
 /// at the end, because btCollisionDispatcherMt cannot release a manifold in the dispatch that made it.
-class ManifoldSet {
+class ManifoldWriter {
  public:
-  explicit ManifoldSet(btDispatcher* dispatcher) : dispatcher_(dispatcher) {}
-  ~ManifoldSet();
-  ManifoldSet(const ManifoldSet&) = delete;
-  ManifoldSet& operator=(const ManifoldSet&) = delete;
+  explicit ManifoldWriter(btDispatcher* dispatcher) : dispatcher_(dispatcher) {}
+  ~ManifoldWriter() { clear(); }
+  ManifoldWriter(const ManifoldWriter&) = delete;
+  ManifoldWriter& operator=(const ManifoldWriter&) = delete;
 
-  /// Replaces the contacts between `a` and `b`. `origin`: of A's packing in the world. `separation` [m]:
-  /// points that far apart are kept.
-  void write(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
-             const std::vector<ContactPatch>& patches, const ContactLaw& law, btScalar separation,
-             btManifoldResult* result);
+  /// Replaces the contacts between `a` and `b`, which move like `motion`. `origin`: of A's packing in the
+  /// world. `separation` [m]: points that far apart are kept.
+  void write(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
+             const btVector3& origin, const std::vector<ContactPatch>& patches, const ContactLaw& law,
+             btScalar separation, btManifoldResult* result);
 
   /// Only tells `result` of them, as closest-point queries want it: keeps nothing and makes no manifold.
   static void report(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
                      const std::vector<ContactPatch>& patches, btManifoldResult* result);
 
+  /// Gives the manifolds back.
+  void clear();
   void append(btManifoldArray& manifolds) const;
-  /// Asks for their memory.
-  void fetch() const;
   std::size_t size() const { return entries_.size(); }
+  btDispatcher& dispatcher() const { return *dispatcher_; }
 
  private:
   struct Entry {

@@ -1,7 +1,5 @@
 #include "response/patch_friction.hpp"
 
-#include "response/contact_law.hpp"
-
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -43,7 +41,7 @@ btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, cons
   return length > largest ? slip * (largest / length) : slip;
 }
 
-btScalar slidingShare(const btCollisionObject& a, const btCollisionObject& b, const ContactPatch& patch,
+btScalar slidingShare(const PairMotion& motion, const ContactPatch& patch,
                       const btPersistentManifold& manifold) {
   btScalar load = 0;
   btVector3 centre(0, 0, 0);
@@ -62,9 +60,9 @@ btScalar slidingShare(const btCollisionObject& a, const btCollisionObject& b, co
     const btScalar weight = btMax(point.m_appliedImpulse, btScalar(0)) / load;
     rim += point.m_positionWorldOnB.distance(centre) * weight;
   }
-  const btVector3 speed = relativeVelocity(a, b, centre);
+  const btVector3 speed = motion.velocityAt(centre);
   const btScalar slide = (speed - patch.normal * speed.dot(patch.normal)).length2();
-  const btScalar spin = relativeSpin(a, b).dot(patch.normal);
+  const btScalar spin = motion.spin().dot(patch.normal);
   const auto work = [&](btScalar radius) { return slide + kAcross * spin * spin * radius * radius; };
   const btScalar radius = btMax(patch.radius, kLine * rim);
   return radius < rim && spin != 0 ? btSqrt(work(radius) / work(rim)) : btScalar(1);

@@ -5,6 +5,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "narrow_phase/contact_point.hpp"
+#include "response/pair_motion.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -27,7 +28,7 @@ btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, cons
 /// the points, weighted by what they bore in the last step,
 ///   share^2 = (V^2 + (w r)^2 / 2) / (V^2 + (w p)^2 / 2).
 /// Exact where bodies only slide, or only turn. 1 where friction holds, at least 1/2: that of a line.
-btScalar slidingShare(const btCollisionObject& a, const btCollisionObject& b, const ContactPatch& patch,
+btScalar slidingShare(const PairMotion& motion, const ContactPatch& patch,
                       const btPersistentManifold& manifold);
 
 /// Mean distance of the pressure of a round contact from its middle [m], at a depth [m] where the curvatures

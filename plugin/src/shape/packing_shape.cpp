@@ -1,8 +1,8 @@
 #include "innersphere/packing_shape.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <typeinfo>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <LinearMath/btAabbUtil2.h>
@@ -60,7 +60,6 @@ const btTransform& PackingShape::principalTransform() const {
 
 const PackingShape* PackingShape::from(const btCollisionShape* shape) {
   if (shape == nullptr || shape->getShapeType() != kPackingShapeType) return nullptr;
-  if (typeid(*shape) == typeid(PackingShape)) return static_cast<const PackingShape*>(shape);
   return dynamic_cast<const PackingShape*>(shape);
 }
 
@@ -100,7 +99,8 @@ void PackingShape::noteChange() {
   btScalar radius;
   PackingShape::getBoundingSphere(centre, radius);
   impl_->disc = radius + centre.length();
-  ++impl_->version;
+  static std::atomic<std::uint64_t> versions{0};
+  impl_->version = ++versions;
 }
 
 btScalar PackingShape::getContactBreakingThreshold(btScalar factor) const {

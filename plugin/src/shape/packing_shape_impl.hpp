@@ -33,8 +33,8 @@ struct PackingShape::Impl {
   std::shared_ptr<const PackedSolid> solid;
   const Prefix* prefix;  ///< that the user chose
   btVector3 scaling{1, 1, 1};
-  btScalar disc = 0;        ///< asked for many times in a step
-  std::size_t version = 0;  ///< rises with each change
+  btScalar disc = 0;          ///< asked for many times in a step
+  std::uint64_t version = 0;  ///< another one after each change, and for each shape
   mutable SerializedSpheres serialized;
   mutable StepWatch watch;
 };

@@ -1,7 +1,7 @@
 // How often the overlaps of packings are queried.
 #include <gtest/gtest.h>
 
-#include "bullet/registration.hpp"
+#include "innersphere/contact_statistics.hpp"
 #include "innersphere/batched_dispatcher.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
@@ -9,16 +9,18 @@
 namespace innersphere::test {
 namespace {
 
-/// A world whose launches are counted from its start. (A dispatcher at the address of an earlier one has that
-/// one's registration.)
+/// A world whose queries are counted from its start.
 struct CountedWorld : TestWorld {
   explicit CountedWorld(DispatcherKind kind) : TestWorld({}, kind), start(now()) {}
-  BatchCount now() { return Registration::find(&dispatcher)->batch().count(); }
-  BatchCount start;
+  ContactStatistics now() { return contactStatistics(&dispatcher); }
+  ContactStatistics start;
 };
 
-BatchCount countOf(CountedWorld& world) {
-  return {world.now().launches - world.start.launches, world.now().pairs - world.start.pairs};
+ContactStatistics countOf(CountedWorld& world) {
+  ContactStatistics count = world.now();
+  count.queries -= world.start.queries;
+  count.searched -= world.start.searched;
+  return count;
 }
 
 std::shared_ptr<PackingShape> cube() {
@@ -46,17 +48,17 @@ TEST_P(Batch, AStepIsOneLaunchForAllPairs) {
   CountedWorld world(GetParam());
   addPairs(world, 4);
   world.run(1.0 / 60);
-  EXPECT_EQ(countOf(world).launches,
+  EXPECT_EQ(countOf(world).queries,
             batched() ? 1u : 4u);  // new pairs are not known before they are asked for
-  EXPECT_EQ(countOf(world).pairs, 4u);
+  EXPECT_EQ(countOf(world).searched, 4u);
   for (int i = 0; i < 5; ++i) {
     for (const auto& body : world.bodies) {  // all move in every step
       if (!body->isStaticObject()) body->setLinearVelocity(btVector3(1, 0, 0));
     }
-    const BatchCount before = countOf(world);
+    const ContactStatistics before = countOf(world);
     world.run(1.0 / 60);
-    EXPECT_EQ(countOf(world).launches, before.launches + 1);
-    EXPECT_EQ(countOf(world).pairs, before.pairs + 4);
+    EXPECT_EQ(countOf(world).queries, before.queries + 1);
+    EXPECT_EQ(countOf(world).searched, before.searched + 4);
   }
 }
 
@@ -67,13 +69,13 @@ TEST_P(Batch, SleepingPairsCostNothing) {
   btRigidBody& upper = world.add(cube(), 1, btVector3(0, 0, btScalar(1.5)));
   world.run(4);
   ASSERT_FALSE(upper.isActive());
-  const BatchCount before = countOf(world);
+  const ContactStatistics before = countOf(world);
   world.run(1);
-  EXPECT_EQ(countOf(world).launches, before.launches);
+  EXPECT_EQ(countOf(world).queries, before.queries);
   upper.activate();
   upper.setLinearVelocity(btVector3(1, 0, 0));
   world.run(0.1);
-  EXPECT_GT(countOf(world).pairs, before.pairs);
+  EXPECT_GT(countOf(world).searched, before.searched);
 }
 
 TEST_P(Batch, PairsThatDoNotMoveAreNotQueriedAgain) {
@@ -82,10 +84,10 @@ TEST_P(Batch, PairsThatDoNotMoveAreNotQueriedAgain) {
   for (const auto& body : world.bodies) body->setLinearFactor(btVector3(0, 0, 0));
   for (const auto& body : world.bodies) body->setAngularFactor(btScalar(0));
   world.run(0.1);
-  const BatchCount before = countOf(world);
+  const ContactStatistics before = countOf(world);
   EXPECT_GT(world.contactCount(), 0);
   world.run(0.5);
-  EXPECT_EQ(countOf(world).launches, before.launches);
+  EXPECT_EQ(countOf(world).queries, before.queries);
 }
 
 TEST_P(Batch, ChildrenOfCompoundsTakePart) {
@@ -106,10 +108,10 @@ TEST_P(Batch, ChildrenOfCompoundsTakePart) {
   for (int i = 0; i < 5; ++i) {
     body.setLinearVelocity(btVector3(1, 0, 0));
     body.setAngularVelocity(btVector3(0, 0, 1));
-    const BatchCount before = countOf(world);
+    const ContactStatistics before = countOf(world);
     world.run(1.0 / 60);
-    EXPECT_EQ(countOf(world).launches, before.launches + 1);
-    EXPECT_EQ(countOf(world).pairs, before.pairs + 2);
+    EXPECT_EQ(countOf(world).queries, before.queries + 1);
+    EXPECT_EQ(countOf(world).searched, before.searched + 2);
   }
 }
 
@@ -138,7 +140,7 @@ TEST_P(Batch, NearCallbacksStillFilter) {
   world.run(0.1);
   EXPECT_GT(refused, 0);
   EXPECT_EQ(world.contactCount(), 0);
-  EXPECT_LE(countOf(world).pairs, 1u);  // looked at once, when it was new
+  EXPECT_LE(countOf(world).searched, 1u);  // looked at once, when it was new
   world.dispatcher.setNearCallback(btCollisionDispatcher::defaultNearCallback);
   world.run(0.1);
   EXPECT_GT(world.contactCount(), 0);
@@ -157,7 +159,7 @@ TEST_P(Batch, FiltersStillFilter) {
   world.run(0.5);
   EXPECT_LT(lower.getWorldTransform().getOrigin().z(), -0.5);  // its mask leaves out the floor
   EXPECT_NEAR(upper.getWorldTransform().getOrigin().z(), 0.5, 0.01);
-  EXPECT_EQ(countOf(world).pairs, 0u);
+  EXPECT_EQ(countOf(world).queries, 0u);
 }
 
 TEST_P(Batch, FiltersMayChangeTheirMind) {

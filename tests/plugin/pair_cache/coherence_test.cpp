@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bullet/registration.hpp"
+#include "innersphere/contact_statistics.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
@@ -27,7 +27,7 @@ class Coherence : public testing::Test {
     upper->setWorldTransform(btTransform(rotation, position));
     world.world.performDiscreteCollisionDetection();
   }
-  BatchCount count() { return Registration::find(&world.dispatcher)->batch().count(); }
+  ContactStatistics count() { return contactStatistics(&world.dispatcher); }
   /// Of the lowest point [m], negative for a gap; the deepest of all contact points.
   double depth() {
     double deepest = -1;
@@ -49,36 +49,36 @@ TEST_F(Coherence, ABallThatHardlyMovesIsNeitherSearchedNorMeasured) {
   addUpper(makeShape(singleBall(kRadius)));
   const double start = 0.5 + kRadius - 0.003;
   place(btVector3(0, 0, btScalar(start)));
-  const BatchCount before = count();
+  const ContactStatistics before = count();
   for (int i = 1; i <= 8; ++i) {
     const double move = 0.01 * i * spacing;
     place(btVector3(btScalar(move), 0, btScalar(start + move / 2)));
     EXPECT_NEAR(depth(), 0.003 - move / 2, 1e-5);
   }
-  EXPECT_EQ(count().pairs, before.pairs);
-  EXPECT_EQ(count().measured, before.measured);
+  EXPECT_EQ(count().searched, before.searched);
+  EXPECT_EQ(count().refined, before.refined);
 }
 
 TEST_F(Coherence, ABallThatMovesALittleIsMeasuredAgainWithoutASearch) {
   addUpper(makeShape(singleBall(kRadius)));
   const double start = 0.5 + kRadius - 0.003;
   place(btVector3(0, 0, btScalar(start)));
-  const BatchCount before = count();
+  const ContactStatistics before = count();
   for (int i = 1; i <= 3; ++i) {
     const double move = 0.11 * i * spacing;
     place(btVector3(btScalar(move), 0, btScalar(start - move)));
     EXPECT_NEAR(depth(), 0.003 + move, 1e-4);
   }
-  EXPECT_EQ(count().pairs, before.pairs);
-  EXPECT_EQ(count().measured, before.measured + 3);
+  EXPECT_EQ(count().searched, before.searched);
+  EXPECT_EQ(count().refined, before.refined + 3);
 }
 
 TEST_F(Coherence, ABallThatMovesMoreIsSearched) {
   addUpper(makeShape(singleBall(kRadius)));
   place(btVector3(0, 0, btScalar(0.5 + kRadius)));
-  const BatchCount before = count();
+  const ContactStatistics before = count();
   for (int i = 1; i <= 4; ++i) place(btVector3(btScalar(0.6 * i * spacing), 0, btScalar(0.5 + kRadius)));
-  EXPECT_EQ(count().pairs, before.pairs + 4);
+  EXPECT_EQ(count().searched, before.searched + 4);
 }
 
 /// Until the contact law limits what it tells Bullet of the depth.
@@ -110,7 +110,7 @@ TEST_F(Coherence, ABallRollsOnItsLowestPoint) {
   };
   ASSERT_EQ(world.contactCount(), 1);
   const btVector3 start = point().getPositionWorldOnB();
-  const BatchCount before = count();
+  const ContactStatistics before = count();
   for (int i = 1; i <= 9; ++i) {
     const double way = 0.001 * i * spacing;  // its turn is as large again
     place(btVector3(btScalar(way), 0, btScalar(0.5 + kRadius - 0.002)),
@@ -120,8 +120,8 @@ TEST_F(Coherence, ABallRollsOnItsLowestPoint) {
     EXPECT_NEAR(point().m_normalWorldOnB.x(), 0, 2e-6);
     EXPECT_NEAR(point().getPositionWorldOnB().x() - start.x(), way, 0.05 * way + 1e-6);
   }
-  EXPECT_EQ(count().measured, before.measured);
-  EXPECT_EQ(count().pairs, before.pairs);
+  EXPECT_EQ(count().refined, before.refined);
+  EXPECT_EQ(count().searched, before.searched);
 }
 
 TEST_F(Coherence, ABoxThatTiltsSlowlyGoesDownWithItsCorner) {
@@ -138,7 +138,7 @@ TEST_F(Coherence, ABoxThatTiltsSlowlyGoesDownWithItsCorner) {
 TEST_F(Coherence, ContactsTurnWithThePair) {
   addUpper(makeShape(singleBall(kRadius)));
   place(btVector3(0, 0, btScalar(0.5 + kRadius - 0.003)));
-  const BatchCount before = count();
+  const ContactStatistics before = count();
   for (int i = 1; i <= 10; ++i) {
     const btTransform turn(btQuaternion(btVector3(1, 0, 0), btScalar(0.2 * i)), btVector3(0, btScalar(i), 0));
     lower->setWorldTransform(turn);
@@ -153,7 +153,7 @@ TEST_F(Coherence, ContactsTurnWithThePair) {
     EXPECT_NEAR(std::fabs(point.m_normalWorldOnB.dot(turn.getBasis().getColumn(2))), 1, 1e-5);
     EXPECT_LT(point.getPositionWorldOnB().distance(turn(btVector3(0, 0, btScalar(0.5)))), 0.005);
   }
-  EXPECT_EQ(count().pairs, before.pairs);
+  EXPECT_EQ(count().searched, before.searched);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace innersphere::test {
 namespace {
 
-struct Pair : ListedPair {
-  const Pair* look = this;
+struct Pair {
+  std::size_t list_index = 0;
   int visits = 0;
 };
 

@@ -1,0 +1,146 @@
+#include "narrow_phase/packing_vs_packing.hpp"
+
+#include "narrow_phase/contact_patches.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// By how much spheres without volume-true radii are enlarged to fill their solid [m].
+btScalar gapsOf(const PackingShape& shape, const Prefix& prefix) {
+  return prefix.volume_true == nullptr ? prefix.recess() * shape.getLocalScaling().x() : btScalar(0);
+}
+
+/// Keeps those of `contacts` that are samples. `count_a`: those of A come first, before and after.
+void keepSamples(const std::vector<SphereContact>& contacts, std::size_t count_a, Candidates& samples,
+                 std::vector<SphereContact>& kept, std::size_t& kept_a) {
+  constexpr std::size_t kNone = ~std::size_t(0);
+  static thread_local std::vector<std::size_t> place;
+  place.assign(contacts.size(), kNone);
+  for (std::size_t i : samples.indices) place[i] = 0;
+  kept.clear();
+  kept_a = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (place[i] == kNone) continue;
+    place[i] = kept.size();
+    kept.push_back(contacts[i]);
+    if (i < count_a) ++kept_a;
+  }
+  for (std::size_t& i : samples.indices) i = place[i];
+}
+
+/// Appends result number `index`. Every lens belongs to a sphere of A and to one of B: both lists together
+/// would have all of it twice.
+void appendHalves(const QueryResult::Ranges<SphereContact>& ranges, std::size_t index,
+                  std::vector<SphereContact>& contacts) {
+  for (std::size_t k = ranges.first[index]; k < ranges.first[index + 1]; ++k) {
+    SphereContact half = ranges.items[k];
+    half.volume /= 2;
+    for (float& component : half.area) component /= 2;
+    contacts.push_back(half);
+  }
+}
+
+}  // namespace
+
+struct PackingVsPacking::Bodies {
+  Bodies(const PackingVsPacking& pair, const Measure& measure)
+      : a(*pair.a_, pair.now_.a, Estimator::raw, measure.slack_a, measure.prefix_a),
+        b(*pair.b_, pair.now_.b, Estimator::raw, measure.slack_b, measure.prefix_b) {}
+  PackingBody a;
+  PackingBody b;
+};
+
+QueryOptions queryOptionsOf(SearchPass pass, Estimator estimator) {
+  switch (pass) {
+    case SearchPass::surfaces:
+      return {Want::contacts, Estimator::raw};
+    case SearchPass::touch:
+      return {Want::touch, Estimator::raw};
+    case SearchPass::deep:
+      return {Want::contacts, Estimator::volume_true};
+    default:
+      return {Want::contacts, estimator};
+  }
+}
+
+SearchPass PackingVsPacking::begin(const ContactOptions& options, const Placed& now, btScalar needed) {
+  forget();
+  now_ = now;
+  search_.emplace(options, *a_, *b_, needed);
+  return search_->on_surfaces ? SearchPass::surfaces : SearchPass::volumes;
+}
+
+PairQuery PackingVsPacking::makeQuery(SearchPass pass) const {
+  return makeQuery(pass, *search_, now_);
+}
+
+PairQuery PackingVsPacking::makeVolumeQuery(const ContactOptions& options, const Placed& now) const {
+  return makeQuery(SearchPass::volumes, Measure(options, *a_, *b_, 0), now);
+}
+
+PairQuery PackingVsPacking::makeQuery(SearchPass pass, const Measure& measure, const Placed& now) const {
+  PairQuery query;
+  query.a = &a_->model();
+  query.b = &b_->model();
+  query.placement_a = PackingBody(*a_, now.a, Estimator::raw, 0).placement();
+  query.placement_b = PackingBody(*b_, now.b, Estimator::raw, 0).placement();
+  query.margin = a_->getMargin() + b_->getMargin();
+  query.prefix_a = static_cast<std::uint32_t>(measure.prefix_a->count);
+  query.prefix_b = static_cast<std::uint32_t>(measure.prefix_b->count);
+  if (pass == SearchPass::surfaces) query.margin += measure.slack();
+  if (pass == SearchPass::deep) query.margin += gapsOf(*a_, *measure.prefix_a) + gapsOf(*b_, *measure.prefix_b);
+  return query;
+}
+
+SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, std::size_t index) {
+  static thread_local std::vector<SphereContact> contacts;
+  if (pass == SearchPass::touch) {
+    if (result.overlaps[index].pair_count > 0) return SearchPass::deep;
+    settings = search_;
+    return SearchPass::none;
+  }
+  contacts.clear();
+  appendHalves(result.contacts_a, index, contacts);
+  const std::size_t count_a = contacts.size();
+  appendHalves(result.contacts_b, index, contacts);
+
+  const btMatrix3x3& reference = now_.a.getBasis();
+  SearchPass next = SearchPass::none;
+  if (pass == SearchPass::surfaces) {
+    const Bodies bodies(*this, *search_);
+    findCandidates(contacts, PackingGauge(bodies.a, bodies.b, contacts, count_a), search_->spacing, reference,
+                   memory.patches, memory.candidates);
+    keepSamples(contacts, count_a, memory.candidates, contacts_, count_a_);
+    const bool near = evaluateDepths(bodies);
+    if (!contacts.empty() && !near) next = SearchPass::touch;
+  } else if (pass == SearchPass::deep) {
+    gradientPatch(contacts, search_->spacing, reference, memory.patches);
+  } else {
+    volumePatches(contacts, search_->spacing, reference, memory.patches);
+    overlap_ = result.overlaps[index];
+  }
+  on_surfaces = pass == SearchPass::surfaces;
+  memory.noteSearch(now_);
+  memory.noteDepths(now_, search_->separation);
+  if (next == SearchPass::none) settings = search_;
+  return next;
+}
+
+bool PackingVsPacking::refine(const Placed& now, btScalar) {
+  now_ = now;
+  memory.turnTo(now);
+  search_ = settings;
+  evaluateDepths(Bodies(*this, *settings));
+  memory.noteDepths(now, settings->separation);
+  return true;
+}
+
+/// Whether surfaces are near each other at any of the samples.
+bool PackingVsPacking::evaluateDepths(const Bodies& bodies) {
+  const PackingGauge gauge(bodies.a, bodies.b, contacts_, count_a_);
+  return measurePatches(memory.candidates, gauge, *search_, memory.patches);
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

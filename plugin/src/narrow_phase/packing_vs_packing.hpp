@@ -1,0 +1,60 @@
+// The contact of two packings.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "innersphere/contact_options.hpp"
+#include "innersphere/query.hpp"
+#include "narrow_phase/found_contact.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// A search takes up to three passes, each a query that many pairs can share; the result of one tells whether
+/// there is another.
+enum class SearchPass : std::uint8_t {
+  none,      ///< the search is over
+  surfaces,  ///< with spheres enlarged so that they find all contact of the surfaces that they stand for
+  touch,     ///< with spheres as they are, where the surfaces showed no overlap: it may be too deep
+  deep,      ///< with spheres enlarged so that they fill their solids, where it is
+  volumes,   ///< where the volume of overlap is all that is wanted
+};
+
+/// `estimator`: of the options, for volumes.
+QueryOptions queryOptionsOf(SearchPass pass, Estimator estimator);
+
+class PackingVsPacking : public FoundContact {
+ public:
+  PackingVsPacking(const PackingShape& a, const PackingShape& b) : a_(&a), b_(&b) {}
+
+  /// The first pass of a search for contacts up to `needed` [m] apart. Until the last pass is over, the
+  /// contact is not known.
+  SearchPass begin(const ContactOptions& options, const Placed& now, btScalar needed);
+  PairQuery makeQuery(SearchPass pass) const;
+  /// Takes the result number `index` and returns the next pass.
+  SearchPass take(SearchPass pass, const QueryResult& result, std::size_t index);
+
+  bool refine(const Placed& now, btScalar needed) override;
+  const Overlap* overlap() const override {
+    return isKnown() && !settings->on_surfaces ? &overlap_ : nullptr;
+  }
+  /// Asks for the volume that both share at `now`.
+  PairQuery makeVolumeQuery(const ContactOptions& options, const Placed& now) const;
+
+ private:
+  struct Bodies;
+  bool evaluateDepths(const Bodies& bodies);
+  PairQuery makeQuery(SearchPass pass, const Measure& measure, const Placed& now) const;
+
+  const PackingShape* a_;
+  const PackingShape* b_;
+  Placed now_;
+  std::optional<Measure> search_;        ///< settings of a search that is under way
+  std::vector<SphereContact> contacts_;  ///< the samples
+  std::size_t count_a_ = 0;              ///< of A's spheres, which come first
+  Overlap overlap_;                      ///< only where depth is not measured on the surfaces
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,53 @@
+#include "pair_cache/body_snapshot.hpp"
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+BodySnapshot::BodySnapshot(const btCollisionObject& object)
+    : object_(&object),
+      body_(btRigidBody::upcast(&object)),
+      transform_(object.getWorldTransform()),
+      velocity_(object),
+      motion_(object, velocity_) {
+  take();
+}
+
+BodySnapshot::BodySnapshot(const btCollisionObjectWrapper& wrapper)
+    : BodySnapshot(*wrapper.getCollisionObject()) {
+  shape_place_ = wrapper.getWorldTransform();
+}
+
+void BodySnapshot::take() {
+  if (shape_ != object_->getCollisionShape()) {
+    ++changes_;
+    shape_ = object_->getCollisionShape();
+    packing_ = PackingShape::from(shape_);
+  }
+  if (packing_ != nullptr && version_ != packing_->impl().version) {
+    ++changes_;
+    version_ = packing_->impl().version;
+  }
+  active_ = object_->isActive();
+  velocity_ = BodyVelocity(*object_);
+  motion_ = Motion(*object_, velocity_);
+  const btTransform& now = object_->getWorldTransform();
+  if (!(now == transform_)) travel_ += travelBetween(transform_, now, motion_.size);
+  transform_ = now;
+}
+
+bool BodySnapshot::isAsTaken(const btCollisionObjectWrapper& wrapper) const {
+  return wrapper.getCollisionObject() == object_ && wrapper.getCollisionShape() == shape_ &&
+         isAsTaken(wrapper.getWorldTransform());
+}
+
+bool BodySnapshot::isAsTaken(const btTransform& transform) const {
+  return transform == transform_ && object_->getCollisionShape() == shape_ &&
+         (packing_ == nullptr || packing_->impl().version == version_) &&
+         (body_ == nullptr ||
+          (body_->getLinearVelocity() == velocity_.linear && body_->getAngularVelocity() == velocity_.spin));
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,85 @@
+// Searches for contact of many pairs of packings, in shared queries.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "common/parallel.hpp"
+#include "innersphere/query.hpp"
+#include "narrow_phase/packing_vs_packing.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// All pairs go through the same passes together, each pass one query. The first one can be under way on a
+/// device while the caller does something else.
+class PackingSearch {
+ public:
+  PackingSearch(Backend backend, std::size_t room);
+  Backend backend() const { return backend_; }
+  /// Makes room for so many pairs, so that a search does not allocate.
+  void reserve(std::size_t pairs);
+
+  void clear();
+  bool isEmpty() const { return items_.empty(); }
+  /// Adds a pair whose search has begun; `index`: what tells done() which one it is.
+  void add(PackingVsPacking& pair, SearchPass pass, std::size_t index) {
+    items_.push_back({&pair, pass, index});
+  }
+
+  /// Starts the first pass. Throws Error from the query, as do the functions below.
+  void start(Estimator estimator);
+  /// Whether finish() can begin without waiting.
+  bool isReady() { return !started_ || context_.ready(); }
+  /// Waits for the first pass, takes its results and runs the others. Calls done(index), by any thread, for
+  /// each pair once its search is over.
+  template <typename Done>
+  void finish(const Done& done) {
+    if (started_) {
+      started_ = false;
+      context_.wait(result_);
+      take(SearchPass::surfaces, done);
+    }
+    for (const SearchPass pass : {SearchPass::touch, SearchPass::deep, SearchPass::volumes}) {
+      makeQueries(pass);
+      if (queries_.empty()) continue;
+      context_.run(queries_.data(), queries_.size(), queryOptionsOf(pass, estimator_), result_);
+      take(pass, done);
+    }
+    clear();
+  }
+  /// One query for volumes.
+  Overlap overlap(const PairQuery& query, Estimator estimator) {
+    return context_.overlap(query, {Want::wrench, estimator});
+  }
+
+ private:
+  struct Item {
+    PackingVsPacking* pair;
+    SearchPass pass;
+    std::size_t index;
+  };
+  void makeQueries(SearchPass pass);
+  template <typename Done>
+  void take(SearchPass pass, const Done& done) {
+    // Each pair has its own result, so that their order does not matter.
+    inParallel(queried_.size(), [&](std::size_t i) {
+      Item& item = *queried_[i];
+      item.pass = item.pair->take(pass, result_, i);
+      if (item.pass == SearchPass::none) done(item.index);
+    });
+  }
+
+  Backend backend_;
+  QueryContext context_;
+  Estimator estimator_ = Estimator::volume_true;
+  bool started_ = false;
+  std::vector<Item> items_;
+  std::vector<Item*> queried_;
+  std::vector<PairQuery> queries_;
+  QueryResult result_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

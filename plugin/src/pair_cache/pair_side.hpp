@@ -1,0 +1,45 @@
+// One side of a pair: a body, and the shape of it that takes part.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include "pair_cache/body_snapshot.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+struct PairSide {
+  PairSide() = default;
+  explicit PairSide(const btCollisionObjectWrapper& wrapper);
+
+  /// The shape is the body's own, and not a child of a compound.
+  bool isWhole() const { return nesting == 0; }
+  /// Where the shape is in a snapshot of its body. Nothing if that cannot be known: the body has another
+  /// shape, is at NaN, or the compounds are nested too deeply.
+  std::optional<btTransform> placeIn(const BodySnapshot& body) const;
+  /// The wrapper holds the same shape of the same body.
+  bool isFor(const btCollisionObjectWrapper& wrapper) const {
+    return object == wrapper.getCollisionObject() && shape == wrapper.getCollisionShape();
+  }
+  /// The packing has not been changed since noteShape(). True for other shapes.
+  bool hasSameShape() const { return packing == nullptr || packing->impl().version == version; }
+  void noteShape() { version = packing == nullptr ? 0 : packing->impl().version; }
+
+  static constexpr int kMaxNesting = 4;
+
+  const btCollisionObject* object = nullptr;
+  const btCollisionShape* shape = nullptr;
+  const PackingShape* packing = nullptr;  ///< null for a shape of another kind
+  std::uint64_t version = 0;              ///< of the packing, when contact was searched for last
+  btTransform transform =
+      btTransform::getIdentity();           ///< of the shape in the world, at the last update of the pair
+  int nesting = 0;                          ///< in how many compounds, -1 if too many
+  std::array<int, kMaxNesting> child_of{};  ///< which child of them, innermost first
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

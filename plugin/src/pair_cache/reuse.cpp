@@ -1,0 +1,70 @@
+#include "pair_cache/reuse.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// In units of what a gap is wider than needed: contacts are moved along by this far also where that is more
+/// than kRefineAgain, as it does not matter how wide such a gap is.
+constexpr btScalar kRefineGap = btScalar(0.25);
+
+btScalar sizeOf(const btCollisionShape& shape) {
+  return shape.isInfinite() ? BT_LARGE_FLOAT : shape.getAngularMotionDisc();
+}
+
+bool staysApart(const SafeDistance& safe, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step) {
+  return safe.known && (a.isActive() || b.isActive()) && a.changes() + b.changes() == safe.changes &&
+         a.travel() + b.travel() <= safe.travel &&
+         speculativeDistance(a.motion(), b.motion(), time_step) <= safe.separation;
+}
+
+}  // namespace
+
+Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step) {
+  const bool apart = staysApart(pair.safe, a, b, time_step);
+  if (apart && pair.of_packings) return Reuse::idle;  // has read nothing but the beginning of the pair
+  const bool same_shapes = pair.found->hasSameShapes();
+  if (apart && same_shapes) return Reuse::idle;
+  const std::optional<btTransform> at_a = pair.a.placeIn(a);
+  const std::optional<btTransform> at_b = pair.b.placeIn(b);
+  if (!pair.found->isKnown() || !same_shapes || !pair.a.hasSameShape() || !pair.b.hasSameShape() || !at_a ||
+      !at_b)
+    return Reuse::search;
+  const Placed now{*at_a, *at_b};
+  const ContactMemory& memory = pair.found->memory;
+  const Measure& settings = *pair.found->settings;
+  if (!pair.found->on_surfaces && !(memory.measuredAt() == now)) return Reuse::search;
+  const btScalar size_a = sizeOf(*pair.a.shape), size_b = sizeOf(*pair.b.shape);
+  const btScalar needed = neededSeparation(pair, a, b, time_step);
+  const btScalar moved = motionBetween(memory.searchedAt(), now, size_a, size_b);
+  const btScalar farthest = memory.isEnclosed() ? btScalar(0) : kSearchAgain * settings.spacing;
+  if (moved > farthest || needed + moved > settings.separation) return Reuse::search;
+  if (memory.isEmpty()) return Reuse::transport;
+  const btScalar turned = motionBetween(memory.measuredAt(), now, size_a, size_b);
+  const btScalar carried = btMax(kRefineAgain * settings.spacing, kRefineGap * (memory.gap() - needed));
+  return turned > carried ? Reuse::refine : Reuse::transport;
+}
+
+btScalar neededSeparation(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
+                          btScalar time_step) {
+  return btMax(pair.separation, speculativeDistance(a.motion(), b.motion(), time_step));
+}
+
+SafeDistance safeDistanceOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b) {
+  SafeDistance safe;
+  if (!pair.a.isWhole() || !pair.b.isWhole() || !pair.found->isKnown() || !pair.found->on_surfaces ||
+      !pair.found->memory.isEmpty())
+    return safe;
+  const btScalar spacing = pair.found->settings->spacing;
+  const btScalar moved = motionBetween(pair.found->memory.searchedAt(), pair.placed(), sizeOf(*pair.a.shape),
+                                       sizeOf(*pair.b.shape));
+  const btScalar left = kSearchAgain * spacing - moved;
+  safe.known = left > 0;
+  safe.changes = a.changes() + b.changes();
+  safe.travel = a.travel() + b.travel() + left;
+  safe.separation = pair.found->settings->separation - kSearchAgain * spacing;
+  return safe;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,157 @@
+// The stages in which the pairs of a table are brought up to date.
+#include <atomic>
+
+#include "common/parallel.hpp"
+#include "innersphere/error.hpp"
+#include "pair_cache/pair_table.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+PackingVsPacking& packingsOf(ContactPair& pair) {
+  return static_cast<PackingVsPacking&>(*pair.found);
+}
+
+Reuse reuseFor(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
+               const ResponseSettings& settings) {
+  return settings.options.reuse_contacts ? reuseOf(pair, a, b, settings.time_step) : Reuse::search;
+}
+
+/// Takes a pair that is not idle to where its bodies are. False if that is not known.
+bool place(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b) {
+  const std::optional<btTransform> at_a = pair.a.placeIn(a);
+  const std::optional<btTransform> at_b = pair.b.placeIn(b);
+  if (!at_a || !at_b) return false;
+  pair.a.transform = *at_a;
+  pair.b.transform = *at_b;
+  return true;
+}
+
+/// The first pass of a search that needs queries.
+SearchPass beginSearch(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
+                       const ResponseSettings& settings) {
+  pair.a.noteShape();
+  pair.b.noteShape();
+  return packingsOf(pair).begin(settings.options, pair.placed(),
+                                neededSeparation(pair, a, b, settings.time_step));
+}
+
+/// All that is done without a query.
+void updateWithoutQuery(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, Reuse reuse,
+                        const ResponseSettings& settings) {
+  const btScalar needed = neededSeparation(pair, a, b, settings.time_step);
+  if (reuse == Reuse::transport)
+    pair.found->memory.carryTo(pair.placed(), *pair.a.packing, pair.found->settings->spacing);
+  if (reuse == Reuse::refine && !pair.found->refine(pair.placed(), needed)) reuse = Reuse::search;
+  if (reuse != Reuse::search) return;
+  pair.a.noteShape();
+  static_cast<PackingVsShape&>(*pair.found).search(settings.options, pair.placed(), needed);
+}
+
+}  // namespace
+
+void PairTable::begin(btScalar time_step) {
+  ++number_;
+  settings_ = settingsFor(time_step);
+  body_list_.forEachInParallel([](BodySnapshot& body) { body.take(); });
+  jobs_.assign(pairs_.size(), Job());
+  pairs_.forEachInParallel([&](ContactPair& pair) { jobs_[pair.list_index] = decide(pair); });
+  collectJobs();
+  work();
+}
+
+PairTable::Job PairTable::decide(ContactPair& pair) const {
+  if (!pair.asked || pair.busy) return {};
+  pair.step = number_;
+  const BodySnapshot &a = *pair.body_a, &b = *pair.body_b;
+  const Reuse reuse = reuseFor(pair, a, b, settings_);
+  if (reuse == Reuse::idle) {
+    pair.asked = false;
+    return {&pair, reuse, SearchPass::none};
+  }
+  pair.published = false;
+  pair.safe = SafeDistance();
+  // Bullet does not dispatch pairs of bodies that are both at rest.
+  if ((!a.isActive() && !b.isActive()) || !place(pair, a, b)) return {};
+  pair.asked = false;
+  const bool queries = reuse == Reuse::search && pair.of_packings;
+  return {&pair, reuse, queries ? beginSearch(pair, a, b, settings_) : SearchPass::none};
+}
+
+void PairTable::collectJobs() {
+  work_.clear();
+  for (std::size_t i = 0; i < jobs_.size(); ++i) {
+    const Job& job = jobs_[i];
+    if (job.pair == nullptr) continue;
+    count(job.reuse);
+    if (job.pass != SearchPass::none) {
+      if (!search_) search_ = takeSearch();
+      search_->add(packingsOf(*job.pair), job.pass, i);
+    } else if (job.reuse != Reuse::idle) {
+      work_.push_back(job);
+    }
+  }
+  if (search_) ++statistics_.queries;
+}
+
+/// Transports, refines and searches without queries, while a device is at work on those.
+void PairTable::work() {
+  const auto search = [&](const std::atomic<bool>& working) {
+    if (!search_) return;
+    search_->start(options_.estimator);
+    // A device goes on to its next pass when it is asked whether it is done.
+    while (working && search_) {
+      if (search_->isReady()) finish();
+    }
+  };
+  inParallelBeside(search, work_.size(), [&](std::size_t i) {
+    ContactPair& pair = *work_[i].pair;
+    updateWithoutQuery(pair, *pair.body_a, *pair.body_b, work_[i].reuse, settings_);
+    publish(pair);
+  });
+}
+
+void PairTable::publish(ContactPair& pair) const {
+  pair.time_step = settings_.time_step;
+  pair.published = pair.canBePublished(settings_);
+  if (!pair.published) return;
+  pair.publish(settings_, *pair.body_a, *pair.body_b);
+  pair.safe = safeDistanceOf(pair, *pair.body_a, *pair.body_b);
+}
+
+void PairTable::finish() {
+  if (!search_) return;
+  try {
+    search_->finish([&](std::size_t index) { publish(*jobs_[index].pair); });
+  } catch (const Error&) {
+    // Each pair hears of it when Bullet asks for it: what was to be searched is not known.
+  }
+  giveBack(std::move(search_));
+}
+
+Reuse PairTable::updateAlone(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
+                             const ResponseSettings& settings) {
+  pair.safe = SafeDistance();
+  const Reuse reuse = reuseFor(pair, a, b, settings);
+  place(pair, a, b);
+  if (reuse != Reuse::search || !pair.of_packings) {
+    updateWithoutQuery(pair, a, b, reuse, settings);
+    return reuse;
+  }
+  std::unique_ptr<PackingSearch> search;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    search = takeSearch();
+    ++statistics_.queries;
+  }
+  search->add(packingsOf(pair), beginSearch(pair, a, b, settings), 0);
+  search->start(settings.options.estimator);
+  search->finish([](std::size_t) {});
+  const std::lock_guard<std::mutex> lock(mutex_);
+  giveBack(std::move(search));
+  return reuse;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

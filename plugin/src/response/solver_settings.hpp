@@ -1,0 +1,34 @@
+// What contacts have to know of the solver that they are for.
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+
+#include "innersphere/bullet_precision.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Bullet's defaults, or those of a world.
+struct SolverSettings {
+  SolverSettings() = default;
+  explicit SolverSettings(const btContactSolverInfo& info)
+      : warm_starting((info.m_solverMode & SOLVER_USE_WARMSTARTING) != 0 ? info.m_warmstartingFactor
+                                                                         : btScalar(0)),
+        friction_erp(info.m_frictionERP),
+        deepest_spring(info.m_splitImpulse ? kSpringShare * -info.m_splitImpulsePenetrationThreshold
+                                           : BT_LARGE_FLOAT) {}
+
+  /// The part of its last impulse that a contact starts with.
+  btScalar warm_starting = btScalar(0.85);
+  /// The part of a slip that friction anchors undo in a step.
+  btScalar friction_erp = btScalar(0.2);
+  /// Contacts deeper than the threshold of split impulses lose their spring: none is told to be deeper than
+  /// this, three quarters of it [m].
+  btScalar deepest_spring = btScalar(0.03);
+
+ private:
+  static constexpr btScalar kSpringShare = btScalar(0.75);
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
