@@ -110,8 +110,9 @@
   }
 
   // ---- Shapes
-  function setAttribute(geometry, name, values, size, Attribute = THREE.BufferAttribute) {
-    geometry[geometry.setAttribute ? 'setAttribute' : 'addAttribute'](name, new Attribute(values, size));
+  function setAttribute(geometry, name, values, size) {
+    const attribute = new THREE.BufferAttribute(values, size);
+    geometry[geometry.setAttribute ? 'setAttribute' : 'addAttribute'](name, attribute);
   }
 
   function surfaceGeometry(vertices, shape) {
@@ -122,21 +123,29 @@
     return geometry;
   }
 
-  // One square for each sphere, which the shaders below turn to the eye.
+  // One triangle for each sphere, which the shaders below turn to the eye. Its three vertices are alike: software
+  // renderers pay for every instance of an instanced geometry as for a draw call, which is more than for two vertices.
   function sphereGeometry(spheres, shape, film) {
-    const geometry = new THREE.InstancedBufferGeometry();
-    setAttribute(geometry, 'position', new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3);
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    setAttribute(geometry, 'sphere', spheres, 4, THREE.InstancedBufferAttribute);
+    const count = spheres.length / 4;
+    const centres = new Float32Array(9 * count);
+    const radii = new Float32Array(3 * count);
+    let reach = 0;
+    for (let i = 0; i < count; ++i) {
+      const [x, y, z, radius] = spheres.subarray(4 * i, 4 * i + 4);
+      centres.set([x, y, z, x, y, z, x, y, z], 9 * i);
+      radii.fill(radius, 3 * i, 3 * i + 3);
+      reach = Math.max(reach, Math.hypot(x, y, z) + radius);
+    }
+    const geometry = new THREE.BufferGeometry();
+    setAttribute(geometry, 'position', centres, 3);
+    setAttribute(geometry, 'radius', radii, 1);
     if (shape.sphere_colours) {
       const ramp = film.ramp.map((css) => colour(css).toArray());
-      const colours = new Float32Array(3 * spheres.length / 4);
-      decode(shape.sphere_colours, Uint8Array).forEach((step, i) => colours.set(ramp[step], 3 * i));
-      setAttribute(geometry, 'color', colours, 3, THREE.InstancedBufferAttribute);
-    }
-    let reach = 0;
-    for (let i = 0; i < spheres.length; i += 4) {
-      reach = Math.max(reach, Math.hypot(spheres[i], spheres[i + 1], spheres[i + 2]) + spheres[i + 3]);
+      const colours = new Float32Array(9 * count);
+      decode(shape.sphere_colours, Uint8Array).forEach((step, i) => {
+        colours.set([...ramp[step], ...ramp[step], ...ramp[step]], 9 * i);
+      });
+      setAttribute(geometry, 'color', colours, 3);
     }
     geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), reach);
     return geometry;
@@ -186,6 +195,14 @@
     return materials.get(key);
   }
 
+  // Corner of a triangle around the unit circle, by the vertex's number.
+  const kCorner = `
+    attribute float radius;
+    vec2 corner() {
+      int n = gl_VertexID % 3;
+      return n == 0 ? vec2(-sqrt(3.0), -1.0) : n == 1 ? vec2(sqrt(3.0), -1.0) : vec2(0.0, 2.0);
+    }`;
+
   // Spheres are lit like surfaces, by three.js' own shaders, but at the point where the ray through a fragment meets the
   // sphere.
   function traceSpheres(shader) {
@@ -194,19 +211,19 @@
       return result.split(chunk).join(changes[chunk]);
     }, text);
     shader.vertexShader = patch(shader.vertexShader, {
-      'void main() {': `
-        attribute vec4 sphere;
+      'void main() {': kCorner + `
         flat varying vec4 vSphere;  // as the eye sees it
         void main() {`,
       '#include <project_vertex>': `
-        vec4 mvPosition = modelViewMatrix * vec4(sphere.xyz, 1.0);
-        vSphere = vec4(mvPosition.xyz, sphere.w);
-        // The square holds the cone of rays that touch the sphere, and a margin for smooth edges.
+        vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
+        vSphere = vec4(mvPosition.xyz, radius);
+        // The triangle holds the cone of rays that touch the sphere, and a margin for smooth edges.
         float away = length(mvPosition.xyz);
-        float tangent = sphere.w * inversesqrt(max(1.0 - sphere.w * sphere.w / (away * away), 0.01));
+        float tangent = radius * inversesqrt(max(1.0 - radius * radius / (away * away), 0.01));
         vec3 ahead = mvPosition.xyz / away;
         vec3 right = normalize(cross(ahead, vec3(0.0, 1.0, 0.0)));
-        mvPosition.xyz += (1.03 * tangent + 0.001 * away) * (position.x * right + position.y * cross(right, ahead));
+        vec2 place = (1.01 * tangent + 0.0005 * away) * corner();
+        mvPosition.xyz += place.x * right + place.y * cross(right, ahead);
         gl_Position = projectionMatrix * mvPosition;`,
     });
     shader.fragmentShader = patch(shader.fragmentShader, {
@@ -252,13 +269,12 @@
   // In the light's view a sphere is a disc through its centre. Its shadow is the sphere's own wherever another sphere can
   // be, and its lit side is in front of it.
   const disc = new THREE.ShaderMaterial({
-    vertexShader: `
-      attribute vec4 sphere;
+    vertexShader: kCorner + `
       varying vec2 vPlace;
       void main() {
-        vPlace = position.xy;
-        vec4 place = modelViewMatrix * vec4(sphere.xyz, 1.0);
-        place.xy += sphere.w * position.xy;
+        vPlace = corner();
+        vec4 place = modelViewMatrix * vec4(position, 1.0);
+        place.xy += radius * vPlace;
         gl_Position = projectionMatrix * place;
       }`,
     fragmentShader: `
