@@ -548,6 +548,7 @@
       const {target, eye, distance} = fit(shown.subject, width / height);
       if (!best || height / distance > best.scale) best = {area, width, height, target, eye, scale: height / distance};
     }
+    element('films-list').children[index].scrollIntoView({block: 'nearest', inline: 'center'});
     renderer.setSize(window.innerWidth, window.innerHeight, false);
     camera.fov = shown.film.viewpoint.field_of_view * 180 / Math.PI;
     camera.aspect = best.width / best.height;
@@ -598,7 +599,6 @@
     showNotes(film.notes);
     Array.from(element('films-list').children).forEach((button, n) => {
       button.setAttribute('aria-pressed', n === index);
-      if (n === index) button.scrollIntoView({block: 'nearest', inline: 'center'});
     });
     element('scrub').max = shown.duration;
     element('views').hidden = shown.views.length < 2;

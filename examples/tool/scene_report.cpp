@@ -89,7 +89,7 @@ demo::Note noteOf(const demo::Verdict& verdict) {
   std::string what = truth.what;
   what.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(what.front())));
   if (verdict.outcome == demo::Outcome::not_recorded) {
-    return {what + ": not shown, for that takes " + number(truth.needs, "s"), {}};
+    return {what + ": not shown, it takes " + number(truth.needs, "s"), {}};
   }
   const bool holds = verdict.outcome == demo::Outcome::holds;
   const bool exact = truth.kind == demo::Truth::Kind::equal && truth.tolerance == 0;

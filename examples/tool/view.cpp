@@ -36,8 +36,9 @@ demo::Film filmOf(const Packing& packing, const std::string& title, bool y_up) {
   demo::Film film;
   film.title = title;
   film.caption = std::to_string(packing.spheres.size()) + " spheres fill " +
-                 percent(packing.quality.density) + "; colour: radius, " +
-                 number(packing.spheres.back().radius) + " to " + number(packing.spheres.front().radius, "m");
+                 percent(packing.quality.density) + " of it. Colours show the radius, " +
+                 number(packing.spheres.back().radius) + " to " +
+                 number(packing.spheres.front().radius, "m") + ".";
   film.colour_by_radius = true;
   film.shapes.push_back({title, packing.surface, packing.spheres});
   film.actors.push_back({0, demo::paletteColour(1)});
