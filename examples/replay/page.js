@@ -103,6 +103,7 @@
     if (film.ground === null) return null;
     const floor = new THREE.Mesh(
         new (THREE.PlaneBufferGeometry || THREE.PlaneGeometry)(100 * radius, 100 * radius), new THREE.ShadowMaterial());
+    floor.material.depthWrite = false;  // it may be where a body's own face is
     floor.position.z = film.ground;
     floor.receiveShadow = true;
     scene.add(floor);
