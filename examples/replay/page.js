@@ -152,8 +152,8 @@
     return geometry;
   }
 
-  // The points (radius 0) or spheres that are farthest out in each of many directions: they bound a shape nearly as well
-  // as all of them do.
+  // The points (radius 0) or spheres that are farthest out in each of many directions: they bound a shape nearly as
+  // well as all of them do.
   function outermost(items, stride) {
     const kDirections = 100;  // spread evenly, along a spiral
     const found = new Set();
@@ -204,8 +204,8 @@
       return n == 0 ? vec2(-sqrt(3.0), -1.0) : n == 1 ? vec2(sqrt(3.0), -1.0) : vec2(0.0, 2.0);
     }`;
 
-  // Spheres are lit like surfaces, by three.js' own shaders, but at the point where the ray through a fragment meets the
-  // sphere.
+  // Spheres are lit like surfaces, by three.js' own shaders, but at the point where the ray through a fragment meets
+  // the sphere.
   function traceSpheres(shader) {
     const patch = (text, changes) => Object.keys(changes).reduce((result, chunk) => {
       if (!result.includes(chunk)) throw new Error('this three.js has no ' + chunk + ' here');
@@ -259,7 +259,8 @@
   function sphereMaterial(css) {
     if (!sphere_materials.has(css)) {
       const result = new THREE.MeshStandardMaterial({
-        color: colour(css || '#ffffff'), roughness: 0.55, metalness: 0, vertexColors: css === null, shadowSide: THREE.FrontSide,
+        color: colour(css || '#ffffff'), roughness: 0.55, metalness: 0, shadowSide: THREE.FrontSide,
+        vertexColors: css === null,
       });
       result.onBeforeCompile = traceSpheres;
       sphere_materials.set(css, result);
@@ -267,8 +268,8 @@
     return sphere_materials.get(css);
   }
 
-  // In the light's view a sphere is a disc through its centre. Its shadow is the sphere's own wherever another sphere can
-  // be, and its lit side is in front of it.
+  // In the light's view a sphere is a disc through its centre. It casts the sphere's shadow on all that is outside of
+  // the sphere, and the sphere's lit side is in front of it.
   const disc = new THREE.ShaderMaterial({
     vertexShader: kCorner + `
       varying vec2 vPlace;
@@ -555,7 +556,8 @@
     camera.aspect = best.width / best.height;
     camera.near = shown.subject.radius / 50;
     camera.far = 50 * shown.subject.radius;
-    camera.setViewOffset(best.width, best.height, -best.area.left, -best.area.top, window.innerWidth, window.innerHeight);
+    camera.setViewOffset(
+        best.width, best.height, -best.area.left, -best.area.top, window.innerWidth, window.innerHeight);
     if (!aimed) {
       camera.position.copy(best.eye);
       controls.target.copy(best.target);
