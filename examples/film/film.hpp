@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,11 +59,17 @@ struct Viewpoint {
   bool whole_film = false;     ///< replays show all that moves, not just what is there at the end
 };
 
+/// A line of plain words about a film, and whether what it is about came out as it should.
+struct Note {
+  std::string text;
+  std::optional<bool> holds;  ///< empty: the film is too short to show it
+};
+
 /// A recording. The z axis points up.
 struct Film {
   std::string title;
-  std::string caption;             ///< one line below the title
-  std::vector<std::string> notes;  ///< short lines that replays show on request
+  std::string caption;      ///< one line below the title
+  std::vector<Note> notes;  ///< shown by replays
   Viewpoint viewpoint;
   std::vector<Shape> shapes;
   std::vector<Actor> actors;

@@ -9,15 +9,13 @@
 #include "embedded_files.hpp"
 #include "film/creases.hpp"
 #include "film/palette.hpp"
-#include "render/camera.hpp"
 
 namespace innersphere::demo {
 namespace {
 
 using nlohmann::json;
 
-constexpr double kAspect = 16.0 / 9.0;  // of the view that the camera is set up for
-constexpr int kRampSteps = 16;          // colours for radii: one draw call each
+constexpr int kRampSteps = 16;  // colours for radii
 
 std::string cssColour(const Colour& colour) {
   char text[8];
@@ -53,29 +51,28 @@ json shapeJson(const Shape& shape, bool colour_by_radius) {
   return result;
 }
 
-json cameraJson(const Film& film) {
-  std::vector<std::size_t> frames{film.frames() - 1};
-  constexpr std::size_t kMoments = 8;  // that stand for the whole film
-  for (std::size_t i = 0; film.viewpoint.whole_film && i < kMoments; ++i) {
-    frames.push_back(i * (film.frames() - 1) / kMoments);
+json viewpointJson(const Viewpoint& viewpoint) {
+  return {{"azimuth", viewpoint.azimuth},
+          {"elevation", viewpoint.elevation},
+          {"field_of_view", viewpoint.field_of_view},
+          {"whole_film", viewpoint.whole_film}};
+}
+
+json notesJson(const std::vector<Note>& notes) {
+  json result = json::array();
+  for (const Note& note : notes) {
+    result.push_back({{"text", note.text}, {"holds", note.holds ? json(*note.holds) : json(nullptr)}});
   }
-  const Camera camera = frameCamera(film, frames, kAspect);
-  const Eigen::Vector3f target = camera.eye + camera.distance * camera.forward;
-  const Eigen::Vector3f eye = target - 1.35f * camera.distance * camera.forward;
-  constexpr double kDegrees = 57.29577951308232;
-  return {{"eye", {eye.x(), eye.y(), eye.z()}},
-          {"target", {target.x(), target.y(), target.z()}},
-          {"field_of_view", film.viewpoint.field_of_view * kDegrees},
-          {"aspect", kAspect}};
+  return result;
 }
 
 json filmJson(const Film& film) {
   json result = {{"title", film.title},
                  {"caption", film.caption},
-                 {"notes", film.notes},
+                 {"notes", notesJson(film.notes)},
                  {"frame_rate", film.frame_rate},
                  {"ground", film.has_ground ? json(film.ground) : json(nullptr)},
-                 {"camera", cameraJson(film)}};
+                 {"viewpoint", viewpointJson(film.viewpoint)}};
   for (int i = 0; i < kRampSteps; ++i) {
     result["ramp"].push_back(cssColour(rampColour(static_cast<float>(i) / (kRampSteps - 1))));
   }

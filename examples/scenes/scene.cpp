@@ -38,7 +38,7 @@ ScenePlay play(const Scene& scene, const SceneOptions& options) {
   ScenePlay result;
   result.options = completed(scene, options);
   result.world = std::make_unique<SceneWorld>(result.options.contact, result.options.bodies);
-  result.world->film.title = scene.name;
+  result.world->film.title = scene.title;
   scene.build(*result.world, result.options);
   result.recording =
       record(*result.world, result.options.seconds, result.options.dt, result.options.progress);

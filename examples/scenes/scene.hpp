@@ -33,7 +33,8 @@ struct SceneOptions {
 
 /// A scene fills a world with bodies and says what has to come of it.
 struct Scene {
-  std::string name;
+  std::string name;         ///< short, lower case: what the command line calls it
+  std::string title;        ///< a few words, for people
   std::string description;  ///< one sentence
   std::string guards;       ///< one sentence: what is broken where its truth is missed
   void (*build)(SceneWorld& world, const SceneOptions& options);

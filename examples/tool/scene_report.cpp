@@ -1,6 +1,7 @@
 #include "scene_report.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "contact_arguments.hpp"
@@ -77,20 +78,31 @@ double motionAtTheEnd(const demo::SceneWorld& world, const demo::Recording& reco
   return motions.empty() ? 0 : *std::max_element(motions.begin(), motions.end());
 }
 
-}  // namespace
-
-std::string summaryOf(const demo::Verdict& verdict) {
+// The verdict in plain words.
+demo::Note noteOf(const demo::Verdict& verdict) {
   const demo::Truth& truth = verdict.truth;
-  const std::string allowed =
-      truth.kind == demo::Truth::Kind::at_most
-          ? "at most " + number(truth.expected, truth.unit)
-          : "expected " + number(truth.expected) + " +- " + number(truth.tolerance, truth.unit);
+  // Small lengths are easier to grasp in millimetres.
+  const auto amount = [&truth](double value) {
+    const bool small = truth.unit == "m" && value != 0 && std::abs(value) < 0.1;
+    return small ? number(1e3 * value, "mm") : number(value, truth.unit);
+  };
+  std::string what = truth.what;
+  what.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(what.front())));
   if (verdict.outcome == demo::Outcome::not_recorded) {
-    return "not shown  " + truth.what + ": takes " + number(truth.needs, "s") + ", " + allowed;
+    return {what + ": not shown, it takes " + number(truth.needs, "s"), {}};
   }
-  return (verdict.outcome == demo::Outcome::holds ? "holds   " : "MISSED  ") + truth.what + ": " +
-         number(verdict.measured, truth.unit) + ", " + allowed;
+  const bool holds = verdict.outcome == demo::Outcome::holds;
+  const bool exact = truth.kind == demo::Truth::Kind::equal && truth.tolerance == 0;
+  std::string wanted = "should be ";
+  if (truth.kind == demo::Truth::Kind::at_most) wanted += "at most ";
+  wanted += amount(truth.expected);
+  if (truth.tolerance > 0) wanted += ", give or take " + amount(truth.tolerance);
+  if (holds && exact) wanted = "as it should be";
+  if (!holds && truth.known_miss > 0) wanted += "; a known weakness";
+  return {what + ": " + amount(verdict.measured) + " (" + wanted + ")", holds};
 }
+
+}  // namespace
 
 void addTexts(const demo::Scene& scene, demo::ScenePlay& play) {
   const demo::SceneWorld& world = *play.world;
@@ -105,11 +117,21 @@ void addTexts(const demo::Scene& scene, demo::ScenePlay& play) {
   film.caption = scene.description + " " + std::to_string(bodies) +
                  (bodies == 1 ? " moving body, " : " moving bodies, ") + std::to_string(spheres) +
                  " spheres, step " + number(1e3 * play.options.dt, "ms") + ".";
-  for (const demo::Verdict& verdict : play.verdicts) film.notes.push_back(summaryOf(verdict));
+  for (const demo::Verdict& verdict : play.verdicts) film.notes.push_back(noteOf(verdict));
 }
 
 std::string describe(const demo::Verdict& verdict) {
-  return summaryOf(verdict) + " (" + verdict.truth.source + ")";
+  const demo::Truth& truth = verdict.truth;
+  const std::string allowed =
+      truth.kind == demo::Truth::Kind::at_most
+          ? "at most " + number(truth.expected, truth.unit)
+          : "expected " + number(truth.expected) + " +- " + number(truth.tolerance, truth.unit);
+  const std::string source = " (" + truth.source + ")";
+  if (verdict.outcome == demo::Outcome::not_recorded) {
+    return "not shown  " + truth.what + ": takes " + number(truth.needs, "s") + ", " + allowed + source;
+  }
+  return (verdict.outcome == demo::Outcome::holds ? "holds   " : "MISSED  ") + truth.what + ": " +
+         number(verdict.measured, truth.unit) + ", " + allowed + source;
 }
 
 nlohmann::ordered_json truthsJson(const std::vector<demo::Verdict>& verdicts) {

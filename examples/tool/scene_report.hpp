@@ -14,11 +14,8 @@ void addTexts(const demo::Scene& scene, demo::ScenePlay& play);
 
 Report describe(const demo::Scene& scene, const demo::ScenePlay& play);
 
-/// One line: what was measured, what was expected, and whether that agrees.
+/// One line: what was measured, what was expected, where that comes from, and whether the two agree.
 std::string describe(const demo::Verdict& verdict);
-
-/// The same without the source of what was expected.
-std::string summaryOf(const demo::Verdict& verdict);
 
 nlohmann::ordered_json truthsJson(const std::vector<demo::Verdict>& verdicts);
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -24,12 +25,20 @@ struct Arguments {
   bool force = false;
 };
 
+// The file's name, or the solid's with a capital letter.
+std::string titleOf(const std::string& source) {
+  std::string title = std::filesystem::path(source).filename().string();
+  if (!std::filesystem::exists(source)) title[0] = static_cast<char>(std::toupper(title[0]));
+  return title;
+}
+
 demo::Film filmOf(const Packing& packing, const std::string& title, bool y_up) {
   demo::Film film;
   film.title = title;
   film.caption = std::to_string(packing.spheres.size()) + " spheres fill " +
-                 percent(packing.quality.density) + "; colour: radius, " +
-                 number(packing.spheres.back().radius) + " to " + number(packing.spheres.front().radius, "m");
+                 percent(packing.quality.density) + " of it. Colours show the radius, " +
+                 number(packing.spheres.back().radius) + " to " +
+                 number(packing.spheres.front().radius, "m") + ".";
   film.colour_by_radius = true;
   film.shapes.push_back({title, packing.surface, packing.spheres});
   film.actors.push_back({0, demo::paletteColour(1)});
@@ -53,8 +62,8 @@ void run(Arguments& arguments) {
     pictures.html = stem + ".html";
   }
   checkPictures(pictures, arguments.force);
-  writePictures(filmOf(loadOrPack(arguments.source, arguments.spheres), stem, arguments.y_up), pictures,
-                arguments.force);
+  const Packing packing = loadOrPack(arguments.source, arguments.spheres);
+  writePictures(filmOf(packing, titleOf(arguments.source), arguments.y_up), pictures, arguments.force);
 }
 
 }  // namespace

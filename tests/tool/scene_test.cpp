@@ -1,4 +1,6 @@
 // Scenes, as the tool runs and records them.
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 
@@ -134,9 +136,13 @@ TEST_F(SceneRun, GalleryHoldsFilmsWithTheirContacts) {
   const std::size_t begin = page.find(start) + start.size();
   const auto films = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
   ASSERT_EQ(films.size(), 2u);
-  EXPECT_EQ(films[0]["title"], "slide");
-  EXPECT_EQ(films[1]["title"], "collisions");
-  EXPECT_EQ(films[0]["notes"].size(), 8u) << "a line for each truth";
+  EXPECT_EQ(films[0]["title"], "Boxes on inclines");
+  EXPECT_EQ(films[1]["title"], "Colliding balls");
+  ASSERT_EQ(films[0]["notes"].size(), 8u) << "a line for each truth";
+  for (const auto& note : films[0]["notes"]) {
+    EXPECT_TRUE(note["holds"].is_null()) << "a tenth of a second does not show where a box is after one";
+    EXPECT_NE(note["text"].get<std::string>().find("not shown, it takes 1 s"), std::string::npos) << note;
+  }
   // Seven frames in a tenth of a second, and where each one's contacts begin: eight numbers of four bytes, in
   // base 64.
   EXPECT_EQ(films[0]["first_contacts"].get<std::string>().size(), 44u);
@@ -146,6 +152,40 @@ TEST_F(SceneRun, GalleryHoldsFilmsWithTheirContacts) {
   refuse("scene gallery slide -o gallery.html", 5, {"gallery.html", "--force"});
   refuse("scene gallery nothing -o new.html", 2, {"nothing"});
   refuse("scene gallery", 2, {"--output"});
+}
+
+TEST_F(SceneRun, PageSaysInPlainWordsWhatCameOut) {
+  // The notes of a scene's page by what they are about, with whether they hold.
+  const auto notes = [this](const std::string& arguments) {
+    succeed("scene run " + arguments + " --quiet --force --html page.html");
+    const std::string page = readFile(path("page.html"));
+    const std::string start = "type=\"application/json\">";
+    const std::size_t begin = page.find(start) + start.size();
+    const auto films = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+    std::map<std::string, nlohmann::json> result;
+    for (const auto& note : films[0]["notes"]) {
+      const std::string text = note["text"];
+      result[text.substr(0, text.find(':'))] = note;
+    }
+    return result;
+  };
+  auto pile = notes("pile --spheres 30 --seconds 0.1 --dt 0.02 --mesh box");
+  const auto& fell = pile["Bodies that fell through the floor"];
+  EXPECT_EQ(fell["holds"], true);
+  EXPECT_EQ(fell["text"], "Bodies that fell through the floor: 0 (as it should be)");
+
+  // With a step of a second nothing holds.
+  auto slide = notes("slide --spheres 100 --dt 1");
+  ASSERT_EQ(slide.size(), 8u);
+  for (const auto& [what, note] : slide) {
+    const std::string text = note["text"];
+    EXPECT_TRUE(std::isupper(static_cast<unsigned char>(what[0]))) << text;
+    EXPECT_NE(text.find("(should be "), std::string::npos) << text;
+    EXPECT_EQ(text.find("+-"), std::string::npos) << text;
+    EXPECT_NE(text.find(", give or take "), std::string::npos) << text;
+  }
+  EXPECT_TRUE(std::any_of(slide.begin(), slide.end(),
+                          [](const auto& item) { return item.second["holds"] == false; }));
 }
 
 TEST_F(SceneRun, BadInputIsNamed) {

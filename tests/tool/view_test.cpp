@@ -81,6 +81,7 @@ TEST_F(View, PageIsSelfContained) {
   const std::string start = "type=\"application/json\">";
   const std::size_t begin = page.find(start) + start.size();
   const auto film = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin))[0];
+  EXPECT_EQ(film["title"], "torus.cbor");
   EXPECT_EQ(film["actors"].size(), 1u);
   EXPECT_EQ(film["poses"].get<std::string>().size(), 40u) << "one pose of seven numbers in base 64";
   EXPECT_EQ(film["shapes"][0]["spheres"].get<std::string>().size(), 2136u) << "100 spheres of four numbers";
