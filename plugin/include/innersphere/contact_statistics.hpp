@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include "innersphere/bullet_precision.hpp"
 
@@ -22,7 +22,7 @@ struct ContactStatistics {
 
 /// The counts of a dispatcher. Throws Error bad_argument if PackingCollisionAlgorithm is not registered with
 /// it.
-ContactStatistics contactStatistics(btCollisionDispatcher* dispatcher);
+ContactStatistics contactStatistics(const btDispatcher* dispatcher);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -3,14 +3,18 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include "common/log.hpp"
+#include "response/option_rules.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-btScalar sizeOf(const btCollisionShape& packing, const btCollisionShape& other) {
-  const btScalar size = packing.getAngularMotionDisc();
-  return other.isInfinite() ? size : btMin(size, other.getAngularMotionDisc());
+btScalar sizeOf(const PairSide& side) {
+  return side.packing == nullptr ? side.shape->getAngularMotionDisc() : side.packing->impl().size;
+}
+
+btScalar smallerSize(const PairSide& packing, const PairSide& other) {
+  return other.shape->isInfinite() ? sizeOf(packing) : btMin(sizeOf(packing), sizeOf(other));
 }
 
 bool hasLawOfItsOwn(const btCollisionObject& object) {
@@ -85,6 +89,12 @@ void ContactPair::set(const btCollisionObjectWrapper& wrapper_a, const btCollisi
   }
 }
 
+void ContactPair::noteShapes(const ContactOptions& world_options) {
+  a.noteShape();
+  b.noteShape();
+  options = optionsOfPair(world_options, *a.shape, *b.shape);
+}
+
 void ContactPair::forgetContact() {
   if (found) found->forget();
   published = false;
@@ -106,14 +116,14 @@ btVector3 ContactPair::origin() const {
   return a.packing->impl().toWorld(a.transform).getOrigin();
 }
 
-bool ContactPair::canBePublished(const ResponseSettings& settings) const {
-  if (separation != 0 || settings.options.response == Response::penalty) return false;
+bool ContactPair::canBePublished() const {
+  if (separation != 0 || options.response == Response::penalty) return false;
   const std::size_t patches = found->patches().size();
   if (patches == 0 && manifolds.size() == 0) return true;
   return plain && !hasCallbacks(manifolds.dispatcher()) && patches <= manifolds.size();
 }
 
-void ContactPair::publish(const ResponseSettings& settings, const BodySnapshot& body_a,
+void ContactPair::publish(const StepSettings& settings, const BodySnapshot& body_a,
                           const BodySnapshot& body_b) {
   if (found->patches().empty() && manifolds.size() == 0) {
     depth = deepest(found->patches());
@@ -127,8 +137,8 @@ void ContactPair::publish(const ResponseSettings& settings, const BodySnapshot& 
   write(settings, body_a, body_b, &result);
 }
 
-void ContactPair::write(const ResponseSettings& settings, const BodySnapshot& body_a,
-                        const BodySnapshot& body_b, btManifoldResult* result) {
+void ContactPair::write(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
+                        btManifoldResult* result) {
   depth = deepest(found->patches());
   manifolds.write(*a.object, *b.object, motionOf(body_a, body_b), origin(), found->patches(), lawOf(settings),
                   speculativeDistance(body_a.motion(), body_b.motion(), settings.time_step), result);
@@ -138,14 +148,14 @@ void ContactPair::report(btManifoldResult* result) const {
   ManifoldWriter::report(*a.object, *b.object, origin(), found->patches(), result);
 }
 
-ContactLaw ContactPair::lawOf(const ResponseSettings& settings) const {
-  ContactOptions options = settings.options;
+ContactLaw ContactPair::lawOf(const StepSettings& settings) const {
+  ContactOptions chosen = options;
   // A law of the user's own on a body takes the place of ours.
-  if (hasLawOfItsOwn(*a.object) || hasLawOfItsOwn(*b.object)) options.response = Response::rigid;
-  if (options.response == Response::penalty && !Penalty::applies(*a.object, *b.object))
-    options.response = Response::compliant;
-  return ContactLaw(options, reducedMass(*a.object, *b.object), settings.time_step,
-                    sizeOf(*a.shape, *b.shape), settings.solver);
+  if (hasLawOfItsOwn(*a.object) || hasLawOfItsOwn(*b.object)) chosen.response = Response::rigid;
+  if (chosen.response == Response::penalty && !Penalty::applies(*a.object, *b.object))
+    chosen.response = Response::compliant;
+  return ContactLaw(chosen, reducedMass(*a.object, *b.object), settings.time_step, smallerSize(a, b),
+                    settings.solver);
 }
 
 bool ContactPair::hasPoints() const {

@@ -29,9 +29,9 @@ struct SafeDistance {
   double travel = 0;          ///< until both together have travelled this far [m]
 };
 
-/// What the contacts of a pair are written with.
-struct ResponseSettings {
-  ContactOptions options;
+/// What holds for all pairs in a step.
+struct StepSettings {
+  ContactOptions options;  ///< of the dispatcher
   SolverSettings solver;
   btScalar time_step = 0;  ///< [s]
 };
@@ -43,6 +43,8 @@ struct ContactPair {
   /// Takes the pair as Bullet asks for it. `is_swapped`: B is the first body for Bullet.
   void set(const btCollisionObjectWrapper& wrapper_a, const btCollisionObjectWrapper& wrapper_b,
            bool is_swapped);
+  /// Notes the shapes as they are when a search begins, with the options that they have together.
+  void noteShapes(const ContactOptions& world_options);
   /// Nothing is known any more of contacts that were found.
   void forgetContact();
   /// As a new pair; gives the manifolds back.
@@ -56,16 +58,16 @@ struct ContactPair {
   /// Whether any thread may write the contacts, at any time of a step: Bullet asks for the pair as it does of
   /// itself, and for no child of a compound, which it names in the points; no code of the user's has a part
   /// in it; and there are manifolds enough, which only the dispatcher makes.
-  bool canBePublished(const ResponseSettings& settings) const;
+  bool canBePublished() const;
   /// Writes the contacts into the manifolds through a result of its own.
-  void publish(const ResponseSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b);
+  void publish(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b);
   /// Writes them through Bullet's `result`.
-  void write(const ResponseSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
+  void write(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
              btManifoldResult* result);
   /// Tells `result` of them, and leaves the manifolds alone.
   void report(btManifoldResult* result) const;
 
-  ContactLaw lawOf(const ResponseSettings& settings) const;
+  ContactLaw lawOf(const StepSettings& settings) const;
   /// True if the manifolds hold contact points.
   bool hasPoints() const;
   /// What the user is told of the pair: `shared` by both, and the impulses that the solver has found for its
@@ -88,6 +90,7 @@ struct ContactPair {
   SafeDistance safe;
 
   PairSide a, b;
+  ContactOptions options;  ///< of the pair
   std::unique_ptr<FoundContact> found;
   ManifoldWriter manifolds;
   btScalar depth = 0;             ///< of the deepest contact; negative: of the gap [m]

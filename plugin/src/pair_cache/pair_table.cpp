@@ -144,7 +144,7 @@ void PairTable::process(ContactPair& pair, const btCollisionObjectWrapper& a,
   pair.separation = separation;
   pair.published = false;
   const BodySnapshot body_a(a), body_b(b);
-  const ResponseSettings settings = settingsFor(dispatch.m_timeStep);
+  const StepSettings settings = settingsFor(dispatch.m_timeStep);
   const Busy busy(pair, mutex_, number_);
   lock.unlock();
 
@@ -177,7 +177,7 @@ void PairTable::report(ContactPair& pair, const btCollisionObjectWrapper& a,
   pair.separation = result->m_closestPointDistanceThreshold;
   std::unique_lock<std::mutex> lock(mutex_);
   const BodySnapshot body_a(a), body_b(b);
-  const ResponseSettings settings = settingsFor(0);
+  const StepSettings settings = settingsFor(0);
   lock.unlock();
   if (!isFinite(a.getWorldTransform()) || !isFinite(b.getWorldTransform())) {
     pair.logOnce("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
@@ -245,7 +245,7 @@ ContactStatistics PairTable::statistics() const {
   return statistics_;
 }
 
-void PairTable::push(ContactPair& pair, const ResponseSettings& settings, const btDispatcherInfo& dispatch) {
+void PairTable::push(ContactPair& pair, const StepSettings& settings, const btDispatcherInfo& dispatch) {
   const ContactLaw law = pair.lawOf(settings);
   if (!law.penalty() || !(settings.time_step > 0)) return;
   std::unique_lock<std::mutex> lock(mutex_);
@@ -274,18 +274,17 @@ void PairTable::push(ContactPair& pair, const ResponseSettings& settings, const 
   const btVector3 arm =
       pair.of_packings ? pair.b.packing->impl().toWorld(pair.b.transform).getOrigin() : pair.origin();
   // Bodies take one push at a time.
-  pair.penalty =
-      Penalty(*pair.a.object, *pair.b.object, btScalar(settings.options.damping), settings.time_step)
-          .push(shared, law.penaltyStiffness(), arm, manifolds);
+  pair.penalty = Penalty(*pair.a.object, *pair.b.object, btScalar(pair.options.damping), settings.time_step)
+                     .push(shared, law.penaltyStiffness(), arm, manifolds);
 }
 
 Overlap PairTable::overlapOf(const ContactPair& pair, PackingSearch& search) const {
   if (const Overlap* known = pair.found->overlap()) return *known;
   if (pair.of_packings) {
     const auto& packings = static_cast<const PackingVsPacking&>(*pair.found);
-    return search.overlap(packings.makeVolumeQuery(options_, pair.placed()), options_.estimator);
+    return search.overlap(packings.makeVolumeQuery(pair.options, pair.placed()), options_.estimator);
   }
-  return static_cast<const PackingVsShape&>(*pair.found).volumesAt(options_, pair.placed());
+  return static_cast<const PackingVsShape&>(*pair.found).volumesAt(pair.options, pair.placed());
 }
 
 void PairTable::count(Reuse reuse) {
@@ -304,7 +303,7 @@ void PairTable::count(Reuse reuse) {
   }
 }
 
-ResponseSettings PairTable::settingsFor(btScalar time_step) const {
+StepSettings PairTable::settingsFor(btScalar time_step) const {
   return {options_, solver_ == nullptr ? SolverSettings() : SolverSettings(*solver_), time_step};
 }
 

@@ -94,11 +94,11 @@ class PairTable {
 
   /// Brings one pair up to date; the table is not locked. Throws Error from the query.
   Reuse updateAlone(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
-                    const ResponseSettings& settings);
-  void push(ContactPair& pair, const ResponseSettings& settings, const btDispatcherInfo& dispatch);
+                    const StepSettings& settings);
+  void push(ContactPair& pair, const StepSettings& settings, const btDispatcherInfo& dispatch);
   Overlap overlapOf(const ContactPair& pair, PackingSearch& search) const;
   void count(Reuse reuse);
-  ResponseSettings settingsFor(btScalar time_step) const;
+  StepSettings settingsFor(btScalar time_step) const;
 
   std::unique_ptr<PackingSearch> takeSearch();
   void giveBack(std::unique_ptr<PackingSearch> search);
@@ -114,7 +114,7 @@ class PairTable {
   PairList<BodySnapshot> body_list_;  ///< the same, to go through
 
   std::uint64_t number_ = 1;               ///< of the last update
-  ResponseSettings settings_;              ///< of it
+  StepSettings settings_;                  ///< of it
   std::vector<Job> jobs_;                  ///< of it, by places in pairs_
   std::vector<Job> work_;                  ///< those of them that need no query
   std::unique_ptr<PackingSearch> search_;  ///< those that need one; null once they are finished

@@ -14,7 +14,7 @@ PackingVsPacking& packingsOf(ContactPair& pair) {
 }
 
 Reuse reuseFor(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
-               const ResponseSettings& settings) {
+               const StepSettings& settings) {
   return settings.options.reuse_contacts ? reuseOf(pair, a, b, settings.time_step) : Reuse::search;
 }
 
@@ -30,23 +30,22 @@ bool place(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b) {
 
 /// The first pass of a search that needs queries.
 SearchPass beginSearch(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
-                       const ResponseSettings& settings) {
-  pair.a.noteShape();
-  pair.b.noteShape();
-  return packingsOf(pair).begin(settings.options, pair.placed(),
+                       const StepSettings& settings) {
+  pair.noteShapes(settings.options);
+  return packingsOf(pair).begin(pair.options, pair.placed(),
                                 neededSeparation(pair, a, b, settings.time_step));
 }
 
 /// All that is done without a query.
 void updateWithoutQuery(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, Reuse reuse,
-                        const ResponseSettings& settings) {
+                        const StepSettings& settings) {
   const btScalar needed = neededSeparation(pair, a, b, settings.time_step);
   if (reuse == Reuse::transport)
     pair.found->memory.carryTo(pair.placed(), *pair.a.packing, pair.found->settings->spacing);
   if (reuse == Reuse::refine && !pair.found->refine(pair.placed(), needed)) reuse = Reuse::search;
   if (reuse != Reuse::search) return;
-  pair.a.noteShape();
-  static_cast<PackingVsShape&>(*pair.found).search(settings.options, pair.placed(), needed);
+  pair.noteShapes(settings.options);
+  static_cast<PackingVsShape&>(*pair.found).search(pair.options, pair.placed(), needed);
 }
 
 }  // namespace
@@ -114,7 +113,7 @@ void PairTable::work() {
 
 void PairTable::publish(ContactPair& pair) const {
   pair.time_step = settings_.time_step;
-  pair.published = pair.canBePublished(settings_);
+  pair.published = pair.canBePublished();
   if (!pair.published) return;
   pair.publish(settings_, *pair.body_a, *pair.body_b);
   pair.safe = safeDistanceOf(pair, *pair.body_a, *pair.body_b);
@@ -131,7 +130,7 @@ void PairTable::finish() {
 }
 
 Reuse PairTable::updateAlone(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
-                             const ResponseSettings& settings) {
+                             const StepSettings& settings) {
   pair.safe = SafeDistance();
   const Reuse reuse = reuseFor(pair, a, b, settings);
   place(pair, a, b);
