@@ -1,6 +1,7 @@
 // Results for people or for programs.
 #pragma once
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@
 
 namespace innersphere::tool {
 
-/// A list of results, printed on stdout as aligned lines or as one JSON object.
+/// A list of results, printed as aligned lines or as one JSON object.
 class Report {
  public:
   /// `key` and `value` go to JSON, in SI units; `label` and `text` to people, who do not see lines without a
@@ -22,7 +23,7 @@ class Report {
   /// A line for people only.
   void addLine(const std::string& label, const std::string& text);
 
-  void print(bool as_json) const;
+  void print(bool as_json, std::FILE* file = stdout) const;
 
  private:
   struct Line {
