@@ -1,12 +1,17 @@
 #include "report.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 namespace innersphere::tool {
 
+Report::Report() : json_(std::make_unique<nlohmann::ordered_json>(nlohmann::ordered_json::object())) {}
+Report::Report(Report&&) noexcept = default;
+Report::~Report() = default;
+
 void Report::add(const std::string& key, const std::string& label, nlohmann::ordered_json value,
                  const std::string& text) {
-  json_[key] = std::move(value);
+  (*json_)[key] = std::move(value);
   if (!label.empty()) addLine(label, text);
 }
 
@@ -25,7 +30,7 @@ void Report::add(const std::string& key, const std::string& label, std::size_t v
 void Report::print(bool as_json, std::FILE* file) const {
   if (as_json) {
     // Names of files may hold bytes that are not UTF-8.
-    std::fprintf(file, "%s\n", json_.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::fprintf(file, "%s\n", json_->dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
   std::size_t width = 0;

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace innersphere::tool {
 /// A list of results, printed as aligned lines or as one JSON object.
 class Report {
  public:
+  Report();
+  Report(Report&&) noexcept;
+  ~Report();
+
   /// `key` and `value` go to JSON, in SI units; `label` and `text` to people, who do not see lines without a
   /// label.
   void add(const std::string& key, const std::string& label, nlohmann::ordered_json value,
@@ -30,7 +35,7 @@ class Report {
     std::string label;
     std::string text;
   };
-  nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
+  std::unique_ptr<nlohmann::ordered_json> json_;  ///< its header takes longer to compile than a command
   std::vector<Line> lines_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "contact_arguments.hpp"
 #include "scenes/measures.hpp"
