@@ -75,7 +75,7 @@ build() {
     tail -n 40 "$log" >&2
     exit 1
   fi
-  grep -A 7 '^-- InnerSphere ' "$log" | sed 's/^-- //' >&2
+  grep -A 6 '^-- InnerSphere ' "$log" | sed 's/^-- //' >&2
   rm -f "$log"
   steps=$(cmake --build --preset "$preset" --target "$target" -- -n | grep -c '^\[' || true)
   [ "$steps" -gt 0 ] || return 0

@@ -62,13 +62,10 @@ std::string zshText(const std::string& text) {
 }
 
 std::string zshValue(const Option& option) {
-  const std::string names = "(" + joined(option.choices, " ") + ")";
+  const std::string names = joined(option.choices, " ");
   std::string action = " ";
   if (option.takes_file) action = "_files";
-  if (!option.choices.empty()) action = names;
-  if (option.takes_file && !option.choices.empty()) {
-    action = "{_alternative \"names:name:" + names + "\" \"files:file:_files\"}";
-  }
+  if (!names.empty()) action = option.takes_file ? " _innersphere_or_file " + names : "(" + names + ")";
   return ":" + (option.isArgument() ? option.name : option.value_name) + ":" + action;
 }
 
@@ -164,7 +161,8 @@ std::string bashCompletion(const Command& root, const std::vector<Option>& every
 std::string zshCompletion(const Command& root, const std::vector<Option>& everywhere) {
   std::string text =
       "#compdef innersphere\n"
-      "# zsh completion of innersphere, written by: innersphere completion zsh\n";
+      "# zsh completion of innersphere, written by: innersphere completion zsh\n"
+      "_innersphere_or_file() {\n  compadd -- \"$@\"\n  _files\n}\n";
   visitAll(root, [&](const Command& command, const std::vector<std::string>& path) {
     text += "\n" + zshFunction(path) + "() {\n";
     const bool group = !command.commands.empty();
