@@ -79,8 +79,8 @@ build() {
   rm -f "$log"
   steps=$(cmake --build --preset "$preset" --target "$target" -- -n | grep -c '^\[' || true)
   [ "$steps" -gt 0 ] || return 0
-  # A step takes @SECONDS@ s of a core, measured for a release of the tool on two of a @CPU@.
+  # A step takes about 3 s: measured for the tool, as processor time of two busy cores of an AMD EPYC (Zen 3).
   seconds=$((steps * 3 / $(nproc)))
-  say "Building $target: $steps steps, about $((seconds / 60 + 1)) minutes on $(nproc) free cores (longer with CUDA) ..."
+  say "Building $target: $steps steps, about $(((seconds + 59) / 60)) minutes on $(nproc) free cores like an AMD EPYC's (longer with CUDA) ..."
   attend cmake --build --preset "$preset" --target "$target" || exit 1
 }

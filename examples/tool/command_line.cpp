@@ -51,7 +51,8 @@ void addOption(CLI::App& app, const Option& option) {
   if (option.repeated && option.isArgument()) {
     added->expected(0, CLI::detail::expected_max_vector_size)->allow_extra_args();
   }
-  if (option.repeated && !option.isArgument()) added->take_all();
+  // Of an option that is given twice the last one counts, so that scripts can pass on what they were given.
+  if (!option.isArgument()) option.repeated ? added->take_all() : added->take_last();
 }
 
 std::string footerOf(const Command& command) {

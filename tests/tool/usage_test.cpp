@@ -77,6 +77,10 @@ TEST_F(Usage, WhatWasMeantIsSuggested) {
   EXPECT_EQ(run("pack box --colour red").err.find("did you mean"), std::string::npos);
 }
 
+TEST_F(Usage, TheLastOfRepeatedOptionsCounts) {
+  EXPECT_EQ(json("pack box -o box.json --spheres 5 --spheres 10 --quiet")["spheres"], 10);
+}
+
 TEST_F(Usage, CountsMayBeAbbreviated) {
   for (const char* ten : {"10", "1e1", "0.01k", "1.0e+1"}) {
     EXPECT_EQ(json("pack box -o box.json --force --spheres " + std::string(ten))["spheres"], 10) << ten;
