@@ -65,9 +65,18 @@ cuda_for_this_machine() {
   fi
 }
 
+# count_steps FOLDER TARGET: what ninja would do. Its rule to run cmake again is left out, for a dry run stops there.
+count_steps() {
+  local plan=$1/count_steps.ninja
+  sed '/^build build\.ninja/,/^$/d' "$1/build.ninja" >"$plan"
+  ninja -C "$1" -f "${plan##*/}" -n "$2" | grep -c '^\[' || true
+  rm -f "$plan"
+}
+
 # build PRESET TARGET [CMAKE_OPTION...]: configures and builds, and says beforehand how long that takes.
 build() {
-  local preset=$1 target=$2 log steps seconds
+  local preset=$1 target=$2 folder=build-$1 log steps seconds
+  [ "$preset" != release ] || folder=build
   shift 2
   log=$(mktemp)
   say "Configuring ($preset) ..."
@@ -77,10 +86,10 @@ build() {
   fi
   grep -A 6 '^-- InnerSphere ' "$log" | sed 's/^-- //' >&2
   rm -f "$log"
-  steps=$(cmake --build --preset "$preset" --target "$target" -- -n | grep -c '^\[' || true)
+  steps=$(count_steps "$folder" "$target")
   [ "$steps" -gt 0 ] || return 0
   # A step takes about 3 s: measured for the tool, as processor time of two busy cores of an AMD EPYC (Zen 3).
   seconds=$((steps * 3 / $(nproc)))
-  say "Building $target: $steps steps, about $(((seconds + 59) / 60)) minutes on $(nproc) free cores like an AMD EPYC's (longer with CUDA) ..."
+  say "Building $target: $steps steps, about $(((seconds + 59) / 60)) min on $(nproc) free cores like an AMD EPYC's (longer with CUDA) ..."
   attend cmake --build --preset "$preset" --target "$target" || exit 1
 }
