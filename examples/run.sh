@@ -27,7 +27,8 @@ done
 
 # shellcheck disable=SC2086  # a list of names
 need_packages $build_packages
-build release -DINNERSPHERE_TESTS=OFF
+mapfile -t cuda < <(cuda_for_this_machine)
+build release innersphere -DINNERSPHERE_TESTS=OFF -DINNERSPHERE_PRECISIONS=float32 "${cuda[@]}"
 ./build/bin/innersphere scene run pile --seconds 5 --png build/pile.png --html build/pile.html --force \
   ${arguments[@]+"${arguments[@]}"}
 say ""

@@ -16,7 +16,8 @@ if [ "${1:-}" = --gpu ]; then
 fi
 # shellcheck disable=SC2086  # a list of names
 need_packages $build_packages libgtest-dev librapidcheck-dev libbullet-extras-dev
-build release -DINNERSPHERE_TESTS=ON -DINNERSPHERE_CUDA=$cuda
+build release all -DINNERSPHERE_TESTS=ON "-DINNERSPHERE_PRECISIONS=float32;float64" -DINNERSPHERE_CUDA=$cuda \
+  -UCMAKE_CUDA_ARCHITECTURES
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT

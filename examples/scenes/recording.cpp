@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 
 #include "innersphere/error.hpp"
@@ -82,8 +83,20 @@ double Recording::turnBetween(std::size_t index, double from, double to) const {
   return 2 * std::atan2(std::hypot(x, y, z), std::abs(w));
 }
 
+int stepsIn(double seconds, double dt) {
+  constexpr double kMost = 1e7;  // all of them are kept in memory
+  const double steps = std::ceil(seconds / dt - 1e-6);
+  if (steps >= 1 && steps <= kMost) return static_cast<int>(steps);
+  char text[200];
+  std::snprintf(text, sizeof text, "%g s in time steps of %g s %s", seconds, dt,
+                steps < 1 ? "are not a single step: nothing would be simulated"
+                          : "are more than the ten million steps that can be recorded");
+  throw Error(ErrorCode::bad_argument, text);
+}
+
 Recording record(SceneWorld& world, double seconds, double dt, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
+  const int steps = stepsIn(seconds, dt);
   Recording recording;
   recording.film = world.film;
   const int frame_steps = std::max(1, static_cast<int>(std::lround(1 / (kFrameRate * dt))));
@@ -96,7 +109,6 @@ Recording record(SceneWorld& world, double seconds, double dt, const Progress& p
     if (step % frame_steps == 0) appendFrame(world, recording, recording.film);
   };
   keep(0, 0);
-  const int steps = static_cast<int>(std::ceil(seconds / dt - 1e-6));
   for (int step = 1; step <= steps; ++step) {
     if (world.drive) world.drive((step - 1) * dt, dt);
     const auto start = Clock::now();

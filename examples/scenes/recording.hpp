@@ -68,7 +68,12 @@ struct Recording {
   double turnBetween(std::size_t index, double from, double to) const;
 };
 
-/// Steps a world with a fixed time step [s] and records it. Throws Error cancelled.
+/// The number of steps of `dt` that cover a time [s]; a step is not begun for the sake of rounding. Throws
+/// Error bad_argument if there are none, or more than ten million.
+int stepsIn(double seconds, double dt);
+
+/// Steps a world with a fixed time step [s] and records it. Throws Error: cancelled, and what stepsIn()
+/// throws.
 Recording record(SceneWorld& world, double seconds, double dt, const Progress& progress);
 
 /// One row a step: time, energies, momenta, contacts, overlap, step time, then each body's centre of mass and

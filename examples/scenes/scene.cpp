@@ -27,6 +27,7 @@ SceneOptions completed(const Scene& scene, SceneOptions options) {
   if (options.dt == 0) options.dt = scene.dt;
   if (options.spheres == 0) options.spheres = scene.spheres;
   if (options.contact.stiffness == 0) options.contact.stiffness = scene.stiffness;
+  stepsIn(options.seconds, options.dt);  // a wrong time shows before anything is packed
   return options;
 }
 

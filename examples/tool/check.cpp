@@ -1,9 +1,10 @@
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "innersphere/check.hpp"
-#include "innersphere/packing_file.hpp"
+#include "innersphere/solids.hpp"
 #include "inputs.hpp"
 #include "report.hpp"
 
@@ -41,26 +42,27 @@ Report describe(const CheckReport& result, bool with_solid) {
 
 }  // namespace
 
-void addCheckCommand(CLI::App& app, Session& session) {
-  CLI::App* command = app.add_subcommand("check", "Judge a packing: no overlaps, nothing outside, sorted");
+Command checkCommand() {
+  Command command("check", "Judge a packing: no overlaps, nothing outside, sorted");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("FILE", arguments->file, "Packing file: .json, .cbor or .xyzr")->required();
-  command->add_option("--mesh", arguments->solid.source,
-                      "Solid that the spheres must be inside: mesh file or name");
-  addScaleOption(*command, arguments->solid.mesh);
-  addRepairOption(*command, arguments->solid.mesh);
-  command->add_flag("--json", arguments->json, "Print JSON, lengths in metres");
-  command->footer(
-      "The exit status is 1 if the packing is not valid.\nExample:\n"
-      "  innersphere check bunny.cbor --mesh bunny.obj");
-  command->callback([arguments, &session] {
-    const Packing packing = readPacking(arguments->file);
+  addPackingArgument(command, "FILE", arguments->file);
+  command.text("--mesh", arguments->solid.source, "Solid that the spheres must be inside: mesh file or name")
+      .withFile()
+      .withSuggestions(namedSolids());
+  addScaleOption(command, arguments->solid.mesh);
+  addRepairOption(command, arguments->solid.mesh);
+  command.flag("--json", arguments->json, "Print JSON, lengths in metres");
+  command.exit_status = "The exit status is 1 if the packing is not valid.";
+  command.examples = {"innersphere check bunny.cbor --mesh bunny.obj"};
+  command.run = [arguments] {
+    const Packing packing = loadPacking(arguments->file);
     const bool with_solid = !arguments->solid.source.empty();
     const auto solid = with_solid ? loadSolid(arguments->solid) : nullptr;
     const CheckReport result = check(packing, solid.get());
     describe(result, with_solid).print(arguments->json);
-    if (!result.valid()) session.exit_code = kCheckFailed;
-  });
+    return result.valid() ? kOk : kCheckFailed;
+  };
+  return command;
 }
 
 }  // namespace innersphere::tool

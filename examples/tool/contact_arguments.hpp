@@ -5,21 +5,21 @@
 #include <utility>
 #include <vector>
 
-#include "choice.hpp"
+#include "command.hpp"
 #include "innersphere/contact_options.hpp"
 
 namespace innersphere::tool {
 
-inline void addBackendOption(CLI::App& command, Backend& backend) {
-  addChoice<Backend>(command, "--backend", backend,
-                     {{"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}},
-                     "Where overlaps are computed; auto chooses by the amount of work");
+inline void addBackendOption(Command& command, Backend& backend) {
+  command.choice<Backend>("--backend", backend,
+                          {{"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}},
+                          "Where overlaps are computed; auto chooses by the amount of work");
 }
 
-inline void addEstimatorOption(CLI::App& command, Estimator& estimator) {
-  addChoice<Estimator>(command, "--estimator", estimator,
-                       {{"raw", Estimator::raw}, {"volume-true", Estimator::volume_true}},
-                       "Radii of the spheres: as packed (raw), or so that they stand for the whole solid");
+inline void addEstimatorOption(Command& command, Estimator& estimator) {
+  command.choice<Estimator>(
+      "--estimator", estimator, {{"raw", Estimator::raw}, {"volume-true", Estimator::volume_true}},
+      "Radii of the spheres: as packed (raw), or so that they stand for the whole solid");
 }
 
 inline const std::vector<std::pair<std::string, Response>>& responseNames() {
@@ -35,9 +35,9 @@ inline std::string nameOf(Response response) {
   return {};
 }
 
-inline void addResponseOption(CLI::App& command, Response& response) {
-  addChoice<Response>(
-      command, "--response", response, responseNames(),
+inline void addResponseOption(Command& command, Response& response) {
+  command.choice<Response>(
+      "--response", response, responseNames(),
       "How overlap becomes contact: implicit springs, the solver removes it, or the paper's force");
 }
 

@@ -16,11 +16,10 @@ enum ExitCode : int {
   kInternalError = 70  ///< a defect of this program
 };
 
-/// The lines of --help that explain them.
-inline const char* exitCodeHelp() {
-  return "Exit status: 0 done; 1 checked and found wrong; 2 bad usage; 3 bad input; 4 cancelled;\n"
-         "5 output exists or cannot be written; 6 CUDA device missing or failed; 70 defect of this program.";
-}
+/// For help and the manual page.
+inline constexpr const char* kExitCodeHelp =
+    "Exit status: 0 done; 1 checked and found wrong; 2 bad usage; 3 bad input; 4 cancelled;\n"
+    "5 output exists or cannot be written; 6 CUDA device missing or failed; 70 defect of this program.";
 
 inline ExitCode exitCodeOf(ErrorCode code) {
   switch (code) {

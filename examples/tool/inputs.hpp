@@ -1,10 +1,10 @@
 // What commands work on: solids and packings.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
+#include "command.hpp"
 #include "innersphere/mesh.hpp"
 #include "innersphere/packing.hpp"
 #include "innersphere/solid.hpp"
@@ -17,14 +17,25 @@ struct SolidArguments {
   MeshOptions mesh;
 };
 
-void addScaleOption(CLI::App& command, MeshOptions& options);
-void addRepairOption(CLI::App& command, MeshOptions& options);
+void addPackingArgument(Command& command, const std::string& name, std::string& source);
+void addScaleOption(Command& command, MeshOptions& options);
+void addRepairOption(Command& command, MeshOptions& options);
 
 /// Reads the mesh or makes the solid; says what was mended or looks suspicious. Throws Error.
 std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments);
 
-/// Reads a packing file (.json, .cbor, .xyzr); packs anything else, which is then a mesh or a solid's name,
-/// with this many spheres. Throws Error.
+/// True for what loadPacking() reads: stdin ("-"), a pipe, or a file that ends in .json, .cbor or .xyzr.
+bool isPacking(const std::string& source);
+
+/// Reads a packing from a file (.json, .cbor, .xyzr), a pipe or stdin ("-"), whose content shows the format.
+/// Throws Error.
+Packing loadPacking(const std::string& source);
+
+/// Reads a packing; packs what is none, which is then a mesh or a solid's name, with this many spheres.
+/// Throws Error.
 Packing loadOrPack(const std::string& source, std::size_t spheres);
+
+/// The name of a file without its folder and ending; "stdin" for "-".
+std::string stemOf(const std::string& source);
 
 }  // namespace innersphere::tool

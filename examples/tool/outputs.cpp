@@ -1,58 +1,92 @@
 #include "outputs.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "file_names.hpp"
 #include "innersphere/error.hpp"
+#include "innersphere/packing_file.hpp"
+#include "temporary_file.hpp"
 
 namespace innersphere::tool {
 namespace fs = std::filesystem;
+namespace {
 
-void checkOutput(const std::string& path, bool force) {
-  if (path.empty()) return;
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    throw Error(ErrorCode::write_failed, "cannot write " + path + ": it is a folder; name a file in it");
-  }
-  if (!force && fs::exists(path, ignored)) {
-    throw Error(ErrorCode::file_exists, path + " exists; give --force to replace it");
-  }
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, ignored)) {
-    throw Error(ErrorCode::write_failed, "cannot write " + path + ": there is no folder " + folder.string());
-  }
-  if (access(folder.c_str(), W_OK) != 0) {
-    throw Error(ErrorCode::write_failed, "cannot write " + path + ": " + std::strerror(errno));
-  }
+[[noreturn]] void fail(const std::string& path, const std::string& reason) {
+  throw Error(ErrorCode::write_failed, "cannot write " + path + ": " + reason);
 }
 
-void checkPackingOutput(const std::string& path, bool force) {
-  const std::string ending = fs::path(path).extension().string();
-  if (ending != ".json" && ending != ".cbor" && ending != ".ply" && ending != ".xyzr") {
-    throw Error(ErrorCode::bad_argument,
-                "a packing is written to .json, .cbor, .ply or .xyzr, not to " + path);
+void copyTo(const std::string& path, const std::string& from) {
+  FILE* file = isStdout(path) ? stdout : std::fopen(path.c_str(), "wb");
+  if (!file) fail(path, std::strerror(errno));
+  std::ifstream input(from, std::ios::binary);
+  char block[1 << 16];
+  bool good = true;
+  while (good && (input.read(block, sizeof block), input.gcount() > 0)) {
+    const auto n = static_cast<std::size_t>(input.gcount());
+    good = std::fwrite(block, 1, n, file) == n;
   }
-  checkOutput(path, force);
+  good = std::fflush(file) == 0 && good;
+  const int code = errno;
+  if (file != stdout) std::fclose(file);
+  if (!good) fail(isStdout(path) ? "to stdout" : path, std::strerror(code));
+}
+
+// The file that a symbolic link leads to, there or not; the path itself if it is none.
+fs::path linkTarget(fs::path path) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  std::error_code ignored;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, ignored)); ++i) {
+    path = path.parent_path() / fs::read_symlink(path, ignored);
+  }
+  return path;
+}
+
+}  // namespace
+
+bool isStdout(const std::string& path) {
+  return path == "-";
+}
+
+void checkOutput(const std::string& path, bool force) {
+  if (path.empty() || isStream(path)) return;
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) fail(path, "it is a folder; name a file in it");
+  if (!force && fs::exists(fs::symlink_status(path, ignored))) {
+    throw Error(ErrorCode::file_exists, path + " exists; give --force to replace it");
+  }
+  const fs::path target = linkTarget(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored)) fail(path, "there is no folder " + folder.string());
+  if (access(folder.c_str(), W_OK) != 0) fail(path, std::strerror(errno));
 }
 
 void writeOutput(const std::string& path, bool force, const std::function<void(const std::string&)>& write) {
-  const std::string temporary = path + "." + std::to_string(getpid()) + ".tmp";
-  const auto discard = [&temporary] {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-  };
+  checkOutput(path, force);
+  if (isStream(path)) {
+    const TemporaryFile file("");
+    write(file.path());
+    return copyTo(path, file.path());
+  }
+  const std::string target = linkTarget(path).string();
+  const std::string temporary = target + "." + std::to_string(getpid()) + ".tmp";
+  std::error_code failure;
   try {
-    checkOutput(path, force);
     write(temporary);
-    std::error_code failure;
-    fs::rename(temporary, path, failure);
-    if (failure) throw Error(ErrorCode::write_failed, "cannot write " + path + ": " + failure.message());
+    struct stat old {};
+    if (stat(target.c_str(), &old) == 0 && chmod(temporary.c_str(), old.st_mode & 07777) != 0) {
+      fail(path, std::strerror(errno));
+    }
+    fs::rename(temporary, target, failure);
+    if (failure) fail(path, failure.message());
   } catch (...) {
-    discard();
+    fs::remove(temporary, failure);
     throw;
   }
 }
@@ -62,8 +96,32 @@ void writeTextOutput(const std::string& path, bool force, const std::string& tex
     std::ofstream file(temporary, std::ios::binary);
     file.write(text.data(), static_cast<std::streamsize>(text.size()));
     file.close();
-    if (!file) throw Error(ErrorCode::write_failed, "cannot write " + path + ": " + std::strerror(errno));
+    if (!file) fail(path, std::strerror(errno));
   });
+}
+
+void addPackingOutputOptions(Command& command, PackingOutput& output) {
+  command.choice<std::string>("--format", output.format,
+                              {{"json", "json"}, {"cbor", "cbor"}, {"ply", "ply"}, {"xyzr", "xyzr"}},
+                              "Of what goes to stdout; that of a file is its ending");
+  command.flag("--force", output.force, "Replace an existing output");
+}
+
+void checkPackingOutput(const PackingOutput& output) {
+  const std::string ending = endingOf(output.path);
+  if (!isStream(output.path) && ending != ".json" && ending != ".cbor" && ending != ".ply" &&
+      ending != ".xyzr") {
+    throw Error(ErrorCode::bad_argument,
+                "a packing is written to .json, .cbor, .ply or .xyzr, not to " + output.path);
+  }
+  checkOutput(output.path, output.force);
+}
+
+void writePackingOutput(const Packing& packing, const PackingOutput& output) {
+  if (!isStream(output.path)) return writePacking(packing, output.path, output.force);
+  const TemporaryFile file("." + output.format);
+  writePacking(packing, file.path());
+  copyTo(output.path, file.path());
 }
 
 }  // namespace innersphere::tool

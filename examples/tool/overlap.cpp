@@ -6,11 +6,12 @@
 
 #include "commands.hpp"
 #include "contact_arguments.hpp"
+#include "exit_codes.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/query.hpp"
+#include "innersphere/solids.hpp"
 #include "inputs.hpp"
-#include "numbers.hpp"
 #include "outputs.hpp"
 #include "pose_table.hpp"
 #include "terminal.hpp"
@@ -175,37 +176,43 @@ void run(Arguments& arguments) {
 
 }  // namespace
 
-void addOverlapCommand(CLI::App& app, Session&) {
-  CLI::App* command = app.add_subcommand("overlap", "Measure the overlap of two packings in many poses");
+Command overlapCommand() {
+  Command command("overlap", "Measure the overlap of two packings in many poses");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("A", arguments->a, "Packing file, mesh file or name of a solid; not moved")->required();
-  command->add_option("B", arguments->b, "The same for the body that is moved")->required();
-  command
-      ->add_option(
-          "--poses", arguments->poses,
-          "CSV file with the columns m00 to m23: the 3x4 matrix that takes B's coordinates to its place")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "CSV file to write")->required();
-  command->add_option("--spheres", arguments->spheres, "Use the largest ones only; 0: all")
-      ->check(notNegative())
-      ->capture_default_str();
-  addEstimatorOption(*command, arguments->query.estimator);
-  addBackendOption(*command, arguments->context.backend);
-  addChoice<Force>(
-      *command, "--force-law", arguments->force_law,
+  command.argument("A", arguments->a, "Packing file, mesh file or name of a solid; not moved")
+      .withFile()
+      .withSuggestions(namedSolids());
+  command.argument("B", arguments->b, "The same for the body that is moved")
+      .withFile()
+      .withSuggestions(namedSolids());
+  Option& poses = command.text(
+      "--poses", arguments->poses,
+      "CSV file with the columns m00 to m23: the 3x4 matrix that takes B's coordinates to its place");
+  poses.withFile().required = true;
+  Option& output = command.text("-o,--output", arguments->output, "CSV file to write; -: to stdout");
+  output.withFile().required = true;
+  command.count("--spheres", arguments->spheres, kNotNegative, "Use the largest ones only; 0: all");
+  addEstimatorOption(command, arguments->query.estimator);
+  addBackendOption(command, arguments->context.backend);
+  command.choice<Force>(
+      "--force-law", arguments->force_law,
       {{"by-estimator", Force::by_estimator}, {"gradient", Force::gradient}, {"volume", Force::volume}},
       "Force of the table: minus the gradient of the overlap volume (sum pi a^2 n), or the paper's "
       "(sum V n); by-estimator: gradient for volume-true, volume for raw");
-  command->add_flag("--force", arguments->force, "Replace an existing output");
-  command->footer(
+  command.flag("--force", arguments->force, "Replace an existing output");
+  command.notes =
       "One row a pose: pose, volume [m^3], centroid cx cy cz [m], force on B fx fy fz, its torque tx ty tz "
       "about the centre\n"
       "of B's bounding box, stiffness (sum pi a^2) [m^2], overlapping sphere pairs. Forces are per unit of "
       "pressure (gradient,\n"
-      "[m^2]) or of force density (volume, [m^3]). Everything is in A's coordinates.\n"
-      "Example:\n"
-      "  innersphere overlap cow.cbor cow.cbor --poses poses.csv --spheres 4000 -o overlap.csv");
-  command->callback([arguments] { run(*arguments); });
+      "[m^2]) or of force density (volume, [m^3]). Everything is in A's coordinates.";
+  command.examples = {
+      "innersphere overlap cow.cbor cow.cbor --poses poses.csv --spheres 4000 -o overlap.csv"};
+  command.run = [arguments] {
+    run(*arguments);
+    return kOk;
+  };
+  return command;
 }
 
 }  // namespace innersphere::tool

@@ -1,28 +1,23 @@
 #include "pictures.hpp"
 
-#include "choice.hpp"
 #include "outputs.hpp"
 #include "replay/replay.hpp"
 #include "terminal.hpp"
 
 namespace innersphere::tool {
 
-void addPictureOptions(CLI::App& command, PictureArguments& arguments) {
+void addPictureOptions(Command& command, PictureArguments& arguments) {
   using demo::View;
-  command.add_option("--png", arguments.png, "Write a picture");
-  command.add_option("--html", arguments.html, "Write a page that shows it in a browser, without a server");
-  addChoice<View>(command, "--show", arguments.render.view,
-                  {{"surface", View::surface}, {"spheres", View::spheres}, {"split", View::split}},
-                  "What the picture shows; split: surfaces on its left, spheres on its right");
-  command.add_option("--width", arguments.render.width, "Of the picture [pixels]")
-      ->check(CLI::Range(16, 16384))
-      ->capture_default_str();
-  command.add_option("--height", arguments.render.height, "Of the picture [pixels]")
-      ->check(CLI::Range(16, 16384))
-      ->capture_default_str();
-  command.add_option("--samples", arguments.render.samples, "Rays a pixel: more is smoother and slower")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
+  command.text("--png", arguments.png, "Write a picture").withFile();
+  command.text("--html", arguments.html, "Write a page that shows it in a browser, without a server")
+      .withFile();
+  command.choice<View>("--show", arguments.render.view,
+                       {{"surface", View::surface}, {"spheres", View::spheres}, {"split", View::split}},
+                       "What the picture shows; split: surfaces on its left, spheres on its right");
+  command.count("--width", arguments.render.width, {16, 16384}, "Of the picture [pixels]");
+  command.count("--height", arguments.render.height, {16, 16384}, "Of the picture [pixels]");
+  command.count("--samples", arguments.render.samples, {1, 65536},
+                "Rays a pixel: more is smoother and slower");
 }
 
 void checkPictures(const PictureArguments& arguments, bool force) {

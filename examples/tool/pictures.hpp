@@ -1,9 +1,9 @@
 // Pictures and pages of films.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "command.hpp"
 #include "film/film.hpp"
 #include "render/renderer.hpp"
 
@@ -16,7 +16,7 @@ struct PictureArguments {
 };
 
 /// Adds --png, --html and the size and kind of the picture.
-void addPictureOptions(CLI::App& command, PictureArguments& arguments);
+void addPictureOptions(Command& command, PictureArguments& arguments);
 
 /// Throws Error if an output exists and `force` is not set, or cannot be written.
 void checkPictures(const PictureArguments& arguments, bool force);

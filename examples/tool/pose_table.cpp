@@ -7,6 +7,7 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "innersphere/error.hpp"
 
@@ -14,6 +15,7 @@ namespace innersphere::tool {
 namespace {
 
 constexpr std::size_t kMissing = static_cast<std::size_t>(-1);
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // Excel writes one
 
 std::vector<std::string> splitCells(const std::string& line) {
   std::vector<std::string> cells;
@@ -90,14 +92,22 @@ std::vector<NamedPose> readPoses(const std::string& path) {
   std::vector<NamedPose> poses;
   std::optional<Header> header;
   std::string line;
+  std::size_t columns = 0;
   for (int number = 1; std::getline(file, line); ++number) {
+    if (number == 1 && line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
     if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
     const std::vector<std::string> cells = splitCells(line);
     if (!header) {
       header.emplace(cells, path);
+      columns = cells.size();
       continue;
     }
     const std::string where = path + ", line " + std::to_string(number);
+    if (cells.size() > columns) {
+      throw Error(ErrorCode::bad_format, where + " has " + std::to_string(cells.size()) +
+                                             " fields, but the header row names only " +
+                                             std::to_string(columns) + " columns");
+    }
     NamedPose& pose = poses.emplace_back();
     pose.name = header->pose < cells.size() ? cells[header->pose] : std::to_string(poses.size() - 1);
     for (int i = 0; i < 3; ++i) {

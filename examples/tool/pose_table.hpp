@@ -14,9 +14,9 @@ struct NamedPose {
 };
 
 /// Reads a table with a header row and the columns m00, m01, ..., m23: the 3x4 matrix of a rigid transform,
-/// row by row. Other columns, empty lines and lines that start with # are passed over. Throws Error
-/// file_not_found, bad_format (also for a matrix that is not a rotation), not_finite, empty_input; the
-/// message names the line.
+/// row by row. Other columns, empty lines, lines that start with # and a byte-order mark are passed over.
+/// Throws Error file_not_found, bad_format (also for a row with more fields than the header and for a matrix
+/// that is not a rotation), not_finite, empty_input; the message names the line.
 std::vector<NamedPose> readPoses(const std::string& path);
 
 }  // namespace innersphere::tool

@@ -1,13 +1,17 @@
 #include "report.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <nlohmann/json.hpp>
 
 namespace innersphere::tool {
 
+Report::Report() : json_(std::make_unique<nlohmann::ordered_json>(nlohmann::ordered_json::object())) {}
+Report::Report(Report&&) noexcept = default;
+Report::~Report() = default;
+
 void Report::add(const std::string& key, const std::string& label, nlohmann::ordered_json value,
                  const std::string& text) {
-  json_[key] = std::move(value);
+  (*json_)[key] = std::move(value);
   if (!label.empty()) addLine(label, text);
 }
 
@@ -23,16 +27,16 @@ void Report::add(const std::string& key, const std::string& label, std::size_t v
   add(key, label, value, std::to_string(value));
 }
 
-void Report::print(bool as_json) const {
+void Report::print(bool as_json, std::FILE* file) const {
   if (as_json) {
     // Names of files may hold bytes that are not UTF-8.
-    std::printf("%s\n", json_.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::fprintf(file, "%s\n", json_->dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
   std::size_t width = 0;
   for (const Line& line : lines_) width = std::max(width, line.label.size());
   for (const Line& line : lines_) {
-    std::printf("%-*s  %s\n", static_cast<int>(width), line.label.c_str(), line.text.c_str());
+    std::fprintf(file, "%-*s  %s\n", static_cast<int>(width), line.label.c_str(), line.text.c_str());
   }
 }
 

@@ -1,7 +1,9 @@
 // Results for people or for programs.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -9,9 +11,13 @@
 
 namespace innersphere::tool {
 
-/// A list of results, printed on stdout as aligned lines or as one JSON object.
+/// A list of results, printed as aligned lines or as one JSON object.
 class Report {
  public:
+  Report();
+  Report(Report&&) noexcept;
+  ~Report();
+
   /// `key` and `value` go to JSON, in SI units; `label` and `text` to people, who do not see lines without a
   /// label.
   void add(const std::string& key, const std::string& label, nlohmann::ordered_json value,
@@ -22,14 +28,14 @@ class Report {
   /// A line for people only.
   void addLine(const std::string& label, const std::string& text);
 
-  void print(bool as_json) const;
+  void print(bool as_json, std::FILE* file = stdout) const;
 
  private:
   struct Line {
     std::string label;
     std::string text;
   };
-  nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
+  std::unique_ptr<nlohmann::ordered_json> json_;  ///< its header takes longer to compile than a command
   std::vector<Line> lines_;
 };
 

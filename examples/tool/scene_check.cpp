@@ -1,13 +1,12 @@
-#include "scene_check.hpp"
-
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "exit_codes.hpp"
 #include "report.hpp"
+#include "scene_commands.hpp"
 #include "scene_report.hpp"
-#include "scene_run.hpp"
 #include "terminal.hpp"
 
 namespace innersphere::tool {
@@ -53,14 +52,17 @@ int run(Arguments& arguments) {
 
 }  // namespace
 
-void addSceneCheckCommand(CLI::App& scene, Session& session) {
-  CLI::App* command = scene.add_subcommand("check", "Run scenes and compare them with what physics says");
+Command sceneCheckCommand() {
+  Command command("check", "Run scenes and compare them with what physics says");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("NAMES", arguments->names, "Some of `innersphere scene list`; all if none is given");
-  addSceneOptions(*command, arguments->options);
-  command->add_flag("--json", arguments->json, "Print the results as JSON");
-  command->footer("The exit status is 1 if a scene misses its truth.");
-  command->callback([arguments, &session] { session.exit_code = run(*arguments); });
+  command.arguments("NAMES", arguments->names, "Some of `innersphere scene list`; all if none is given")
+      .oneOf(namesOfScenes());
+  addSceneOptions(command, arguments->options);
+  command.flag("--json", arguments->json, "Print the results as JSON");
+  command.exit_status = "The exit status is 1 if a scene misses its truth.";
+  command.examples = {"innersphere scene check nut peg"};
+  command.run = [arguments] { return run(*arguments); };
+  return command;
 }
 
 }  // namespace innersphere::tool

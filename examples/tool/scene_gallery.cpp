@@ -1,13 +1,12 @@
-#include "scene_gallery.hpp"
-
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "exit_codes.hpp"
 #include "outputs.hpp"
 #include "replay/replay.hpp"
+#include "scene_commands.hpp"
 #include "scene_report.hpp"
-#include "scene_run.hpp"
 #include "terminal.hpp"
 
 namespace innersphere::tool {
@@ -43,15 +42,21 @@ void run(Arguments& arguments) {
 
 }  // namespace
 
-void addSceneGalleryCommand(CLI::App& scene) {
-  CLI::App* command = scene.add_subcommand("gallery", "Run scenes and write one page that replays them");
+Command sceneGalleryCommand() {
+  Command command("gallery", "Run scenes and write one page that replays them");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("NAMES", arguments->names, "Some of `innersphere scene list`")->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "HTML file: opens without a server and a network")
-      ->required();
-  addSceneOptions(*command, arguments->options);
-  command->add_flag("--force", arguments->force, "Replace an existing output");
-  command->callback([arguments] { run(*arguments); });
+  command.arguments("NAMES", arguments->names, "Some of `innersphere scene list`").oneOf(namesOfScenes());
+  Option& output = command.text("-o,--output", arguments->output,
+                                "HTML file: opens without a server and a network; -: to stdout");
+  output.withFile().required = true;
+  addSceneOptions(command, arguments->options);
+  command.flag("--force", arguments->force, "Replace an existing output");
+  command.examples = {"innersphere scene gallery pile nut gears -o gallery.html"};
+  command.run = [arguments] {
+    run(*arguments);
+    return kOk;
+  };
+  return command;
 }
 
 }  // namespace innersphere::tool

@@ -1,13 +1,12 @@
-#include "scene_run.hpp"
-
 #include <memory>
 
 #include "contact_arguments.hpp"
 #include "exit_codes.hpp"
+#include "innersphere/solids.hpp"
 #include "inputs.hpp"
-#include "numbers.hpp"
 #include "outputs.hpp"
 #include "pictures.hpp"
+#include "scene_commands.hpp"
 #include "scene_report.hpp"
 #include "scenes/scene.hpp"
 #include "terminal.hpp"
@@ -41,7 +40,9 @@ int run(Arguments& arguments) {
   clearProgressBar();
   addTexts(scene, play);
 
-  describe(scene, play).print(arguments.json);
+  const PictureArguments& pictures = arguments.pictures;
+  const bool taken = isStdout(arguments.csv) || isStdout(pictures.png) || isStdout(pictures.html);
+  describe(scene, play).print(arguments.json, taken ? stderr : stdout);
   std::fflush(stdout);
   if (!arguments.csv.empty()) {
     writeTextOutput(arguments.csv, arguments.force, demo::toCsv(play.recording));
@@ -53,35 +54,37 @@ int run(Arguments& arguments) {
 
 }  // namespace
 
-void addSceneOptions(CLI::App& command, demo::SceneOptions& options) {
-  const auto otherwise = [](CLI::Option* option) { option->default_str("the scene's own"); };
-  otherwise(command.add_option("--seconds", options.seconds, "Simulated time [s]")->check(positive()));
-  otherwise(command.add_option("--dt", options.dt, "Time step [s]")->check(CLI::Range(1e-6, 1.0)));
-  otherwise(command.add_option("--spheres", options.spheres, "Of each solid's packing")->check(positive()));
+std::vector<std::string> namesOfScenes() {
+  std::vector<std::string> names;
+  for (const demo::Scene& scene : demo::scenes()) names.push_back(scene.name);
+  return names;
+}
+
+void addSceneOptions(Command& command, demo::SceneOptions& options) {
+  const std::string own = "the scene's own";
+  command.number("--seconds", options.seconds, kPositive, "Simulated time [s]").withDefault(own);
+  command.number("--dt", options.dt, {1e-6, 1}, "Time step [s]").withDefault(own);
+  command.count("--spheres", options.spheres, {1}, "Of each solid's packing").withDefault(own);
   addResponseOption(command, options.contact.response);
-  command.add_option("--stiffness", options.contact.stiffness, "Pressure for a metre of overlap [N/m^3]")
-      ->check(notNegative())
-      ->default_str("the scene's own");
-  command.add_option("--damping", options.contact.damping, "Of contacts, as a fraction of critical damping")
-      ->check(notNegative())
-      ->capture_default_str();
+  command
+      .number("--stiffness", options.contact.stiffness, kNotNegative,
+              "Pressure for a metre of overlap [N/m^3]")
+      .withDefault(own);
+  command.number("--damping", options.contact.damping, kNotNegative,
+                 "Of contacts, as a fraction of critical damping");
   addBackendOption(command, options.contact.backend);
   addEstimatorOption(command, options.contact.estimator);
-  addChoice<demo::BodyShape>(command, "--shape", options.bodies.shape,
-                             {{"packing", demo::BodyShape::packing},
-                              {"gimpact", demo::BodyShape::gimpact},
-                              {"spheres", demo::BodyShape::spheres},
-                              {"convex", demo::BodyShape::convex}},
-                             "What collides, to compare: packings, or Bullet's triangle meshes, compounds of "
-                             "the packings' spheres, or compounds of convex parts");
-  command
-      .add_option("--concavity", options.bodies.concavity,
-                  "How far convex parts may leave their solid, relative to its size")
-      ->check(positive())
-      ->capture_default_str();
-  command.add_option("--seed", options.seed, "Of random places and orientations")
-      ->check(notNegative())
-      ->capture_default_str();
+  command.choice<demo::BodyShape>(
+      "--shape", options.bodies.shape,
+      {{"packing", demo::BodyShape::packing},
+       {"gimpact", demo::BodyShape::gimpact},
+       {"spheres", demo::BodyShape::spheres},
+       {"convex", demo::BodyShape::convex}},
+      "What collides, to compare: packings, or Bullet's triangle meshes, compounds of "
+      "the packings' spheres, or compounds of convex parts");
+  command.number("--concavity", options.bodies.concavity, kPositive,
+                 "How far convex parts may leave their solid, relative to its size");
+  command.count("--seed", options.seed, kNotNegative, "Of random places and orientations");
 }
 
 Progress progressOfScene(const std::string& name) {
@@ -90,29 +93,28 @@ Progress progressOfScene(const std::string& name) {
   };
 }
 
-void addSceneRunCommand(CLI::App& scene, Session& session) {
-  CLI::App* command = scene.add_subcommand("run", "Step a scene without a window and say what happened");
+Command sceneRunCommand() {
+  Command command("run", "Step a scene without a window and say what happened");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("NAME", arguments->scene, "One of `innersphere scene list`")->required();
-  addSceneOptions(*command, arguments->options);
+  command.argument("NAME", arguments->scene, "One of `innersphere scene list`").oneOf(namesOfScenes());
+  addSceneOptions(command, arguments->options);
   command
-      ->add_option("--mesh", arguments->meshes,
-                   "Mesh file to use instead of the scene's own solids; may be repeated")
-      ->take_all()
-      ->expected(1);
-  addRepairOption(*command, arguments->mesh);
-  command->add_option("--csv", arguments->csv,
-                      "Write each step: energies, momenta, contacts, and each body's pose");
-  addPictureOptions(*command, arguments->pictures);
-  command->add_flag("--json", arguments->json, "Print the summary as JSON");
-  command->add_flag("--check", arguments->check, "Exit status 1 if the scene misses its truth");
-  command->add_flag("--force", arguments->force, "Replace existing outputs");
-  command->footer(
-      "Examples:\n"
-      "  innersphere scene run pile --png pile.png --html pile.html\n"
-      "  innersphere scene run pile --mesh bunny.obj --mesh cow.obj --spheres 2000\n"
-      "  innersphere scene run chain-hang --dt 0.0166667 --csv chain.csv --json");
-  command->callback([arguments, &session] { session.exit_code = run(*arguments); });
+      .texts("--mesh", arguments->meshes,
+             "Mesh file to use instead of the scene's own solids; may be repeated")
+      .withFile()
+      .withSuggestions(namedSolids());
+  addRepairOption(command, arguments->mesh);
+  command.text("--csv", arguments->csv, "Write each step: energies, momenta, contacts, and each body's pose")
+      .withFile();
+  addPictureOptions(command, arguments->pictures);
+  command.flag("--json", arguments->json, "Print the summary as JSON");
+  command.flag("--check", arguments->check, "Exit status 1 if the scene misses its truth");
+  command.flag("--force", arguments->force, "Replace existing outputs");
+  command.examples = {"innersphere scene run pile --png pile.png --html pile.html",
+                      "innersphere scene run pile --mesh bunny.obj --mesh cow.obj --spheres 2000",
+                      "innersphere scene run chain-hang --dt 0.0166667 --csv chain.csv --json"};
+  command.run = [arguments] { return run(*arguments); };
+  return command;
 }
 
 }  // namespace innersphere::tool

@@ -5,14 +5,14 @@
 #include <limits>
 #include <memory>
 
-#include "choice.hpp"
 #include "commands.hpp"
+#include "exit_codes.hpp"
 #include "film/palette.hpp"
-#include "innersphere/packer.hpp"
+#include "innersphere/solids.hpp"
 #include "inputs.hpp"
-#include "numbers.hpp"
 #include "pictures.hpp"
 #include "report.hpp"
+#include "terminal.hpp"
 
 namespace innersphere::tool {
 namespace {
@@ -56,35 +56,38 @@ demo::Film filmOf(const Packing& packing, const std::string& title, bool y_up) {
 
 void run(Arguments& arguments) {
   PictureArguments& pictures = arguments.pictures;
-  const std::string stem = std::filesystem::path(arguments.source).stem().string();
+  const std::string stem = stemOf(arguments.source);
   if (pictures.png.empty() && pictures.html.empty()) {
     pictures.png = stem + ".png";
     pictures.html = stem + ".html";
   }
   checkPictures(pictures, arguments.force);
   const Packing packing = loadOrPack(arguments.source, arguments.spheres);
+  say(arguments.y_up ? "the y axis points up; --up z turns that" : "the z axis points up; --up y turns that");
   writePictures(filmOf(packing, titleOf(arguments.source), arguments.y_up), pictures, arguments.force);
 }
 
 }  // namespace
 
-void addViewCommand(CLI::App& app, Session&) {
-  CLI::App* command =
-      app.add_subcommand("view", "Show a packing: its surface, and its spheres coloured by radius");
+Command viewCommand() {
+  Command command("view", "Show a packing: its surface, and its spheres coloured by radius");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("FILE", arguments->source, "Packing file, or a mesh or a solid's name to pack first")
-      ->required();
-  command->add_option("--spheres", arguments->spheres, "Of what is packed first")
-      ->check(positive())
-      ->capture_default_str();
-  addChoice<bool>(*command, "--up", arguments->y_up, {{"y", true}, {"z", false}}, "Axis that points up");
-  addPictureOptions(*command, arguments->pictures);
-  command->add_flag("--force", arguments->force, "Replace existing outputs");
-  command->footer(
-      "Without --png and --html both are written to the current folder, named after FILE.\nExamples:\n"
-      "  innersphere view bunny.cbor --up y\n"
-      "  innersphere view gear --html gear.html");
-  command->callback([arguments] { run(*arguments); });
+  command
+      .argument("FILE", arguments->source,
+                "Packing file, or a mesh or a solid's name to pack first; -: stdin")
+      .withFile()
+      .withSuggestions(namedSolids());
+  command.count("--spheres", arguments->spheres, {1}, "Of what is packed first");
+  command.choice<bool>("--up", arguments->y_up, {{"y", true}, {"z", false}}, "Axis that points up");
+  addPictureOptions(command, arguments->pictures);
+  command.flag("--force", arguments->force, "Replace existing outputs");
+  command.notes = "Without --png and --html both are written to the current folder, named after FILE.";
+  command.examples = {"innersphere view bunny.cbor --up y", "innersphere view gear --html gear.html"};
+  command.run = [arguments] {
+    run(*arguments);
+    return kOk;
+  };
+  return command;
 }
 
 }  // namespace innersphere::tool

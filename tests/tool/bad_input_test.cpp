@@ -53,6 +53,9 @@ TEST_F(BadInput, Packings) {
     }
   }
   refuse("info packing.doc", 3, {"doc", ".cbor"});
+  // A name without an ending.
+  writeFile(path("packing"), "0 0 0 1\n");
+  refuse("info packing", 3, {"packing is no packing", ".cbor"});
   refuse("convert other.json out.cbor", 3, {"other.json"});
 }
 
@@ -74,6 +77,7 @@ TEST_F(BadInput, PoseTables) {
   writeFile(path("short.csv"), "m00,m01\n1,0\n");
   writeFile(path("words.csv"), header + "1,0,0,0,0,1,0,0,0,0,1,0\n1,0,0,far,0,1,0,0,0,0,1,0\n");
   writeFile(path("ragged.csv"), header + "1,0,0,0\n");
+  writeFile(path("surplus.csv"), header + "1,0,0,0,0,1,0,0,0,0,1,0\n1,0,0,0,0,1,0,0,0,0,1,0,0,9\n");
   writeFile(path("nan.csv"), header + "1,0,0,nan,0,1,0,0,0,0,1,0\n");
   writeFile(path("scaled.csv"), header + "2,0,0,0,0,2,0,0,0,0,2,0\n");
   writeFile(path("mirror.csv"), header + "-1,0,0,0,0,1,0,0,0,0,1,0\n");
@@ -86,9 +90,24 @@ TEST_F(BadInput, PoseTables) {
   expect("short.csv", {"short.csv", "m02"});
   expect("words.csv", {"words.csv", "line 3", "far"});
   expect("ragged.csv", {"ragged.csv", "line 2"});
+  expect("surplus.csv", {"surplus.csv", "line 3", "14 fields", "12 columns"});
   expect("nan.csv", {"nan.csv", "line 2"});
   expect("scaled.csv", {"scaled.csv", "line 2", "scale"});
   expect("mirror.csv", {"mirror.csv", "line 2", "mirror"});
+}
+
+// A file system without free space.
+TEST_F(BadInput, LostOutputIsAFailure) {
+  succeed("pack box --spheres 5 -o box.cbor");
+  for (const std::string command :
+       {"info box.cbor", "info box.cbor --json", "check box.cbor", "solids", "solids --json", "scene list",
+        "--version", "--help", "pack --help", "--help-all", "help pack", "convert box.cbor -",
+        "pack box --spheres 5 -o new.cbor --force", "scene run slide --spheres 5 --seconds 0.01",
+        "scene check slide --spheres 5 --seconds 0.01"}) {
+    const Outcome outcome = run(command + " > /dev/full");
+    EXPECT_EQ(outcome.exit_code, 5) << command << "\n" << outcome.err;
+    EXPECT_NE(outcome.err.find("stdout"), std::string::npos) << command << "\n" << outcome.err;
+  }
 }
 
 }  // namespace

@@ -191,6 +191,18 @@ TEST_F(Overlap, FarFromTheOriginItIsTheSame) {
   }
 }
 
+TEST_F(Overlap, TablesMayHaveAByteOrderMark) {
+  writeFile(path("ball.xyzr"), "0 0 0 1\n");
+  // Two equal balls at a distance of one radius share 5/16 of their volume.
+  const std::string rows = kHeader + "near,1,0,0,1,0,1,0,0,0,0,1,0\n";
+  writeFile(path("marked.csv"), "\xef\xbb\xbf" + rows);
+  const auto table =
+      readTable(succeed("overlap ball.xyzr ball.xyzr --estimator raw --poses marked.csv -o -").out);
+  ASSERT_EQ(table.size(), 1u);
+  EXPECT_EQ(table[0].pose, "near");
+  EXPECT_NEAR(table[0].volume, 5.0 / 16 * 4 * M_PI / 3, 1e-5);
+}
+
 TEST_F(Overlap, FewerSpheresAreThePrefix) {
   succeed("pack box --spheres 200 -o box.cbor");
   writeFile(path("poses.csv"), kHeader + "0,1,0,0,0.3,0,1,0,0.1,0,0,1,0\n");

@@ -1,11 +1,17 @@
 // pack, info, check and convert.
 #include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
 
 #include "meshes.hpp"
 #include "tool_runner.hpp"
 
 namespace innersphere::test {
 namespace {
+
+namespace fs = std::filesystem;
 
 class PackingCommands : public ToolTest {};
 
@@ -69,6 +75,132 @@ TEST_F(PackingCommands, ReplacesOnlyWithForce) {
   succeed("pack box --spheres 10 -o box.json --force");
   EXPECT_EQ(json("info box.json")["spheres"], 10);
   refuse("convert box.json box.json", 5, {"--force"});
+}
+
+TEST_F(PackingCommands, ForceWritesThroughALinkAndKeepsPermissions) {
+  for (const std::string make :
+       {"pack box --spheres 10 --force -o link.json",
+        "view box --spheres 10 --width 16 --height 16 --samples 1 --force --png link.json"}) {
+    fs::create_directory(path("elsewhere"));
+    writeFile(path("elsewhere/real.json"), "old");
+    fs::permissions(path("elsewhere/real.json"), fs::perms::owner_read | fs::perms::owner_write);
+    fs::create_symlink("elsewhere/real.json", path("middle.json"));
+    fs::create_symlink("middle.json", path("link.json"));
+    refuse(make.substr(0, make.find(" --force")) + make.substr(make.find(" --force") + 8), 5, {"link.json"});
+    EXPECT_EQ(readFile(path("elsewhere/real.json")), "old");
+    EXPECT_EQ(run(make).exit_code, 0) << make;
+    EXPECT_EQ(fs::read_symlink(path("link.json")), "middle.json");
+    EXPECT_EQ(fs::read_symlink(path("middle.json")), "elsewhere/real.json");
+    EXPECT_GT(readFile(path("elsewhere/real.json")).size(), 50u);
+    EXPECT_EQ(fs::status(path("elsewhere/real.json")).permissions(),
+              fs::perms::owner_read | fs::perms::owner_write);
+    EXPECT_EQ(files(), (std::set<std::string>{"elsewhere", "link.json", "middle.json"}));
+    for (const char* name : {"elsewhere", "link.json", "middle.json"}) fs::remove_all(path(name));
+  }
+}
+
+TEST_F(PackingCommands, ALinkThatLeadsNowhereIsFollowed) {
+  fs::create_symlink("real.json", path("link.json"));
+  refuse("pack box --spheres 10 -o link.json", 5, {"link.json", "--force"});
+  succeed("pack box --spheres 10 -o link.json --force");
+  EXPECT_TRUE(fs::is_symlink(path("link.json")));
+  EXPECT_EQ(json("info real.json")["spheres"], 10);
+}
+
+TEST_F(PackingCommands, DevicesAreNotReplaced) {
+  succeed("pack box --spheres 10 -o /dev/null");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  refuse("pack box --spheres 10 -o /dev/full", 5, {"/dev/full"});
+}
+
+TEST_F(PackingCommands, WithoutOutputItIsNamedAfterTheSolid) {
+  fs::create_directory(path("folder"));
+  writeFile(path("folder/tetra.obj"), kTetrahedron);
+  EXPECT_EQ(json("pack folder/tetra.obj --spheres 10")["spheres"], 10);
+  EXPECT_EQ(json("info tetra.cbor")["spheres"], 10);
+  EXPECT_NE(run("pack ball").err.find("ball.cbor"), std::string::npos) << "says where it is";
+  refuse("pack ball", 5, {"ball.cbor", "--force"});
+}
+
+TEST_F(PackingCommands, PipesCarryPackings) {
+  succeed("pack torus --spheres 20 -o torus.json");
+  const auto summary = json("info torus.json");
+  // Each format is known by its content.
+  for (const std::string format : {"json", "cbor"}) {
+    for (const std::string from : {"info - --json", "info /dev/stdin --json"}) {
+      const Outcome outcome =
+          shell("\"$TOOL\" convert torus.json - --format " + format + " | \"$TOOL\" " + from);
+      EXPECT_EQ(nlohmann::json::parse(outcome.out, nullptr, false), summary) << outcome.err;
+    }
+  }
+  const Outcome spheres = shell("\"$TOOL\" convert torus.json - --format xyzr | \"$TOOL\" info - --json");
+  EXPECT_EQ(nlohmann::json::parse(spheres.out, nullptr, false)["spheres"], 20) << spheres.err;
+  EXPECT_EQ(nlohmann::json::parse(spheres.out, nullptr, false)["source"], "stdin");
+  // The packing alone is on stdout, the report is on stderr.
+  const Outcome packed = run("pack torus --spheres 20 -o -");
+  EXPECT_EQ(packed.out, readFile(path("torus.json")));
+  EXPECT_NE(packed.err.find("density"), std::string::npos);
+  const Outcome noise = shell("echo '{\"colour\": 1}' | \"$TOOL\" info -");
+  EXPECT_EQ(noise.exit_code, 3);
+  EXPECT_EQ(noise.err.find("innersphere: stdin"), 0u) << noise.err;
+  refuse("info -", 3, {"stdin"});
+  refuse("pack -", 2, {"ending"});
+  EXPECT_EQ(files(), std::set<std::string>{"torus.json"});
+}
+
+// The volume that a triangle mesh bounds, by the divergence theorem.
+template <typename Corner>
+double volumeOf(std::size_t triangles, const Corner& corner) {
+  double six = 0;
+  for (std::size_t i = 0; i < triangles; ++i) {
+    const std::array<double, 3> a = corner(i, 0), b = corner(i, 1), c = corner(i, 2);
+    six += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
+  }
+  return six / 6;
+}
+
+TEST_F(PackingCommands, SurfacesAreWrittenForOtherPrograms) {
+  writeFile(path("tetra.obj"), kTetrahedron);
+  succeed("convert box box.obj");
+  succeed("pack tetra.obj --spheres 10 -o tetra.cbor");
+  succeed("convert tetra.cbor again.obj");
+  EXPECT_NEAR(json("pack again.obj --spheres 10 -o again.cbor")["volume"].get<double>(), 1.0 / 6, 1e-6);
+
+  std::stringstream lines(readFile(path("box.obj")));
+  std::vector<std::array<double, 3>> vertices;
+  std::vector<std::array<std::size_t, 3>> faces;
+  for (std::string line; std::getline(lines, line);) {
+    std::stringstream words(line.substr(2));
+    if (line[0] == 'v') {
+      std::array<double, 3> v{};
+      words >> v[0] >> v[1] >> v[2];
+      vertices.push_back(v);
+    } else {
+      std::array<std::size_t, 3> f{};
+      words >> f[0] >> f[1] >> f[2];
+      faces.push_back(f);
+    }
+  }
+  EXPECT_NEAR(
+      volumeOf(faces.size(),
+               [&](std::size_t i, int k) { return vertices.at(faces[i][static_cast<std::size_t>(k)] - 1); }),
+      1, 1e-6);
+
+  succeed("convert box box.stl");
+  const std::string stl = readFile(path("box.stl"));
+  ASSERT_EQ(stl.size(), 84 + 50 * faces.size());
+  EXPECT_NEAR(volumeOf(faces.size(),
+                       [&](std::size_t i, int k) {
+                         float p[3];
+                         std::memcpy(p, stl.data() + 84 + 50 * i + 12 * static_cast<std::size_t>(k + 1),
+                                     sizeof p);
+                         return std::array<double, 3>{p[0], p[1], p[2]};
+                       }),
+              1, 1e-6);
+  writeFile(path("spheres.xyzr"), "0 0 0 1\n");
+  refuse("convert spheres.xyzr spheres.obj", 3, {"surface"});
+  refuse("convert box box.cbor", 3, {"box", "pack"});
 }
 
 TEST_F(PackingCommands, TheSameBytesForAnyNumberOfThreads) {

@@ -194,6 +194,12 @@ TEST_F(SceneRun, BadInputIsNamed) {
   refuse("scene run nut --mesh box", 2, {"nut", "pile"});
   refuse("scene run pile --dt 0", 2, {"--dt"});
   refuse("scene run pile --stiffness -1", 2, {"--stiffness", "-1"});
+  for (const std::string command :
+       {"scene run drop", "scene check drop", "scene gallery drop -o drop.html"}) {
+    refuse(command + " --seconds 1e-9", 2, {"1e-09 s", "single step"});
+    refuse(command + " --seconds 1e9", 2, {"1e+09 s", "ten million"});
+    refuse(command + " --seconds 1e308 --dt 1e-6", 2, {"1e+308 s", "ten million"});
+  }
   refuse("scene run pile --seconds -1", 2, {"--seconds", "-1"});
 }
 

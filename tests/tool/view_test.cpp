@@ -92,6 +92,12 @@ TEST_F(View, WithoutOutputsBothAreNamedAfterTheFile) {
   EXPECT_EQ(files(), (std::set<std::string>{"torus.cbor", "torus.html", "torus.png"}));
 }
 
+TEST_F(View, SaysWhichAxisPointsUp) {
+  const std::string view = "view torus.cbor --html torus.html --force";
+  EXPECT_NE(run(view).err.find("--up y"), std::string::npos);
+  EXPECT_NE(run(view + " --up y").err.find("--up z"), std::string::npos);
+}
+
 TEST_F(View, NamesCannotBreakThePage) {
   succeed("convert torus.cbor '<script>alert(1).cbor'");
   succeed("view '<script>alert(1).cbor' --html page.html");

@@ -1,5 +1,6 @@
 #include "file/file_io.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -28,6 +29,23 @@ using File = std::unique_ptr<FILE, Close>;
 bool exists(const std::string& path) {
   std::error_code error;
   return fs::exists(fs::symlink_status(path, error));
+}
+
+// The file that a symbolic link leads to, there or not; the path itself if it is none.
+std::string linkTarget(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  fs::path target = path;
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
+    target = target.parent_path() / fs::read_symlink(target, error);
+  }
+  return target.string();
+}
+
+// Gives a new file the permissions of the one that it will replace.
+bool keepMode(const std::string& replaced, FILE* file) {
+  struct stat old {};
+  return stat(replaced.c_str(), &old) != 0 || fchmod(fileno(file), old.st_mode & 07777) == 0;
 }
 
 }  // namespace
@@ -68,8 +86,9 @@ void writeFile(const std::string& path, const std::string& bytes, bool overwrite
     throw Error(ErrorCode::file_exists, path + " exists already; choose another name or ask for overwriting");
   }
   static std::atomic<unsigned> counter{0};
+  const std::string target = linkTarget(path);
   const std::string temporary =
-      path + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
+      target + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
   const auto fail = [&](int code) {
     throw Error(ErrorCode::write_failed, "cannot write " + path + " (" + std::strerror(code) +
                                              "); check the folder and the free space");
@@ -77,11 +96,12 @@ void writeFile(const std::string& path, const std::string& bytes, bool overwrite
   FILE* file = std::fopen(temporary.c_str(), "wbx");
   if (!file) fail(errno);
   errno = 0;
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const bool written =
+      keepMode(target, file) && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   const bool closed = std::fclose(file) == 0;
   int code = errno;
   if (written && closed) {
-    if (std::rename(temporary.c_str(), path.c_str()) == 0) return;
+    if (std::rename(temporary.c_str(), target.c_str()) == 0) return;
     code = errno;
   }
   std::remove(temporary.c_str());
