@@ -3,38 +3,50 @@
 #include <algorithm>
 #include <utility>
 
+#include "batch/results.hpp"
 #include "cpu/kernels.hpp"
 
 namespace innersphere {
 
-void CpuBackend::run(const std::vector<PreparedQuery>& queries, Want want, std::vector<core::Sums>& sums,
-                     Hits& hits) {
+void CpuBackend::start(const std::vector<PreparedQuery>& queries, Want want) {
+  queries_ = &queries;
+  want_ = want;
+  traverse();
+}
+
+void CpuBackend::finish(QueryResult& result) {
+  constexpr std::size_t kGrain = 64;
+  sorter_.run(*queries_, sums_, hits_, want_, workers_, result);
+  result.overlaps.resize(queries_->size());
+  workers_.forRanges(queries_->size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      result.overlaps[i] = toOverlap(toTotals(sums_[i], (*queries_)[i].setup.units));
+  });
+}
+
+void CpuBackend::traverse() {
   constexpr std::size_t kGrain = 16;  // clusters: some 512 spheres
-  first_.resize(queries.size() + 1);
+  first_.resize(queries_->size() + 1);
   first_[0] = 0;
-  for (std::size_t q = 0; q < queries.size(); ++q) first_[q + 1] = first_[q] + queries[q].clusters();
+  for (std::size_t q = 0; q < queries_->size(); ++q) first_[q + 1] = first_[q] + (*queries_)[q].clusters();
   while (true) {
-    sums.resize(queries.size());
-    for (core::Sums& sum : sums) sum.clear();
+    sums_.resize(queries_->size());
+    for (core::Sums& sum : sums_) sum.clear();
     cursor_ = 0;
-    workers_.forRanges(first_.back(), kGrain, [&](std::size_t begin, std::size_t end) {
-      walkRange(queries, begin, end, want, sums, hits);
-    });
-    hits.count = cursor_;
-    if (hits.count <= hits.room(wantsContacts(want))) return;
-    hits.reserve(hits.count, wantsContacts(want));  // now the room that is needed is known: walk again
+    workers_.forRanges(first_.back(), kGrain,
+                       [&](std::size_t begin, std::size_t end) { traverseRange(begin, end); });
+    hits_.count = cursor_;
+    if (hits_.count <= hits_.room(wantsContacts(want_))) return;
+    hits_.reserve(hits_.count, wantsContacts(want_));  // now the room that is needed is known: once more
   }
 }
 
-void CpuBackend::walkRange(const std::vector<PreparedQuery>& queries, std::size_t begin, std::size_t end,
-                           Want want, std::vector<core::Sums>& sums, Hits& hits) {
+void CpuBackend::traverseRange(std::size_t begin, std::size_t end) {
   auto next = std::upper_bound(first_.begin(), first_.end(), begin);
   while (begin < end) {
     const std::size_t q = static_cast<std::size_t>(next - first_.begin()) - 1;
     const std::size_t stop = std::min(end, *next);
-    if (begin < stop)
-      walkQuery(queries[q], static_cast<std::uint32_t>(q), begin - first_[q], stop - first_[q], want, sums[q],
-                hits);
+    if (begin < stop) traverseQuery(static_cast<std::uint32_t>(q), begin - first_[q], stop - first_[q]);
     begin = stop;
     ++next;
   }
@@ -165,14 +177,15 @@ void walkClusters(const PreparedQuery& query, std::size_t begin, std::size_t end
 
 }  // namespace
 
-void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin,
-                           std::size_t end, Want want, core::Sums& total, Hits& hits) {
-  if (want == Want::touch) {
+void CpuBackend::traverseQuery(std::uint32_t index, std::size_t begin, std::size_t end) {
+  const PreparedQuery& query = (*queries_)[index];
+  core::Sums& total = sums_[index];
+  if (want_ == Want::touch) {
     Toucher toucher(query.setup, total);
     if (!toucher.done()) walkClusters(query, begin, end, 1, toucher);
     return;
   }
-  Summer summer(query, index, want, hits, cursor_);
+  Summer summer(query, index, want_, hits_, cursor_);
   walkClusters(query, begin, end, kTogether, summer);
   if (summer.sums().pairs == 0) return;
   const tbb::spin_mutex::scoped_lock lock(locks_[index % locks_.size()]);

@@ -1,5 +1,4 @@
-// From what a backend found to what a caller gets: sums in floating point and, of the CPU, pairs sorted,
-// contacts of each sphere.
+// From the overlapping pairs that the CPU found to sorted pairs and the contacts of each sphere.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +10,6 @@
 #include "innersphere/query.hpp"
 
 namespace innersphere {
-
-core::Totals toTotals(const core::Sums& sums, const core::Units& units);
-
-Overlap toOverlap(const core::Totals& totals);
 
 /// Sorting makes the lists independent of the order in which hits were found; each sphere's contact is then
 /// summed in the order of its partners. Keeps its memory for the next batch.

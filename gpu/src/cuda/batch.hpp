@@ -16,7 +16,7 @@ static_assert(core::kClusterSize == kWarp, "a warp walks one cluster");
 constexpr unsigned kGroup = 32;  ///< clusters under one ball
 constexpr unsigned kItem = 8;    ///< neighbouring clusters that a warp of a batch takes at once
 
-/// Two neighbours in a list, as halves, the first one's below: see cuda_entries.hpp.
+/// Two neighbours in a list, as halves, the first one's below: see half_spheres.hpp.
 struct alignas(16) EntryPair {
   unsigned x, y, z, radius;
 };
@@ -85,7 +85,7 @@ struct Batch {
   unsigned count;
   DeviceSums* sums;  ///< zero before, and again after a single query
   Counters* counters;
-  unsigned long long* items;  ///< active clusters of all queries, kItem neighbours in each: see makeItem()
+  unsigned long long* items;  ///< active clusters of all queries, kItem neighbours in each: see packItem()
   /// Pairs of overlapping spheres: number of the query, sphere of A, sphere of B, so many bits each. Null if
   /// they are not wanted.
   unsigned long long* hits;

@@ -57,7 +57,7 @@ Query makeQuery(const PreparedQuery& from, Grids& grids) {
 
 }  // namespace
 
-std::size_t Part::endOf(const std::vector<PreparedQuery>& queries, std::size_t begin) {
+std::size_t BatchPart::endOf(const std::vector<PreparedQuery>& queries, std::size_t begin) {
   std::size_t items = 0, end = begin;
   unsigned bits_a = 0, bits_b = 0;
   for (; end < queries.size() && end - begin < kMostQueries; ++end) {
@@ -70,8 +70,8 @@ std::size_t Part::endOf(const std::vector<PreparedQuery>& queries, std::size_t b
   return end;
 }
 
-void Part::start(const Device& device, const std::vector<PreparedQuery>& queries, Range range, Want want,
-                 Workers& workers) {
+void BatchPart::start(const Device& device, const std::vector<PreparedQuery>& queries, Range range, Want want,
+                      Workers& workers) {
   device_ = device;
   range_ = range;
   want_ = want;
@@ -95,7 +95,7 @@ void Part::start(const Device& device, const std::vector<PreparedQuery>& queries
   launch();
 }
 
-void Part::gather(const std::vector<PreparedQuery>& queries, Workers& workers) {
+void BatchPart::gather(const std::vector<PreparedQuery>& queries, Workers& workers) {
   queries_.reserve(range_.size());
   workers.forRanges(range_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     const CurrentDevice current(device_.number);
@@ -105,7 +105,7 @@ void Part::gather(const std::vector<PreparedQuery>& queries, Workers& workers) {
   });
 }
 
-void Part::launch() {
+void BatchPart::launch() {
   const std::size_t count = range_.size();
   const bool single = count == 1;
   batch_.count = static_cast<unsigned>(count);
@@ -147,14 +147,14 @@ void Part::launch() {
 }
 
 /// Whether the kernels told the host that they are done.
-bool Part::walked() const {
+bool BatchPart::walked() const {
   const volatile HostSignal& signal = *signal_.data();
   if (range_.size() > 1) return signal.done == run_;
   return std::all_of(std::begin(signal.pieces), std::end(signal.pieces),
                      [&](unsigned long long piece) { return piece >> 32 == run_; });
 }
 
-void Part::takeResult() {
+void BatchPart::takeResult() {
   std::atomic_thread_fence(std::memory_order_acquire);
   const HostSignal& signal = *signal_.data();
   found_ = signal.found;
@@ -167,7 +167,7 @@ void Part::takeResult() {
   clean_ = true;
 }
 
-bool Part::advance() {
+bool BatchPart::advance() {
   if (stage_ == Stage::done) return true;
   if (stage_ == Stage::walk) {
     if (!walked()) {
@@ -195,14 +195,14 @@ bool Part::advance() {
   return true;
 }
 
-void Part::wait() {
+void BatchPart::wait() {
   constexpr int kSpins = 10000;  // some 10 us, before the driver is asked
   do {
     for (int spin = 0; stage_ == Stage::walk && !walked() && spin < kSpins; ++spin) continue;
   } while (!advance());
 }
 
-void Part::sort() {
+void BatchPart::sort() {
   if (found_ > hits_.capacity()) {  // now what is needed is known
     hits_.reserve(found_ + found_ / 8);
     launch();

@@ -22,7 +22,7 @@ struct Device {
 /// Keeps its memory from one run to the next. What goes to the device is one copy, or for a single query the
 /// arguments of its launch; sums come home through memory of the host that the kernels write to, so the host
 /// needs no copy and no call to the driver to have them.
-class Part {
+class BatchPart {
  public:
   struct Range {
     std::size_t begin = 0, end = 0;

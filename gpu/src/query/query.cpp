@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "batch/prepare.hpp"
-#include "cpu/cpu_queries.hpp"
+#include "cpu/cpu_backend.hpp"
 #include "cuda/cuda_backend.hpp"
 #include "innersphere/error.hpp"
 
@@ -84,7 +84,7 @@ struct QueryContext::Impl {
 
   QueryContextOptions options;
   Workers workers;
-  CpuQueries cpu;
+  CpuBackend cpu;
   std::unique_ptr<QueryBackend> cuda;
   bool looked_for_device = false;
   Backend last = Backend::cpu;
