@@ -13,8 +13,6 @@
 namespace innersphere {
 
 using core::Mat3;
-using core::Vec3f;
-using core::Vec3r;
 
 namespace {
 
@@ -29,7 +27,7 @@ bool finite(const Placement& placement) {
   return all(placement.rotation) && all(placement.translation) && std::isfinite(placement.scale);
 }
 
-double length(const Vec3r& v) {
+double length(const Vec3d& v) {
   const double squared = dot(v, v);
   return squared > 1e-280 && squared < 1e280 ? std::sqrt(squared) : std::hypot(v.x, v.y, v.z);
 }
@@ -80,7 +78,7 @@ Mat3<double> rotation(const Placement& placement, std::size_t index, const std::
       change.m[i] = 1.5 * identity - 0.5 * change.m[i];
     }
     if (step == 0) {
-      const Vec3r x{r.m[0], r.m[1], r.m[2]}, y{r.m[3], r.m[4], r.m[5]}, z{r.m[6], r.m[7], r.m[8]};
+      const Vec3d x{r.m[0], r.m[1], r.m[2]}, y{r.m[3], r.m[4], r.m[5]}, z{r.m[6], r.m[7], r.m[8]};
       if (!(worst <= kTolerance)) {
         fail(ErrorCode::bad_argument, index,
              "the rotation of " + name + " is off orthonormal by " + std::to_string(worst) +
@@ -113,19 +111,19 @@ struct Side {
 };
 
 /// Centre of a body's grid relative to the body's origin, in world axes.
-Vec3r centreInWorld(const Side& side) {
+Vec3d centreInWorld(const Side& side) {
   const Vec3f& c = side.grid.centre;
-  return side.matrix * Vec3r{c.x, c.y, c.z};
+  return side.matrix * Vec3d{c.x, c.y, c.z};
 }
 
 /// `between`: from the origin of the owner of the grid to that of the walker, world axes.
-core::Search makeSearch(const Side& walker, const Side& owner, const Vec3r& between, std::size_t index) {
+core::Search makeSearch(const Side& walker, const Side& owner, const Vec3d& between, std::size_t index) {
   const Mat3<double> to_owner = scaled(transposed(owner.matrix), 1 / (owner.scale * owner.scale));
   const Vec3f& centre = owner.grid.centre;
   core::Search search;
   search.matrix = product(to_owner, walker.matrix);
-  const Vec3r origin = to_owner * between;
-  search.offset = origin - Vec3r{centre.x, centre.y, centre.z};
+  const Vec3d origin = to_owner * between;
+  search.offset = origin - Vec3d{centre.x, centre.y, centre.z};
 
   // Candidates lie within reach of the grid, so their positions are rounded to single precision of that size;
   // the walk adds up about 20 such roundings. The transform is off by a few of double precision of the
@@ -146,8 +144,8 @@ core::Search makeSearch(const Side& walker, const Side& owner, const Vec3r& betw
 }
 
 /// The ball around all of a body's spheres.
-bool ballsMeet(const Side& a, const Side& b, const Vec3r& offset) {
-  const Vec3r between = offset + (centreInWorld(b) - centreInWorld(a));
+bool ballsMeet(const Side& a, const Side& b, const Vec3d& offset) {
+  const Vec3d between = offset + (centreInWorld(b) - centreInWorld(a));
   const double longest = length(offset) + a.scale * a.grid.reach + b.scale * b.grid.reach;
   const double reach =
       a.scale * a.grid.radius + a.margin + b.scale * b.grid.radius + b.margin + 1e-14 * longest;
@@ -211,9 +209,7 @@ PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estim
   const double scale_a = query.placement_a.scale, scale_b = query.placement_b.scale;
   const Side a{prepared.grid_a->plan().view, scaled(rotation_a, scale_a), scale_a, query.margin};
   const Side b{prepared.grid_b->plan().view, scaled(rotation_b, scale_b), scale_b, 0};
-  const Vec3d& ta = query.placement_a.translation;
-  const Vec3d& tb = query.placement_b.translation;
-  const Vec3r offset{tb[0] - ta[0], tb[1] - ta[1], tb[2] - ta[2]};
+  const Vec3d offset = query.placement_b.translation - query.placement_a.translation;
   core::Setup& setup = prepared.setup;
   setup.a = {a.grid, 0};
   setup.b = {b.grid, 0};

@@ -16,8 +16,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "core/vec3.hpp"
 #include "innersphere/geometry.hpp"
+#include "innersphere/vec3.hpp"
 
 namespace innersphere::core {
 

@@ -6,7 +6,7 @@
 
 #include "core/fixed_sum.hpp"
 #include "core/grid_view.hpp"
-#include "core/vec3.hpp"
+#include "core/mat3.hpp"
 
 namespace innersphere::core {
 
@@ -16,7 +16,7 @@ struct Frame {
   Mat3<double> matrix_a, matrix_b;  ///< scale times rotation
   double scale_a, scale_b;
   double margin_a, margin_b;  ///< every radius grows by it [m]
-  Vec3r offset;               ///< from the origin of A to that of B, axes of the world [m]
+  Vec3d offset;               ///< from the origin of A to that of B, axes of the world [m]
 };
 
 /// A body as a query sees it.
@@ -31,7 +31,7 @@ struct Body {
 /// picks candidates.
 struct Search {
   Mat3<double> matrix;  ///< from the packing's frame of the sphere that walks
-  Vec3r offset;         ///< from the grid's centre to the origin of that frame
+  Vec3d offset;         ///< from the grid's centre to the origin of that frame
   float ratio;          ///< of the scales
   float margin;         ///< of the spheres that walk
   float grid_margin;    ///< of those in the grid

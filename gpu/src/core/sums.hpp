@@ -34,7 +34,7 @@ INNERSPHERE_HD inline const Unit& unitOf(const Units& units, int term) {
 struct Terms {
   double terms[kTerms];
 
-  INNERSPHERE_HD void set(int term, const Vec3r& v) {
+  INNERSPHERE_HD void set(int term, const Vec3d& v) {
     terms[term] = v.x;
     terms[term + 1] = v.y;
     terms[term + 2] = v.z;
@@ -48,7 +48,7 @@ INNERSPHERE_HD inline void setTerms(const Pair& pair, const Contact& contact, Te
   terms.terms[kVolume] = volume;
   terms.set(kMoment, lensMoment(pair, contact));
   if (!kWrench) return;
-  const Vec3r force = volume * contact.n;
+  const Vec3d force = volume * contact.n;
   terms.set(kForce, force);
   terms.set(kTorque, cross(pair.b, force));  // the force is central, so any point of its line will do
   terms.set(kArea, rim * contact.n);

@@ -23,7 +23,7 @@ struct Probe {
 };
 
 INNERSPHERE_HD inline Probe makeProbe(const Search& search, const Sphere& s) {
-  const Vec3r p = search.matrix * Vec3r{s.x, s.y, s.z} + search.offset;
+  const Vec3d p = search.matrix * Vec3d{s.x, s.y, s.z} + search.offset;
   return {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
           search.ratio * s.radius + search.margin};
 }

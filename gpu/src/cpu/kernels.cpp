@@ -134,7 +134,7 @@ inline void sumContactsImpl(const HitValues* values, const std::uint32_t* order,
 }
 
 inline void nearestDirectionsImpl(const float* x, const float* y, const float* z, std::size_t count,
-                                  const core::Vec3f* directions, std::size_t direction_count,
+                                  const Vec3f* directions, std::size_t direction_count,
                                   std::uint32_t* nearest) {
   for (std::size_t first = 0; first < count; first += kLanes) {
     alignas(64) float best[kLanes];
@@ -142,7 +142,7 @@ inline void nearestDirectionsImpl(const float* x, const float* y, const float* z
     std::fill_n(best, kLanes, -2.0f);
     std::fill_n(found, kLanes, 0u);
     for (std::size_t d = 0; d < direction_count; ++d) {
-      const core::Vec3f n = directions[d];
+      const Vec3f n = directions[d];
       for (std::size_t k = 0; k < kLanes; ++k) {
         const float cosine = x[first + k] * n.x + y[first + k] * n.y + z[first + k] * n.z;
         const bool nearer = cosine > best[k];
@@ -183,7 +183,7 @@ inline void nearestDirectionsImpl(const float* x, const float* y, const float* z
       sumContactsImpl(values, order, heads, begin, end, contacts);                                         \
     }                                                                                                      \
     attributes static void nearestDirections(const float* x, const float* y, const float* z,               \
-                                             std::size_t count, const core::Vec3f* directions,             \
+                                             std::size_t count, const Vec3f* directions,                   \
                                              std::size_t direction_count, std::uint32_t* nearest) {        \
       nearestDirectionsImpl(x, y, z, count, directions, direction_count, nearest);                         \
     }                                                                                                      \

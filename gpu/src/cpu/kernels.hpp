@@ -58,8 +58,7 @@ struct CpuKernels {
   /// The first of some directions that is nearest to each unit vector. All are read, and all groups written,
   /// up to whole kLanes.
   void (*nearestDirections)(const float* x, const float* y, const float* z, std::size_t count,
-                            const core::Vec3f* directions, std::size_t direction_count,
-                            std::uint32_t* nearest);
+                            const Vec3f* directions, std::size_t direction_count, std::uint32_t* nearest);
 };
 
 /// Those that this processor knows, the best one first.

@@ -38,7 +38,7 @@ struct ListRange {
 /// What core::countsIn() asks of the centre of a partner, in cells from the edge of the grid: is it in this
 /// window? `inverse` is of the cells' size.
 struct CellWindow {
-  core::Vec3f half;
+  Vec3f half;
   float inverse;
   float lo[3], end[3];
 
@@ -83,7 +83,7 @@ struct LanesAny {
 
   /// A bit for each sphere with its centre in a window.
   static std::uint32_t within(const CellWindow& window, const SphereColumns& spheres) {
-    const core::Vec3f half = window.half;
+    const Vec3f half = window.half;
     std::uint32_t bits = 0;
     for (std::uint32_t k = 0; k < kLanes; ++k) {
       const float x = (spheres.x[k] + half.x) * window.inverse, y = (spheres.y[k] + half.y) * window.inverse,

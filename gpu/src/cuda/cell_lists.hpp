@@ -115,9 +115,9 @@ inline __device__ void fillGroup(const GridArrays& arrays, std::uint32_t cluster
   const bool valid = cluster < clusters;
   const Sphere s = valid ? arrays.clusters[cluster].ball : Sphere{};
   const auto upper = [&](float x) { return maximum(valid ? x + s.radius : -kMax); };
-  const core::Vec3f lo{-upper(-s.x), -upper(-s.y), -upper(-s.z)}, hi{upper(s.x), upper(s.y), upper(s.z)};
-  const core::Vec3f middle = core::middleOf(lo, hi);
-  const core::Vec3r d = core::Vec3r{s.x, s.y, s.z} - core::Vec3r{middle.x, middle.y, middle.z};
+  const Vec3f lo{-upper(-s.x), -upper(-s.y), -upper(-s.z)}, hi{upper(s.x), upper(s.y), upper(s.z)};
+  const Vec3f middle = core::middleOf(lo, hi);
+  const Vec3d d = Vec3d{s.x, s.y, s.z} - Vec3d{middle.x, middle.y, middle.z};
   const double radius = maximum(valid ? sqrt(dot(d, d)) + s.radius : 0.0);
   if (lane == 0) arrays.groups[group] = {middle.x, middle.y, middle.z, __double2float_ru(radius)};
 }

@@ -69,9 +69,8 @@ inline __device__ List listOf(const core::GridView& grid, const core::Lookup& lo
   constexpr float kEnd = 1 << core::kAxisBits;
   int tier = core::tierOf(grid, core::levelOf(lookup.smallest));
   const float scale = core::powerOfTwo(-(grid.finest + tier));
-  core::Vec3f cell{floorf((lookup.p.x + grid.half.x) * scale) + 1,
-                   floorf((lookup.p.y + grid.half.y) * scale) + 1,
-                   floorf((lookup.p.z + grid.half.z) * scale) + 1};
+  Vec3f cell{floorf((lookup.p.x + grid.half.x) * scale) + 1, floorf((lookup.p.y + grid.half.y) * scale) + 1,
+             floorf((lookup.p.z + grid.half.z) * scale) + 1};
   List list{};
   if (lookup.reach <= core::reachOf(grid, tier) && fminf(fminf(cell.x, cell.y), cell.z) >= 0 &&
       fmaxf(fmaxf(cell.x, cell.y), cell.z) < kEnd) {

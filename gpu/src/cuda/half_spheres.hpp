@@ -19,18 +19,18 @@ namespace innersphere::device {
 
 /// Where a list's spheres are measured from.
 struct CellFrame {
-  core::Vec3f middle;  ///< in edges, from the corner of the box around the grid
-  float scale;         ///< edges in a metre
+  Vec3f middle;  ///< in edges, from the corner of the box around the grid
+  float scale;   ///< edges in a metre
 };
 
 /// Of the cell with these coordinates; number 0 is before the first.
-inline __device__ CellFrame frameOf(const core::GridView& grid, int tier, const core::Vec3f& cell) {
-  return {cell - core::Vec3f{0.5f, 0.5f, 0.5f}, core::powerOfTwo(-(grid.finest + tier))};
+inline __device__ CellFrame frameOf(const core::GridView& grid, int tier, const Vec3f& cell) {
+  return {cell - Vec3f{0.5f, 0.5f, 0.5f}, core::powerOfTwo(-(grid.finest + tier))};
 }
 
 /// Of the list of all spheres: a cell around them.
 inline __device__ CellFrame frameOfAll(const core::GridView& grid) {
-  const core::Vec3f& half = grid.half;
+  const Vec3f& half = grid.half;
   const float scale = core::powerOfTwo(-core::levelOf(fmaxf(fmaxf(half.x, half.y), half.z)));
   return {scale * half, scale};
 }
@@ -57,9 +57,9 @@ constexpr float kHalfFloor = 1.0f / (1 << 11);  ///< in edges
 /// A copy of a ball at `p`, relative to the centre of the grid; its radius is in edges. Squares of halves
 /// reach to 65504, so what is beyond `farthest` becomes a ball about the middle that meets all that has to do
 /// with the cell.
-inline __device__ HalfBall halfBall(const core::GridView& grid, const CellFrame& frame, const core::Vec3f& p,
+inline __device__ HalfBall halfBall(const core::GridView& grid, const CellFrame& frame, const Vec3f& p,
                                     float radius, float farthest, float everything) {
-  const core::Vec3f at = frame.scale * (p + grid.half) - frame.middle;
+  const Vec3f at = frame.scale * (p + grid.half) - frame.middle;
   const bool far = !(fmaxf(fmaxf(fabsf(at.x), fabsf(at.y)), fmaxf(fabsf(at.z), radius)) <= farthest);
   const __half2 xy = __floats2half2_rn(at.x, at.y);
   const float z = __half2float(__float2half_rn(at.z));

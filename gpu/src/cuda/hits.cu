@@ -51,8 +51,8 @@ __global__ void evaluatePairs(const __grid_constant__ Batch batch, const __grid_
   const core::Pair pair = core::makePair(query.frame, load(a.spheres + query.grids[0]->places[bits.aOf(key)]),
                                          load(b.spheres + query.grids[1]->places[bits.bOf(key)]));
   const core::Contact contact = core::makeContact(pair);
-  const core::Vec3r moment = core::lensMoment(pair, contact);
-  const core::Vec3r area = contact.lens.rim_area * contact.n;
+  const Vec3d moment = core::lensMoment(pair, contact);
+  const Vec3d area = contact.lens.rim_area * contact.n;
   values[k] = {{contact.lens.volume, moment.x, moment.y, moment.z, area.x, area.y, area.z}};
   by_b[k] = static_cast<unsigned long long>(number) << bits.b | bits.bOf(key);
   order[k] = k;

@@ -101,9 +101,9 @@ inline __device__ void orderBuckets(const BuildPlan& plan, const GridArrays& gri
 inline __device__ Sphere ballAround(const Sphere& s, bool valid) {
   constexpr float kMax = 3.402823466e+38f;
   const auto upper = [&](float x) { return maximum(valid ? x : -kMax); };
-  const core::Vec3f lo{-upper(-s.x), -upper(-s.y), -upper(-s.z)}, hi{upper(s.x), upper(s.y), upper(s.z)};
-  const core::Vec3f middle = core::middleOf(lo, hi);
-  const core::Vec3r d = core::Vec3r{s.x, s.y, s.z} - core::Vec3r{middle.x, middle.y, middle.z};
+  const Vec3f lo{-upper(-s.x), -upper(-s.y), -upper(-s.z)}, hi{upper(s.x), upper(s.y), upper(s.z)};
+  const Vec3f middle = core::middleOf(lo, hi);
+  const Vec3d d = Vec3d{s.x, s.y, s.z} - Vec3d{middle.x, middle.y, middle.z};
   const double radius = maximum(valid ? sqrt(dot(d, d)) + s.radius : 0.0);
   return {middle.x, middle.y, middle.z, nextafterf(static_cast<float>(radius), INFINITY)};
 }

@@ -12,7 +12,6 @@
 namespace innersphere {
 
 using core::GridPlan;
-using core::Vec3r;
 
 namespace {
 
@@ -39,7 +38,7 @@ Sum sumOf(const Sphere* spheres, std::size_t count, const Sum& none) {
 /// What holds all spheres, and how many of each level there are.
 struct Measures {
   static constexpr int kLowest = -126;  ///< level of any radius
-  Vec3r hi{-kInfinity, -kInfinity, -kInfinity}, minus_lo = hi;
+  Vec3d hi{-kInfinity, -kInfinity, -kInfinity}, minus_lo = hi;
   double reach2 = 0;  ///< of the centres, from the origin
   float smallest = std::numeric_limits<float>::max(), largest = 0;
   std::array<std::uint32_t, 256> levels{};
@@ -54,7 +53,7 @@ struct Measures {
     ++levels[static_cast<std::size_t>(core::levelOf(s.radius) - kLowest)];
   }
   void add(const Measures& other) {
-    const Vec3r &h = other.hi, &l = other.minus_lo;
+    const Vec3d &h = other.hi, &l = other.minus_lo;
     hi = {std::max(hi.x, h.x), std::max(hi.y, h.y), std::max(hi.z, h.z)};
     minus_lo = {std::max(minus_lo.x, l.x), std::max(minus_lo.y, l.y), std::max(minus_lo.z, l.z)};
     reach2 = std::max(reach2, other.reach2);
@@ -67,12 +66,12 @@ struct Measures {
 /// Half the box and the radius of the ball around all spheres. Measured from the rounded centre, so that
 /// nothing of a small sphere far from the origin is lost.
 struct Extent {
-  Vec3r centre;
-  Vec3r half{0, 0, 0};
+  Vec3d centre;
+  Vec3d half{0, 0, 0};
   double radius = 0;
 
   void add(const Sphere& s) {
-    const Vec3r d = Vec3r{s.x, s.y, s.z} - centre;
+    const Vec3d d = Vec3d{s.x, s.y, s.z} - centre;
     const double r = s.radius;
     half = {std::max(half.x, std::fabs(d.x) + r), std::max(half.y, std::fabs(d.y) + r),
             std::max(half.z, std::fabs(d.z) + r)};

@@ -6,14 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "core/vec3.hpp"
 #include "innersphere/error.hpp"
+#include "innersphere/vec3.hpp"
 #include "patches/direction_groups.hpp"
 
 namespace innersphere {
-
-using core::Vec3f;
-using core::Vec3r;
 
 namespace {
 
@@ -28,24 +25,24 @@ struct Item {
   double weight;  ///< length of the area vector
 };
 
-Vec3r toVec(const std::array<float, 3>& v) {
+Vec3d toVec(const std::array<float, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
 /// Sums over the items of a patch; addition merges two patches.
 struct Group {
-  Vec3r area{0, 0, 0};
+  Vec3d area{0, 0, 0};
   double weight = 0;
   double volume = 0;
-  Vec3r moment{0, 0, 0};
+  Vec3d moment{0, 0, 0};
   double second[6] = {};  ///< xx, yy, zz, xy, xz, yz
 
   // What follows from them:
-  Vec3r normal{0, 0, 0}, centroid{0, 0, 0};
+  Vec3d normal{0, 0, 0}, centroid{0, 0, 0};
   double size = 0;
 
   void add(const Item& item) {
-    const Vec3r p{item.place.x, item.place.y, item.place.z}, weighted = item.weight * p;
+    const Vec3d p{item.place.x, item.place.y, item.place.z}, weighted = item.weight * p;
     area = area + toVec(item.contact->area);
     weight += item.weight;
     volume += item.contact->volume;
@@ -170,7 +167,7 @@ void mergeSmall(std::vector<Group>& groups, std::size_t max_groups, double exten
     auto best = groups.end();
     double best_cost = std::numeric_limits<double>::infinity();
     for (auto group = groups.begin(); group != groups.end(); ++group) {
-      const Vec3r apart = group->centroid - small->centroid;
+      const Vec3d apart = group->centroid - small->centroid;
       const double cost = 1 - dot(group->normal, small->normal) + inverse_extent2 * dot(apart, apart);
       if (group != small && (cost < best_cost || best == groups.end())) best = group, best_cost = cost;
     }
@@ -184,8 +181,8 @@ void mergeSmall(std::vector<Group>& groups, std::size_t max_groups, double exten
     std::rotate(std::upper_bound(groups.begin(), g, *g, larger), g, g + 1);
 }
 
-Patch toPatch(const Group& group, const Vec3r& origin) {
-  const Vec3r &n = group.normal, &c = group.centroid;
+Patch toPatch(const Group& group, const Vec3d& origin) {
+  const Vec3d& c = group.centroid;
   const double inverse = 1 / group.weight;
   const double* const second = group.second;
   const double xx = inverse * second[0] - c.x * c.x, yy = inverse * second[1] - c.y * c.y,
@@ -194,8 +191,8 @@ Patch toPatch(const Group& group, const Vec3r& origin) {
   Patch patch;
   patch.volume = group.volume;
   patch.area = group.size;
-  patch.normal = {n.x, n.y, n.z};
-  patch.centroid = {c.x + origin.x, c.y + origin.y, c.z + origin.z};
+  patch.normal = group.normal;
+  patch.centroid = c + origin;
   patch.covariance = {xx, xy, xz, xy, yy, yz, xz, yz, zz};
   return patch;
 }
@@ -237,10 +234,10 @@ void buildPatches(const SphereContact* contacts, std::size_t count, const PatchO
   items.clear();
   undirected.clear();
   scratch.directions.clear(count);
-  const Vec3r origin = toVec(contacts[0].centroid);
+  const Vec3d origin = toVec(contacts[0].centroid);
   Vec3f lo{0, 0, 0}, hi{0, 0, 0};
   for (const SphereContact* contact = contacts; contact != contacts + count; ++contact) {
-    const Vec3r area = toVec(contact->area), place = toVec(contact->centroid) - origin;
+    const Vec3d area = toVec(contact->area), place = toVec(contact->centroid) - origin;
     const Vec3f p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
     const double weight = std::sqrt(dot(area, area));
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
@@ -276,7 +273,7 @@ void buildPatches(const SphereContact* contacts, std::size_t count, const PatchO
     Group* nearest = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (Group& group : groups) {
-      const Vec3r way = group.centroid - Vec3r{item.place.x, item.place.y, item.place.z};
+      const Vec3d way = group.centroid - Vec3d{item.place.x, item.place.y, item.place.z};
       const double distance2 = dot(way, way);
       if (distance2 < least || !nearest) nearest = &group, least = distance2;
     }

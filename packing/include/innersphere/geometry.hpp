@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace innersphere {
+#include "innersphere/vec3.hpp"
 
-/// A point or vector [m]: x, y, z.
-using Vec3d = std::array<double, 3>;
+namespace innersphere {
 
 /// A 3x3 matrix, row-major: element (i, j) is m[3 * i + j].
 using Mat3d = std::array<double, 9>;

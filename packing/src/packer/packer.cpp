@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 #include "innersphere/error.hpp"
 #include "packer/cell_volumes.hpp"
 #include "packer/container.hpp"

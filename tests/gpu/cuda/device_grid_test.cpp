@@ -85,7 +85,7 @@ void expectEntries(const HashGrid& of_cpu, const device::Grid& header) {
   const core::GridView& grid = of_cpu.view();
   const std::uint32_t all = core::padded(grid.count);
   const auto entries = fetch(header.entries, (grid.listed_count + all) / 2);
-  const core::Vec3f& half = grid.half;
+  const Vec3f& half = grid.half;
   for (std::size_t slot = 0; slot < of_cpu.tableSize(); ++slot) {
     const core::Cell& cell = grid.cells[slot];
     if (cell.count == 0) continue;

@@ -36,7 +36,7 @@ void expectSoundLevels(const HashGrid& grid) {
 }
 
 /// What the cell of a point lists.
-std::set<std::uint32_t> listedAt(const GridView& view, int tier, const core::Vec3f& p) {
+std::set<std::uint32_t> listedAt(const GridView& view, int tier, const Vec3f& p) {
   core::CellBox box;
   std::set<std::uint32_t> places;
   if (!core::cellBox(view, tier, p, p, box)) return places;
@@ -60,8 +60,8 @@ void expectSoundLists(const HashGrid& grid) {
         double d[3], length = 0;
         for (double& x : d) x = random.uniform(-1, 1), length += x * x;
         const double step = reach * std::cbrt(random.uniform(0, 1)) / std::max(std::sqrt(length), 1e-3);
-        const core::Vec3f p{static_cast<float>(s.x + step * d[0]), static_cast<float>(s.y + step * d[1]),
-                            static_cast<float>(s.z + step * d[2])};
+        const Vec3f p{static_cast<float>(s.x + step * d[0]), static_cast<float>(s.y + step * d[1]),
+                      static_cast<float>(s.z + step * d[2])};
         const double slack = 1e-6 * view.radius;  // what rounding of the point may add
         if (step * std::sqrt(length) + slack < reach) {
           EXPECT_TRUE(listedAt(view, tier, p).count(k));
