@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/walk.hpp"
+#include "core/traversal.hpp"
 #include "grid/model_impl.hpp"
 #include "innersphere/error.hpp"
 
@@ -34,12 +34,12 @@ double length(const Vec3d& v) {
 
 constexpr int kExponentBias = 1023, kMantissaBits = 52;
 
-/// As std::ldexp(1, exponent), where that is a normal number.
+/// Equals std::ldexp(1, exponent), where that is a normal number.
 double powerOfTwo(int exponent) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + kExponentBias) << kMantissaBits);
 }
 
-/// As std::ilogb, of positive normal numbers.
+/// Equals std::ilogb of a positive normal number.
 int exponentOf(double x) {
   return static_cast<int>(std::bit_cast<std::uint64_t>(x) >> kMantissaBits) - kExponentBias;
 }
@@ -116,22 +116,24 @@ Vec3d centreInWorld(const Side& side) {
   return side.matrix * Vec3d{c.x, c.y, c.z};
 }
 
-/// `between`: from the origin of the owner of the grid to that of the walker, world axes.
-core::Search makeSearch(const Side& walker, const Side& owner, const Vec3d& between, std::size_t index) {
-  const Mat3<double> to_owner = scaled(transposed(owner.matrix), 1 / (owner.scale * owner.scale));
-  const Vec3f& centre = owner.grid.centre;
+/// `between`: from the origin of the owner of the grid to that of the query sphere, world axes.
+core::Search makeSearch(const Side& searching, const Side& searched, const Vec3d& between,
+                        std::size_t index) {
+  const Mat3<double> to_owner = scaled(transposed(searched.matrix), 1 / (searched.scale * searched.scale));
+  const Vec3f& centre = searched.grid.centre;
   core::Search search;
-  search.matrix = product(to_owner, walker.matrix);
+  search.matrix = product(to_owner, searching.matrix);
   const Vec3d origin = to_owner * between;
   search.offset = origin - Vec3d{centre.x, centre.y, centre.z};
 
   // Candidates lie within reach of the grid, so their positions are rounded to single precision of that size;
-  // the walk adds up about 20 such roundings. The transform is off by a few of double precision of the
+  // the traversal adds up about 20 such roundings. The transform is off by a few of double precision of the
   // longest of its vectors.
-  const double ratio = walker.scale / owner.scale;
-  const double margin = walker.margin / owner.scale, grid_margin = owner.margin / owner.scale;
-  const double reach = owner.grid.radius + margin + grid_margin;
-  const double longest = ratio * walker.grid.reach + length(origin) + length({centre.x, centre.y, centre.z});
+  const double ratio = searching.scale / searched.scale;
+  const double margin = searching.margin / searched.scale, grid_margin = searched.margin / searched.scale;
+  const double reach = searched.grid.radius + margin + grid_margin;
+  const double longest =
+      ratio * searching.grid.reach + length(origin) + length({centre.x, centre.y, centre.z});
   const double tolerance = reach / (1 << 18) + longest * 0x1p-48;
   if (!(ratio < 1e30) || !(tolerance < 1e30)) {
     fail(ErrorCode::bad_argument, index, "the bodies differ too much in scale");
@@ -152,10 +154,10 @@ bool ballsMeet(const Side& a, const Side& b, const Vec3d& offset) {
   return !(length(between) > reach);
 }
 
-/// Whether the ball around the walker's spheres meets the box around those of the grid.
-bool boxMeets(const Side& walker, const Side& owner, const core::Search& search) {
-  const Vec3f& c = walker.grid.centre;
-  return core::ballMeets(search, owner.grid, {c.x, c.y, c.z, walker.grid.radius});
+/// Whether the ball around the query sphere's spheres meets the box around those of the grid.
+bool boxMeets(const Side& searching, const Side& searched, const core::Search& search) {
+  const Vec3f& c = searching.grid.centre;
+  return core::ballMeets(search, searched.grid, {c.x, c.y, c.z, searching.grid.radius});
 }
 
 /// Units small enough to keep the smallest lens and large enough for all spheres to overlap all others,

@@ -36,16 +36,16 @@ INNERSPHERE_HD inline bool overlaps(const Pair& pair) {
   return pair.distance2 < sum * sum;
 }
 
-/// Who of the two finds the pair: the smaller sphere walks through the other's grid; of equals, that of A.
-INNERSPHERE_HD inline bool walksToPartner(const Pair& pair, bool from_a) {
-  const bool a_walks = pair.rb >= pair.ra;
-  return a_walks == from_a;
+/// Who of the two finds the pair: the smaller sphere traverses the other's grid; of equals, that of A.
+INNERSPHERE_HD inline bool searchesPartner(const Pair& pair, bool from_a) {
+  const bool a_searches = pair.rb >= pair.ra;
+  return a_searches == from_a;
 }
 
 /// True if a candidate of a cluster overlaps and is this side's to report.
-INNERSPHERE_HD inline bool isHit(const Pair& pair, bool from_a) {
-  const bool walks = walksToPartner(pair, from_a);
-  return overlaps(pair) ? walks : false;
+INNERSPHERE_HD inline bool isReported(const Pair& pair, bool from_a) {
+  const bool searches = searchesPartner(pair, from_a);
+  return overlaps(pair) ? searches : false;
 }
 
 /// An overlapping pair's lens, with the unit vector from a to b. Concentric spheres have no direction: n is

@@ -41,7 +41,7 @@ struct Terms {
   }
 };
 
-/// With kWrench all terms but the energy, otherwise the first kVolumeTerms.
+/// Sets all terms but the energy with kWrench, otherwise the first kVolumeTerms.
 template <bool kWrench>
 INNERSPHERE_HD inline void setTerms(const Pair& pair, const Contact& contact, Terms& terms) {
   const double volume = contact.lens.volume, rim = contact.lens.rim_area;
@@ -55,7 +55,7 @@ INNERSPHERE_HD inline void setTerms(const Pair& pair, const Contact& contact, Te
   terms.terms[kStiffness] = rim;
 }
 
-/// All terms with kWrench, otherwise the first kVolumeTerms.
+/// Makes all terms with kWrench, otherwise the first kVolumeTerms.
 template <bool kWrench>
 INNERSPHERE_HD inline Terms makeTerms(const Pair& pair) {
   const Contact contact = makeContact(pair);

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "batch/backend.hpp"
-#include "batch/hits.hpp"
+#include "batch/overlapping_pairs.hpp"
 #include "common/workers.hpp"
-#include "cpu/hit_sorter.hpp"
+#include "cpu/pair_sorter.hpp"
 
 namespace innersphere {
 
@@ -38,11 +38,11 @@ class CpuBackend : public QueryBackend {
   const std::vector<PreparedQuery>* queries_ = nullptr;
   Want want_ = Want::wrench;
   std::vector<core::Sums> sums_;
-  Hits hits_;
-  HitSorter sorter_;
+  OverlappingPairs found_pairs_;
+  PairSorter sorter_;
   std::vector<std::size_t> first_;         ///< clusters of all queries before each
   std::array<tbb::spin_mutex, 64> locks_;  ///< of the sums, by query modulo their number
-  std::atomic<std::size_t> cursor_{0};     ///< where the next hits go
+  std::atomic<std::size_t> cursor_{0};     ///< where the next overlapping pairs go
 };
 
 }  // namespace innersphere

@@ -107,7 +107,7 @@ class CudaBackend : public QueryBackend {
   }
 
   template <typename T>
-  void append(const device::HitList<T>& from, BatchPart::Range range, QueryResult::Ranges<T>& to) {
+  void append(const device::PinnedList<T>& from, BatchPart::Range range, QueryResult::Ranges<T>& to) {
     constexpr std::size_t kGrain = 4096;
     const std::size_t before = to.first[range.begin], count = from.first.data()[range.size()];
     to.items.resize(before + count);

@@ -21,7 +21,7 @@ struct Threads {
 
   __device__ unsigned lane() const { return static_cast<unsigned>(first % kWarp); }
 
-  /// For warps. f gets a number and the lane.
+  /// Calls f(item, lane) with a warp for each item.
   template <typename F>
   __device__ void eachWarp(std::uint64_t items, const F& f) const {
     for (std::uint64_t i = first / kWarp; i < items; i += count / kWarp) f(i, lane());
@@ -129,17 +129,17 @@ inline __device__ void countCells(const SomeCells<std::uint32_t>& some, bool tog
 inline __device__ void makeClusters(const BuildPlan& plan, const GridArrays& grid, const BuildArrays& arrays,
                                     bool count, WarpCells& shared, const Threads& threads) {
   shared.clear(threads.lane());
-  threads.eachWarp(plan.jobs.all, [&](std::uint64_t number, unsigned lane) {
-    const ClusterJob job = clusterJob(plan, static_cast<unsigned>(number));
-    const bool valid = lane < job.count;
-    const Sphere s = valid ? loadNew(grid.spheres + job.first + lane) : Sphere{};
-    if (job.part == 0 && job.tier == 0) {
+  threads.eachWarp(plan.list_tasks.all, [&](std::uint64_t number, unsigned lane) {
+    const ListTask task = listTask(plan, static_cast<unsigned>(number));
+    const bool valid = lane < task.count;
+    const Sphere s = valid ? loadNew(grid.spheres + task.first + lane) : Sphere{};
+    if (task.slice == 0 && task.grid_level == 0) {
       const Sphere ball = ballAround(s, valid);
-      if (lane == 0) grid.clusters[job.cluster] = {ball, job.first, job.count};
+      if (lane == 0) grid.clusters[task.cluster] = {ball, task.first, task.count};
     }
     if (!count) return;
-    std::uint32_t* const counts = arrays.cell_counts + plan.tiers.first[job.tier];
-    forCells<std::uint32_t>(plan.tiers, job, plan.grid.centred(s), lane, shared.near,
+    std::uint32_t* const counts = arrays.cell_counts + plan.grid_levels.first[task.grid_level];
+    forCells<std::uint32_t>(plan.grid_levels, task, plan.grid.centred(s), lane, shared.near,
                             [&](const SomeCells<std::uint32_t>& some, bool together) {
                               countCells(some, together, counts, shared);
                             });

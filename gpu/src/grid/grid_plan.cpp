@@ -15,7 +15,7 @@ using core::GridPlan;
 
 namespace {
 
-constexpr double kListed = 8;  ///< cells of the finest tier that list a sphere, on average, at most
+constexpr double kListed = 8;  ///< cells of the finest grid level that list a sphere, on average, at most
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Adds all spheres up in some order, which must not matter: `Sum` has add(sphere) and add(other sum).
@@ -124,20 +124,21 @@ double cellsNear(double reach) {
   return 1 + reach * (6 + reach * (9.42 + reach * 4.19));
 }
 
-/// The finest tier for which cells are not too many.
-void chooseTiers(GridPlan& plan) {
-  int tier = 1;  // above the lowest level
-  for (; tier < plan.levels; ++tier) {
+/// The finest grid level for which cells are not too many.
+void chooseGridLevels(GridPlan& plan) {
+  int grid_level = 1;  // above the lowest level
+  for (; grid_level < plan.levels; ++grid_level) {
     double listed = 0;
     for (int level = 0; level < plan.levels; ++level) {
-      // A level's radii are from 1/4 to 1/2 of its cells, and walkers reach a quarter of the tier's.
+      // A level's radii are from 1/4 to 1/2 of its cells, and query spheres reach a quarter of the grid
+      // level's.
       listed += (plan.level_first[level + 1] - plan.level_first[level]) *
-                cellsNear(0.36 * std::ldexp(1.0, level - tier) + 0.25);
+                cellsNear(0.36 * std::ldexp(1.0, level - grid_level) + 0.25);
     }
     if (listed <= kListed * plan.view.count) break;
   }
-  plan.view.finest = plan.lowest_level + tier;
-  plan.view.tiers = plan.levels - tier + 1;
+  plan.view.finest = plan.lowest_level + grid_level;
+  plan.view.grid_levels = plan.levels - grid_level + 1;
 }
 
 }  // namespace
@@ -151,7 +152,7 @@ GridPlan planGrid(const Sphere* spheres, std::size_t count) {
   const Measures measures = sumOf(spheres, count, Measures{});
   measure(measures, spheres, count, plan);
   countLevels(measures, plan);
-  chooseTiers(plan);
+  chooseGridLevels(plan);
   return plan;
 }
 

@@ -13,7 +13,7 @@ namespace innersphere {
 /// them, with one lookup.
 class Occupancy {
  public:
-  /// Of `grid`, only the clusters and bounds are used.
+  /// Marks the cells near the spheres of a grid, of which only clusters and bounds are used.
   void build(const core::GridView& grid);
 
   /// False if the ball, which meets the bounds of the grid, meets none of its spheres. `p` is relative to the

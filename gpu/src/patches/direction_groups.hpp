@@ -15,7 +15,7 @@ class DirectionGroups {
   /// Makes room for some vectors.
   void clear(std::size_t most);
 
-  /// Of a length that is not zero.
+  /// Adds a vector whose length is not zero.
   void add(const Vec3d& vector, double length) {
     const double inverse = 1 / length;
     vectors_[count_] = vector;
@@ -30,7 +30,7 @@ class DirectionGroups {
   /// bins.
   std::uint32_t group(double max_angle);
 
-  /// Of vector number k, after group().
+  /// The group of vector number k, after group().
   std::uint32_t groupOf(std::size_t k) const { return groups_[k]; }
 
  private:

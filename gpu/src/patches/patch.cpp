@@ -14,9 +14,10 @@ namespace innersphere {
 
 namespace {
 
-/// A patch smaller than this share of the largest one is merged into a neighbour.
-constexpr double kSmallestShare = 0.05;
-/// A gap is a split if it is wider than this share of the extent, and too wide to be chance (see widestGap).
+/// A patch smaller than this fraction of the largest one is merged into a neighbour.
+constexpr double kSmallestPart = 0.05;
+/// A gap is a split if it is wider than this fraction of the extent, and too wide to be chance (see
+/// widestGap).
 constexpr float kSplitGap = 0.3f;
 
 struct Item {
@@ -163,7 +164,7 @@ void mergeSmall(std::vector<Group>& groups, std::size_t max_groups, double exten
   while (groups.size() > 1) {
     const auto small = std::max_element(groups.begin(), groups.end(), larger);
     const auto large = std::min_element(groups.begin(), groups.end(), larger);
-    if (groups.size() <= max_groups && !(small->size < kSmallestShare * large->size)) break;
+    if (groups.size() <= max_groups && !(small->size < kSmallestPart * large->size)) break;
     auto best = groups.end();
     double best_cost = std::numeric_limits<double>::infinity();
     for (auto group = groups.begin(); group != groups.end(); ++group) {
@@ -218,57 +219,50 @@ void orderByDirection(Scratch& scratch, std::uint32_t directions) {
     scratch.order[first[scratch.directions.groupOf(k)]++] = static_cast<std::uint32_t>(k);
 }
 
-}  // namespace
-
-void buildPatches(const SphereContact* contacts, std::size_t count, const PatchOptions& options,
-                  std::vector<Patch>& patches) {
-  if (options.max_patches == 0)
-    throw Error(ErrorCode::bad_argument, "max_patches is 0; it must be at least 1");
-  if (!(options.max_angle > 0)) throw Error(ErrorCode::bad_argument, "max_angle is not positive");
-  patches.clear();
-  if (count == 0) return;
-
-  static thread_local Scratch scratch;
-  std::vector<Item>&items = scratch.items, &undirected = scratch.undirected;
-  items.reserve(count);
-  items.clear();
-  undirected.clear();
+/// Lists the contacts as items, those without a direction apart. Returns the squared extent of their places.
+double gatherItems(const SphereContact* contacts, std::size_t count, const Vec3d& origin, Scratch& scratch) {
+  scratch.items.reserve(count);
+  scratch.items.clear();
+  scratch.undirected.clear();
   scratch.directions.clear(count);
-  const Vec3d origin = toVec(contacts[0].centroid);
   Vec3f lo{0, 0, 0}, hi{0, 0, 0};
   for (const SphereContact* contact = contacts; contact != contacts + count; ++contact) {
     const Vec3d area = toVec(contact->area), place = toVec(contact->centroid) - origin;
     const Vec3f p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
-    const double weight = std::sqrt(dot(area, area));
+    const double weight = norm(area);
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
     hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
     if (weight > 0) {
-      items.push_back({contact, p, weight});
+      scratch.items.push_back({contact, p, weight});
       scratch.directions.add(area, weight);
     } else {
-      undirected.push_back({contact, p, 0});
+      scratch.undirected.push_back({contact, p, 0});
     }
   }
-  if (items.empty()) return;
+  const Vec3f extent = hi - lo;
+  return dot(extent, extent);
+}
 
+/// Makes a group of each run of items with one direction and no wide gap.
+void makeGroups(const PatchOptions& options, Scratch& scratch) {
   const std::uint32_t directions = scratch.directions.group(options.max_angle);
   orderByDirection(scratch, directions);
   scratch.parts.clear();
   std::uint32_t* const order = scratch.order.data();
   for (std::uint32_t g = 0, begin = 0; g < directions; begin = scratch.first[g++]) {
-    if (begin < scratch.first[g]) splitPlace(items, {order + begin, order + scratch.first[g]}, scratch.parts);
+    if (begin < scratch.first[g])
+      splitPlace(scratch.items, {order + begin, order + scratch.first[g]}, scratch.parts);
   }
-  std::vector<Group>& groups = scratch.groups;
-  groups.clear();
+  scratch.groups.clear();
   for (const Run& part : scratch.parts) {
-    Group& group = groups.emplace_back();
-    for (const std::uint32_t* k = part.begin; k != part.end; ++k) group.add(items[*k]);
+    Group& group = scratch.groups.emplace_back();
+    for (const std::uint32_t* k = part.begin; k != part.end; ++k) group.add(scratch.items[*k]);
     group.update();
   }
-  const Vec3f extent = hi - lo;
-  mergeSmall(groups, options.max_patches, dot(extent, extent));
+}
 
-  // Spheres that are pushed from all sides equally have no direction; their volume goes to the nearest patch.
+/// Spheres that are pushed from all sides equally have no direction; their volume goes to the nearest patch.
+void addUndirected(const std::vector<Item>& undirected, std::vector<Group>& groups) {
   for (const Item& item : undirected) {
     Group* nearest = nullptr;
     double least = std::numeric_limits<double>::infinity();
@@ -279,7 +273,25 @@ void buildPatches(const SphereContact* contacts, std::size_t count, const PatchO
     }
     nearest->volume += item.contact->volume;
   }
-  for (const Group& group : groups) patches.push_back(toPatch(group, origin));
+}
+
+}  // namespace
+
+void buildPatches(const SphereContact* contacts, std::size_t count, const PatchOptions& options,
+                  std::vector<Patch>& patches) {
+  if (options.max_patches == 0)
+    throw Error(ErrorCode::bad_argument, "max_patches is 0; it must be at least 1");
+  if (!(options.max_angle > 0)) throw Error(ErrorCode::bad_argument, "max_angle is not positive");
+  patches.clear();
+  if (count == 0) return;
+  static thread_local Scratch scratch;
+  const Vec3d origin = toVec(contacts[0].centroid);
+  const double extent2 = gatherItems(contacts, count, origin, scratch);
+  if (scratch.items.empty()) return;
+  makeGroups(options, scratch);
+  mergeSmall(scratch.groups, options.max_patches, extent2);
+  addUndirected(scratch.undirected, scratch.groups);
+  for (const Group& group : scratch.groups) patches.push_back(toPatch(group, origin));
 }
 
 }  // namespace innersphere

@@ -14,7 +14,8 @@ namespace innersphere {
 namespace {
 
 /// Clusters of spheres in a batch from which on a launch on the device pays: the host waits 15 us for one, in
-/// which one core walks those of two packings of 400 spheres that overlap by a half, or of 3,200 that touch.
+/// which one core searches those of two packings of 400 spheres that overlap by a half, or of 3,200 that
+/// touch.
 constexpr std::size_t kDeviceClusters = 60;
 
 constexpr std::size_t kGrain = 64;  ///< queries of a batch that one thread prepares
@@ -152,7 +153,7 @@ Overlap QueryContext::overlap(const PairQuery& query, const QueryOptions& option
 
 void QueryContext::startOverlap(const PairQuery& query, const QueryOptions& options) {
   QueryOptions sums_only = options;
-  if (wantsHits(options.want)) sums_only.want = Want::wrench;
+  if (wantsPairs(options.want)) sums_only.want = Want::wrench;
   start(&query, 1, sums_only);
 }
 

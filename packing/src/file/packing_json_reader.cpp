@@ -62,7 +62,7 @@ class Entry {
     return {v[0], v[1], v[2]};
   }
 
-  /// As many as there are, in groups of `group`: from an array of numbers or a byte string.
+  /// All numbers of an array or of a byte string; their count must be a multiple of `group`.
   std::vector<float> floats(std::size_t group) const {
     return list<float>(
         group, [&](const json& x) { return static_cast<float>(Entry(x, path_).number()); },

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cases.hpp"
-#include "core/tier_cells.hpp"
+#include "core/grid_level.hpp"
 #include "cuda/device_grid.hpp"
 #include "device.hpp"
 #include "grid/hash_grid.hpp"
@@ -112,7 +112,7 @@ void expectSame(const HashGrid& of_cpu, const CudaGrid& of_device) {
   ASSERT_EQ(x.listed_count, y.listed_count);
   ASSERT_EQ(x.hash_shift, y.hash_shift);
   EXPECT_EQ(x.finest, y.finest);
-  EXPECT_EQ(x.tiers, y.tiers);
+  EXPECT_EQ(x.grid_levels, y.grid_levels);
   EXPECT_EQ(std::memcmp(&x.centre, &y.centre, sizeof x.centre), 0);
   EXPECT_EQ(std::memcmp(&x.half, &y.half, sizeof x.half), 0);
   EXPECT_EQ(x.radius, y.radius);
