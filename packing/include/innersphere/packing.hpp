@@ -44,7 +44,8 @@ struct Quality {
 inline constexpr std::array<double, 5> kOverlapBins{0, 0.01, 0.05, 0.15, 1};
 
 /// How far overlap volumes found with the spheres are from the truth. The packer measures this with the solid
-/// and copies of it at different places, 0.2 % to 45 % of its volume deep. Each array has a number for each bin of kOverlapBins.
+/// and copies of it at different places, 0.2 % to 45 % of its volume deep, unless PackOptions::overlap_errors
+/// is off. Each array has a number for each bin of kOverlapBins.
 struct OverlapErrors {
   struct Prefix {
     std::uint32_t count = 0;              ///< The length of the prefix, one that has volume-true radii.

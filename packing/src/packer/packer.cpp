@@ -223,11 +223,13 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   packing.quality = qualityOf(problem, chosen, arena);
   const std::vector<double> cell_volumes = addVolumeTrueRadii(problem, chosen, arena, report, packing);
   report("measuring", 0);
-  const Point centre = problem.container.fromWorld(packing.solid.centre_of_mass);
-  arena.execute([&] {
-    packing.overlap_errors =
-        findOverlapErrors(problem.container, chosen.balls, packing.volume_true, problem.volume, centre);
-  });
+  if (options.overlap_errors) {
+    const Point centre = problem.container.fromWorld(packing.solid.centre_of_mass);
+    arena.execute([&] {
+      packing.overlap_errors =
+          findOverlapErrors(problem.container, chosen.balls, packing.volume_true, problem.volume, centre);
+    });
+  }
   packing.solid.centre_of_mass = packing.solid.centre_of_mass - packing.origin;
   addMassWeights(cell_volumes, surface, packing);
   report("measuring", 1);
