@@ -70,8 +70,8 @@ Vec3d MovedSolid::to(const Vec3d& p) const {
 }
 
 ClosestPoint MovedSolid::closestPoint(const Vec3d& p, double cutoff) const {
-  const ClosestPoint hit = solid_->closestPoint(from(p), cutoff / scale_);
-  return {hit.distance * scale_, to(hit.point)};
+  const ClosestPoint found = solid_->closestPoint(from(p), cutoff / scale_);
+  return {found.distance * scale_, to(found.point)};
 }
 
 Bounds MovedSolid::bounds() const {

@@ -59,12 +59,12 @@ const PaperGrid::Bucket& PaperGrid::bucket(int level, const std::array<int, 3>& 
   return buckets_[hash & (buckets_.size() - 1)];
 }
 
-PaperGrid::Result PaperGrid::walk(const std::vector<Sphere>& walkers, const Placement& placement,
-                                  bool strictly) const {
+PaperGrid::Result PaperGrid::traverse(const std::vector<Sphere>& query_spheres, const Placement& placement,
+                                      bool strictly) const {
   Result result;
   const Mat3d& m = placement.rotation;
   const Vec3d& t = placement.translation;
-  for (const Sphere& w : walkers) {
+  for (const Sphere& w : query_spheres) {
     std::array<float, 3> p;
     for (std::size_t k = 0; k < 3; ++k)
       p[k] = static_cast<float>(m[3 * k] * w.x + m[3 * k + 1] * w.y + m[3 * k + 2] * w.z + t[k]);

@@ -36,9 +36,9 @@ class PaperGrid {
     std::size_t pairs = 0;
     double volume = 0;
   };
-  /// The spheres of `walkers` (placed relative to the grid) against those of the grid that are at least as
-  /// large (or, if `strictly`, larger).
-  Result walk(const std::vector<Sphere>& walkers, const Placement& placement, bool strictly) const;
+  /// The spheres of `query spheres` (placed relative to the grid) against those of the grid that are at least
+  /// as large (or, if `strictly`, larger).
+  Result traverse(const std::vector<Sphere>& query_spheres, const Placement& placement, bool strictly) const;
 
  private:
   const Bucket& bucket(int level, const std::array<int, 3>& cell) const;

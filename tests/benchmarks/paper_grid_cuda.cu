@@ -65,8 +65,8 @@ __device__ int exponentOf(float radius) {
   return fraction == 0.5f ? e - 1 : e;
 }
 
-__device__ void walk(const View& own, const View& grid, const Transform& to, bool strictly, unsigned i,
-                     float& volume, unsigned& pairs) {
+__device__ void traverse(const View& own, const View& grid, const Transform& to, bool strictly, unsigned i,
+                         float& volume, unsigned& pairs) {
   const Sphere w = own.spheres[i];
   const float p[3] = {to.m[0] * w.x + to.m[1] * w.y + to.m[2] * w.z + to.t[0],
                       to.m[3] * w.x + to.m[4] * w.y + to.m[5] * w.z + to.t[1],
@@ -115,14 +115,14 @@ __device__ void walk(const View& own, const View& grid, const Transform& to, boo
   }
 }
 
-__global__ void walkAll(View a, View b, const Pose* poses, Sum* sums) {
+__global__ void traverseAll(View a, View b, const Pose* poses, Sum* sums) {
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
   float volume = 0;
   unsigned pairs = 0;
   if (i < a.count) {
-    walk(a, b, poses[blockIdx.y].a_in_b, false, i, volume, pairs);
+    traverse(a, b, poses[blockIdx.y].a_in_b, false, i, volume, pairs);
   } else if (i < a.count + b.count) {
-    walk(b, a, poses[blockIdx.y].b_in_a, true, i - a.count, volume, pairs);
+    traverse(b, a, poses[blockIdx.y].b_in_a, true, i - a.count, volume, pairs);
   }
   for (int step = 16; step > 0; step /= 2) {
     volume += __shfl_xor_sync(0xffffffffu, volume, step);
@@ -181,7 +181,7 @@ PaperCuda runPaperOnDevice(const PaperGrid& a, const PaperGrid& b, const std::ve
     check(cudaMemcpyAsync(device_poses.get(), given.data(), given.size() * sizeof(Pose), cudaMemcpyDefault));
     check(cudaMemsetAsync(sums.get(), 0, result.size() * sizeof(Sum)));
     check(cudaEventRecord(start));
-    walkAll<<<blocks, 128>>>(view_a, view_b, device_poses.get(), sums.get());
+    traverseAll<<<blocks, 128>>>(view_a, view_b, device_poses.get(), sums.get());
     check(cudaGetLastError());
     check(cudaEventRecord(stop));
     check(cudaMemcpy(result.data(), sums.get(), result.size() * sizeof(Sum), cudaMemcpyDefault));

@@ -199,8 +199,8 @@ void paper(const Packing& a, const Packing& b) {
     const benchmarks::PaperGrid grid_a(a.spheres), grid_b(b.spheres);
     benchmarks::PaperGrid::Result from_a, from_b;
     const Times times = measure(5, [&, &b_in_a = b_in_a, &a_in_b = a_in_b] {
-      from_a = grid_b.walk(a.spheres, a_in_b, false);
-      from_b = grid_a.walk(b.spheres, b_in_a, true);
+      from_a = grid_b.traverse(a.spheres, a_in_b, false);
+      from_b = grid_a.traverse(b.spheres, b_in_a, true);
     });
     std::printf("| %s | %zu | %.0f | %zu, %zu |\n", scene.name, from_a.pairs + from_b.pairs, times.median,
                 grid_a.overflows(), grid_b.overflows());

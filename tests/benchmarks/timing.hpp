@@ -29,7 +29,7 @@ inline double median(const std::vector<double>& values) {
 }
 
 /// Calls work(i) for all i < count, pass after pass. The least time of each [us]: what it takes when nothing
-/// else disturbs. Passes are interleaved, so that a disturbance hits all kinds of work alike.
+/// else disturbs. Passes are interleaved, so that a disturbance overlapping pairs all kinds of work alike.
 template <typename Work>
 std::vector<double> leastTimes(std::size_t count, std::size_t passes, const Work& work) {
   std::vector<double> least(count, 1e300);

@@ -1,4 +1,4 @@
-// Overlap queries that keep to a time or to an amount of work, and say how exact they are.
+// Overlap queries within a limit of time or work, which say how exact they are.
 #pragma once
 
 #include <cstdint>
@@ -8,37 +8,43 @@
 
 namespace innersphere {
 
-/// What a query may cost. Where both are given both hold.
+/// What a query may cost. If both limits are set, both hold.
 struct QueryBudget {
-  double seconds = 0;  ///< as the caller's clock sees it; 0: any. Kept as well as earlier queries foretell it
-  std::uint64_t spheres = 0;  ///< of both bodies together; 0: any. The work is proportional to them
+  /// The time by the caller's clock [s]. 0: no limit. It is predicted from earlier queries and may be
+  /// exceeded.
+  double seconds = 0;
+  /// The number of spheres of both bodies together, to which the work is proportional. 0: no limit.
+  std::uint64_t spheres = 0;
 };
 
+/// The result of a query within a budget.
 struct BoundedOverlap {
   Overlap overlap;
-  std::uint32_t prefix_a = 0;  ///< spheres that were used
-  std::uint32_t prefix_b = 0;
-  /// Expected |relative error| of the volume: what was measured when the worse of the two packings was made,
-  /// for overlaps that are as deep (see Packing::overlap_errors). NaN if nothing overlaps or was measured.
+  std::uint32_t prefix_a = 0;  ///< The number of spheres of A that were used.
+  std::uint32_t prefix_b = 0;  ///< The number of spheres of B that were used.
+  /// The expected |relative error| of the volume. It was measured for overlaps of this depth when the worse
+  /// of the two packings was made (see Packing::overlap_errors). NaN if nothing overlaps or nothing was
+  /// measured.
   double error = 0;
 };
 
 /// Runs single queries with the longest prefixes that a budget allows. Both bodies use 64, 128, 256, ...
-/// spheres, up to all they have. What a step will take is foretold from the slowest of the last few queries
-/// and from how the steps were seen to compare, so it is right as long as bodies move little from one query
-/// to the next. Use one for each pair of bodies.
+/// spheres, up to all they have. The time of such a step is predicted from the slowest of the last few
+/// queries and from the measured ratios of the steps. The prediction holds as long as bodies move little from
+/// one query to the next. Use one object for each pair of bodies.
 class BoundedQuery {
  public:
-  /// The context must outlive this.
+  /// The context must outlive this object.
   explicit BoundedQuery(QueryContext& context) : context_(context) {}
 
-  /// Runs the query with each step, so that all grids are there and the steps are compared: give it a pose
-  /// where the bodies overlap. Without it each step is taken to be twice as slow as the one before until it
-  /// was tried, and the first query with a step also builds its grids.
+  /// Runs the query with each step, which builds all grids and compares the steps. Give it a pose where the
+  /// bodies overlap. Without a warm-up each step counts as twice as slow as the one before until it was
+  /// tried, and the first query with a step also builds its grids.
   void warmUp(const PairQuery& query, const QueryOptions& options = {});
 
-  /// At least the shortest step, whatever the budget. Prefixes of the query are upper bounds. Throws as
-  /// QueryContext::run; bad_argument for seconds that are negative or not a number.
+  /// Runs the query with the longest step that the budget allows, and with the shortest one in any case. The
+  /// prefixes of the query are upper bounds. Throws as QueryContext::run(), and bad_argument for seconds that
+  /// are negative or not a number.
   BoundedOverlap overlap(const PairQuery& query, const QueryBudget& budget, const QueryOptions& options = {});
 
  private:
@@ -48,13 +54,13 @@ class BoundedQuery {
   };
 
   std::size_t longestStep(const PairQuery& query, const QueryBudget& budget) const;
-  double foretold(std::size_t step) const;
+  double predicted(std::size_t step) const;
   Overlap timedRun(const PairQuery& query, const QueryOptions& options, std::size_t step);
   void learnGrowth(const Run& before, const Run& now);
 
   QueryContext& context_;
-  std::vector<double> growth_;  ///< how many times slower each step is than the one before; 0: never used
-  std::vector<Run> recent_;     ///< the last few queries, the newest last
+  std::vector<double> growth_;  ///< The time of each step over that of the one before. 0: never used.
+  std::vector<Run> recent_;     ///< The last few queries, the newest last.
 };
 
 }  // namespace innersphere

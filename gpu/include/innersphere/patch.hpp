@@ -10,26 +10,27 @@
 
 namespace innersphere {
 
-/// A part of an overlap region with one direction of contact. Same frames as Overlap: world axes, points
-/// relative to the origin of A.
+/// A part of an overlap region with one direction of contact. It has the frames of Overlap: vectors have the
+/// axes of the world, points are relative to the origin of A.
 struct Patch {
-  double volume = 0;   ///< [m^3]
-  double area = 0;     ///< [m^2], the length of the summed area vector
-  Vec3d normal{};      ///< unit, from A to B
-  Vec3d centroid{};    ///< area-weighted [m]
-  Mat3d covariance{};  ///< area-weighted second central moment of position [m^2]: how far the patch extends
-  /// Mean penetration depth V / area [m].
+  double volume = 0;   ///< The volume [m^3].
+  double area = 0;     ///< The length of the summed area vector [m^2].
+  Vec3d normal{};      ///< The unit normal, from A to B.
+  Vec3d centroid{};    ///< The area-weighted centroid [m].
+  Mat3d covariance{};  ///< The area-weighted second central moment of position [m^2]: how far the patch
+                       ///< extends.
+  /// Returns the mean penetration depth, volume / area [m].
   double depth() const { return area > 0 ? volume / area : 0; }
 };
 
 struct PatchOptions {
-  std::size_t max_patches = 4;  ///< smaller ones are merged into their nearest neighbour
-  double max_angle = 0.5;       ///< [rad] directions closer than this share a patch
+  std::size_t max_patches = 4;  ///< The number of patches, at most. Smaller ones are merged into neighbours.
+  double max_angle = 0.5;       ///< The angle [rad] within which directions share a patch.
 };
 
 /// Groups the contacts of one body's spheres by direction and place. Each sphere's vectors were summed over
-/// its partners first, so spheres deep inside the other body weigh little. Deterministic: depends only on the
-/// order of `contacts`.
+/// its partners first, so spheres deep inside the other body weigh little. The result depends on nothing but
+/// the contacts and their order.
 void buildPatches(const SphereContact* contacts, std::size_t count, const PatchOptions& options,
                   std::vector<Patch>& patches);
 

@@ -14,21 +14,20 @@ namespace innersphere {
 
 /// Where a query runs.
 enum class Backend {
-  automatic,  ///< by the amount of work, CUDA if it is compiled in and a device is there; the same pairs,
-              ///< sums within 1e-5
-  cpu,
-  cuda  ///< Error no_device if there is none: never a silent fallback
+  /// The CPU or, if there is enough work and a device, CUDA. Both find the same pairs and sums within 1e-5.
+  automatic,
+  cpu,   ///< The CPU.
+  cuda,  ///< CUDA. Error no_device if there is none: there is no silent fallback.
 };
 
-/// What is computed. Each value includes those before it, except that pairs come without contacts; asking for
-/// less costs less.
+/// What is computed. Asking for less costs less.
 enum class Want {
-  touch,          ///< only whether anything overlaps: pair_count is 0 or 1
-  volume,         ///< volume, centroid, pair_count
-  wrench,         ///< all of Overlap
-  contacts_of_a,  ///< also the contacts of each sphere of A: enough for buildPatches()
-  contacts,       ///< also those of B
-  pairs           ///< also the overlapping pairs, sorted by (a, b)
+  touch,          ///< Whether anything overlaps: pair_count is 0 or 1, all else is zero.
+  volume,         ///< The volume, the centroid and pair_count.
+  wrench,         ///< All of Overlap.
+  contacts_of_a,  ///< All of Overlap and the contacts of the spheres of A, which buildPatches() needs.
+  contacts,       ///< All of Overlap and the contacts of the spheres of A and of B.
+  pairs           ///< All of Overlap and the overlapping pairs, sorted by (a, b). No contacts.
 };
 
 /// Two bodies to collide.
@@ -37,48 +36,49 @@ struct PairQuery {
   const CollisionModel* b = nullptr;
   Placement placement_a;
   Placement placement_b;
-  /// Use only so many spheres of A, the largest ones; 0, or more than there are: all. Volume-true radii exist
-  /// for some lengths only: with Estimator::volume_true the query uses the longest of them that is not longer
-  /// than this (see volumeTrueRadii()), and exactly this many spheres with their raw radii if none is.
+  /// The number of spheres of A to use, the largest ones. 0, or more than there are: all. Volume-true radii
+  /// exist for some lengths only: with Estimator::volume_true the query uses the longest of these that is not
+  /// longer than this (see volumeTrueRadii()). If there is none, it uses exactly this many spheres with their
+  /// raw radii.
   std::uint32_t prefix_a = 0;
-  std::uint32_t prefix_b = 0;  ///< the same for B
-  /// [m], >= 0: pairs count as overlapping up to this distance. Every sphere of A grows by it, in all
+  std::uint32_t prefix_b = 0;  ///< The number of spheres of B to use, likewise.
+  /// The distance [m], >= 0, up to which pairs count as overlapping. Every sphere of A grows by it, in all
   /// results.
   double margin = 0;
 };
 
 struct QueryOptions {
-  Want want = Want::wrench;                      ///< what is not wanted is zero or empty in the result
-  Estimator estimator = Estimator::volume_true;  ///< of both bodies
+  Want want = Want::wrench;                      ///< What is not wanted is zero or empty in the result.
+  Estimator estimator = Estimator::volume_true;  ///< The radii of both bodies.
 };
 
 /// Results of a batch. Keep the object and pass it again: after warm-up nothing is allocated.
 struct QueryResult {
-  std::vector<Overlap> overlaps;  ///< one for each query, in order
+  std::vector<Overlap> overlaps;  ///< The overlap of each query, in their order.
 
-  /// Items of query i are items[first[i]] to items[first[i + 1]], i < overlaps.size().
+  /// Lists for all queries. Those of query i are items[first[i]] to items[first[i + 1]], without the last.
   template <typename T>
   struct Ranges {
     std::vector<T> items;
     std::vector<std::size_t> first;
   };
-  Ranges<SpherePair> pairs;          ///< Want::pairs
-  Ranges<SphereContact> contacts_a;  ///< Want::contacts_of_a: spheres of A that touch, by rising index
-  Ranges<SphereContact> contacts_b;  ///< Want::contacts: the same for B
+  Ranges<SpherePair> pairs;          ///< The pairs, with Want::pairs.
+  Ranges<SphereContact> contacts_a;  ///< Spheres of A that touch, by rising index.
+  Ranges<SphereContact> contacts_b;  ///< Spheres of B that touch, with Want::contacts.
 };
 
 struct QueryContextOptions {
   Backend backend = Backend::automatic;
-  int threads = 0;            ///< of the CPU backend; 0: all cores. The result does not depend on it.
-  bool time_kernels = false;  ///< for kernelTime(); a run then takes some microseconds longer
+  int threads = 0;  ///< The threads of the CPU backend. 0: all cores. The result does not depend on it.
+  bool time_kernels = false;  ///< Whether kernelTime() is measured, which takes some microseconds a run.
 };
 
-/// True if CUDA is compiled in and a device answers. Creates no CUDA context.
+/// Returns true if CUDA is compiled in and a device answers. Creates no CUDA context.
 bool cudaAvailable();
 
-/// Runs queries. Holds scratch memory and, after the first query that goes there, a stream of the device: use
-/// one context for each thread. All results are the same bits on every run, for any number of threads and any
-/// place in a batch; without a margin, swapping A and B negates force and area exactly.
+/// Runs queries. A context holds scratch memory and, after the first query on a device, a stream of that
+/// device. Use one context for each thread. Results have the same bits on every run, for any number of
+/// threads and any place in a batch. Without a margin, swapping A and B negates force and area exactly.
 class QueryContext {
  public:
   /// Throws Error no_device if CUDA was asked for by name and there is none.
@@ -92,29 +92,29 @@ class QueryContext {
   /// context stays usable and `result` as it was.
   void run(const PairQuery* queries, std::size_t count, const QueryOptions& options, QueryResult& result);
 
-  /// One pair, only its sums: contacts and pairs, where they are wanted, are left out.
+  /// Collides one pair and returns its sums. Contacts and pairs are left out, even if they are wanted.
   Overlap overlap(const PairQuery& query, const QueryOptions& options = {});
 
-  /// The same two calls in halves, so that the caller can do other things while a device works: start()
-  /// copies what it needs of the queries and returns, wait() gives what run() would, to the bit. On the CPU
-  /// start() does all the work. A context has one query under way; models must live until wait(). All errors,
-  /// also of a second start() or of a wait() without one, are thrown by wait(). Of long batches (some 2,000
-  /// pairs of 60,000 spheres, 32,000 of small packings) the device gets what follows while ready() or wait()
-  /// is called.
+  /// run() and overlap() in halves, so that the caller can do other things while a device works. start()
+  /// copies what it needs of the queries and returns; wait() gives what run() would, to the bit. On the CPU
+  /// start() does all the work. A context has one query under way, and models must live until wait(). All
+  /// errors are thrown by wait(), also those of a second start() or of a wait() without a start(). Long
+  /// batches (some 2,000 pairs of 60,000 spheres or 32,000 of small packings) go to the device in parts, of
+  /// which later ones start in ready() or wait().
   void start(const PairQuery* queries, std::size_t count, const QueryOptions& options);
   void wait(QueryResult& result);
   void startOverlap(const PairQuery& query, const QueryOptions& options = {});
   Overlap waitOverlap();
 
-  /// True if wait() will return at once. With contacts or pairs the device works in two steps,
-  /// the second of which begins when this is called after the first.
+  /// Returns true if wait() will return at once. With contacts or pairs the device works in two steps, and
+  /// the second step begins in the first call of ready() or wait() after the first step.
   bool ready();
 
-  /// The backend that the last run used: cpu or cuda.
+  /// Returns the backend that the last run used: cpu or cuda.
   Backend lastBackend() const;
 
-  /// How long the device worked on the last run, by its own clock [s]; 0 if that ran on the CPU or
-  /// QueryContextOptions::time_kernels is off. Copies of the results, where there are any, are not in it.
+  /// Returns how long the device worked on the last run, by its own clock [s]. 0 if the run was on the CPU or
+  /// QueryContextOptions::time_kernels is off. Copies of results are not included.
   double kernelTime() const;
 
   struct Impl;

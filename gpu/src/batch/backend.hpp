@@ -25,7 +25,7 @@ class QueryBackend {
   /// Waits for the batch. Leaves `result` as it was where it throws; the next batch may begin in either case.
   virtual void finish(QueryResult& result) = 0;
 
-  /// Of the last batch, on a device that was asked to take its time [s].
+  /// The time that a device worked on the last batch [s]; 0 if it is not measured.
   virtual double kernelTime() const { return 0; }
 };
 
@@ -33,7 +33,7 @@ inline bool wantsContacts(Want want) {
   return want == Want::contacts_of_a || want == Want::contacts;
 }
 
-inline bool wantsHits(Want want) {
+inline bool wantsPairs(Want want) {
   return wantsContacts(want) || want == Want::pairs;
 }
 

@@ -6,15 +6,13 @@
 #include <cstdint>
 #include <string>
 
-#include "core/walk.hpp"
+#include "core/traversal.hpp"
 #include "grid/model_impl.hpp"
 #include "innersphere/error.hpp"
 
 namespace innersphere {
 
 using core::Mat3;
-using core::Vec3f;
-using core::Vec3r;
 
 namespace {
 
@@ -29,19 +27,19 @@ bool finite(const Placement& placement) {
   return all(placement.rotation) && all(placement.translation) && std::isfinite(placement.scale);
 }
 
-double length(const Vec3r& v) {
+double length(const Vec3d& v) {
   const double squared = dot(v, v);
   return squared > 1e-280 && squared < 1e280 ? std::sqrt(squared) : std::hypot(v.x, v.y, v.z);
 }
 
 constexpr int kExponentBias = 1023, kMantissaBits = 52;
 
-/// As std::ldexp(1, exponent), where that is a normal number.
+/// Equals std::ldexp(1, exponent), where that is a normal number.
 double powerOfTwo(int exponent) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + kExponentBias) << kMantissaBits);
 }
 
-/// As std::ilogb, of positive normal numbers.
+/// Equals std::ilogb of a positive normal number.
 int exponentOf(double x) {
   return static_cast<int>(std::bit_cast<std::uint64_t>(x) >> kMantissaBits) - kExponentBias;
 }
@@ -80,7 +78,7 @@ Mat3<double> rotation(const Placement& placement, std::size_t index, const std::
       change.m[i] = 1.5 * identity - 0.5 * change.m[i];
     }
     if (step == 0) {
-      const Vec3r x{r.m[0], r.m[1], r.m[2]}, y{r.m[3], r.m[4], r.m[5]}, z{r.m[6], r.m[7], r.m[8]};
+      const Vec3d x{r.m[0], r.m[1], r.m[2]}, y{r.m[3], r.m[4], r.m[5]}, z{r.m[6], r.m[7], r.m[8]};
       if (!(worst <= kTolerance)) {
         fail(ErrorCode::bad_argument, index,
              "the rotation of " + name + " is off orthonormal by " + std::to_string(worst) +
@@ -113,27 +111,29 @@ struct Side {
 };
 
 /// Centre of a body's grid relative to the body's origin, in world axes.
-Vec3r centreInWorld(const Side& side) {
+Vec3d centreInWorld(const Side& side) {
   const Vec3f& c = side.grid.centre;
-  return side.matrix * Vec3r{c.x, c.y, c.z};
+  return side.matrix * Vec3d{c.x, c.y, c.z};
 }
 
-/// `between`: from the origin of the owner of the grid to that of the walker, world axes.
-core::Search makeSearch(const Side& walker, const Side& owner, const Vec3r& between, std::size_t index) {
-  const Mat3<double> to_owner = scaled(transposed(owner.matrix), 1 / (owner.scale * owner.scale));
-  const Vec3f& centre = owner.grid.centre;
+/// `between`: from the origin of the owner of the grid to that of the query sphere, world axes.
+core::Search makeSearch(const Side& searching, const Side& searched, const Vec3d& between,
+                        std::size_t index) {
+  const Mat3<double> to_owner = scaled(transposed(searched.matrix), 1 / (searched.scale * searched.scale));
+  const Vec3f& centre = searched.grid.centre;
   core::Search search;
-  search.matrix = product(to_owner, walker.matrix);
-  const Vec3r origin = to_owner * between;
-  search.offset = origin - Vec3r{centre.x, centre.y, centre.z};
+  search.matrix = product(to_owner, searching.matrix);
+  const Vec3d origin = to_owner * between;
+  search.offset = origin - Vec3d{centre.x, centre.y, centre.z};
 
   // Candidates lie within reach of the grid, so their positions are rounded to single precision of that size;
-  // the walk adds up about 20 such roundings. The transform is off by a few of double precision of the
+  // the traversal adds up about 20 such roundings. The transform is off by a few of double precision of the
   // longest of its vectors.
-  const double ratio = walker.scale / owner.scale;
-  const double margin = walker.margin / owner.scale, grid_margin = owner.margin / owner.scale;
-  const double reach = owner.grid.radius + margin + grid_margin;
-  const double longest = ratio * walker.grid.reach + length(origin) + length({centre.x, centre.y, centre.z});
+  const double ratio = searching.scale / searched.scale;
+  const double margin = searching.margin / searched.scale, grid_margin = searched.margin / searched.scale;
+  const double reach = searched.grid.radius + margin + grid_margin;
+  const double longest =
+      ratio * searching.grid.reach + length(origin) + length({centre.x, centre.y, centre.z});
   const double tolerance = reach / (1 << 18) + longest * 0x1p-48;
   if (!(ratio < 1e30) || !(tolerance < 1e30)) {
     fail(ErrorCode::bad_argument, index, "the bodies differ too much in scale");
@@ -146,18 +146,18 @@ core::Search makeSearch(const Side& walker, const Side& owner, const Vec3r& betw
 }
 
 /// The ball around all of a body's spheres.
-bool ballsMeet(const Side& a, const Side& b, const Vec3r& offset) {
-  const Vec3r between = offset + (centreInWorld(b) - centreInWorld(a));
+bool ballsMeet(const Side& a, const Side& b, const Vec3d& offset) {
+  const Vec3d between = offset + (centreInWorld(b) - centreInWorld(a));
   const double longest = length(offset) + a.scale * a.grid.reach + b.scale * b.grid.reach;
   const double reach =
       a.scale * a.grid.radius + a.margin + b.scale * b.grid.radius + b.margin + 1e-14 * longest;
   return !(length(between) > reach);
 }
 
-/// Whether the ball around the walker's spheres meets the box around those of the grid.
-bool boxMeets(const Side& walker, const Side& owner, const core::Search& search) {
-  const Vec3f& c = walker.grid.centre;
-  return core::ballMeets(search, owner.grid, {c.x, c.y, c.z, walker.grid.radius});
+/// Whether the ball around the query sphere's spheres meets the box around those of the grid.
+bool boxMeets(const Side& searching, const Side& searched, const core::Search& search) {
+  const Vec3f& c = searching.grid.centre;
+  return core::ballMeets(search, searched.grid, {c.x, c.y, c.z, searching.grid.radius});
 }
 
 /// Units small enough to keep the smallest lens and large enough for all spheres to overlap all others,
@@ -211,9 +211,7 @@ PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estim
   const double scale_a = query.placement_a.scale, scale_b = query.placement_b.scale;
   const Side a{prepared.grid_a->plan().view, scaled(rotation_a, scale_a), scale_a, query.margin};
   const Side b{prepared.grid_b->plan().view, scaled(rotation_b, scale_b), scale_b, 0};
-  const Vec3d& ta = query.placement_a.translation;
-  const Vec3d& tb = query.placement_b.translation;
-  const Vec3r offset{tb[0] - ta[0], tb[1] - ta[1], tb[2] - ta[2]};
+  const Vec3d offset = query.placement_b.translation - query.placement_a.translation;
   core::Setup& setup = prepared.setup;
   setup.a = {a.grid, 0};
   setup.b = {b.grid, 0};

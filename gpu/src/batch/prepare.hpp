@@ -9,16 +9,17 @@
 
 namespace innersphere {
 
+/// A query that was checked, with the grids of both bodies.
 struct PreparedQuery {
-  core::Setup setup;  ///< its grids have no arrays; see bringToCpu()
+  core::Setup setup;  ///< Its grids have no arrays; see bringToCpu().
   const ModelGrid* grid_a;
   const ModelGrid* grid_b;
 
   std::size_t clusters() const { return std::size_t{setup.a.clusters} + setup.b.clusters; }
 };
 
-/// The grids of neighbouring queries are often the same: found without the model's lock. Not for use by
-/// several threads.
+/// The grids of neighbouring queries are often the same and are then found without the model's lock. Each
+/// thread needs an object of its own.
 class KnownGrids {
  public:
   const ModelGrid& of(const CollisionModel& model, std::uint32_t prefix, Estimator estimator, int side);
@@ -33,11 +34,11 @@ class KnownGrids {
 };
 
 /// Throws Error as QueryContext::run says; `index` is the query's place in its batch, for messages. Bodies
-/// whose bounding balls or boxes are apart get no clusters to walk. Builds no grids. All calls with the same
-/// `grids` have one estimator.
+/// whose bounding balls or boxes are apart get no clusters to traverse. Builds no grids. All calls with the
+/// same `grids` have one estimator.
 PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estimator, KnownGrids& grids);
 
-/// For a walk on the CPU: builds the grids there if this is their first use.
+/// Builds the grids of a query on the CPU if this is their first use there.
 void bringToCpu(PreparedQuery& query);
 
 }  // namespace innersphere

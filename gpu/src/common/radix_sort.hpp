@@ -27,7 +27,7 @@ void sortByBits(T*& items, T*& spare, std::size_t count, const Key& key, int fro
   }
 }
 
-/// The same for vectors of one size.
+/// Sorts a vector by some bits of its keys; `spare` has its size.
 template <typename T, typename Key>
 void sortByBits(std::vector<T>& items, std::vector<T>& spare, const Key& key, int from, int bits) {
   T *first = items.data(), *second = spare.data();

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "core/vec3.hpp"
+#include "innersphere/vec3.hpp"
 
 namespace innersphere::core {
 

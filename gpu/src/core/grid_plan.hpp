@@ -1,5 +1,5 @@
-// What is known of a grid before its spheres are in order: bounds, levels and tiers. With it any processor
-// can build the rest, and all of them build the same.
+// What is known of a grid before its spheres are in order: bounds, size levels and grid levels. With it any
+// processor can build the rest, and all of them build the same.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +9,30 @@
 
 namespace innersphere::core {
 
-/// No packing has more: levels that are finer would need more bits of a coordinate than a key has.
+/// The number of size levels, at most: levels that are finer would need more bits of a coordinate than a key
+/// has.
 constexpr int kMostLevels = kAxisBits - 1;
 
+/// What a grid is going to be like. It depends on the spheres, not on their order.
 struct GridPlan {
-  GridView view;  ///< without arrays, and without what depends on the cells: listed_count and hash_shift
+  GridView view;  ///< Without arrays, and without what depends on the cells: listed_count and hash_shift.
   int lowest_level;
   int levels;
-  int curve_bits;                              ///< of a coordinate on the Hilbert curve
-  std::uint32_t level_first[kMostLevels + 1];  ///< place of the first sphere of each level; after them: count
+  int curve_bits;  ///< The bits of a coordinate on the Hilbert curve.
+  std::uint32_t
+      level_first[kMostLevels + 1];  ///< The place of the first sphere of each size level; then count.
 
-  /// Levels below a tier's look for partners elsewhere.
-  INNERSPHERE_HD std::uint32_t firstPlace(int tier) const {
-    return tier == 0 ? 0 : level_first[view.finest + tier - 1 - lowest_level];
+  /// The place of the first sphere that a grid level may list: smaller spheres are found on finer grid
+  /// levels.
+  INNERSPHERE_HD std::uint32_t firstPlace(int grid_level) const {
+    return grid_level == 0 ? 0 : level_first[view.finest + grid_level - 1 - lowest_level];
   }
 
-  /// By how many levels one is above the first that a tier lists; negative for those that it does not list.
-  /// The first tier lists all.
-  INNERSPHERE_HD int levelsAbove(int level, int tier) const {
-    const int first = view.finest + tier - 1 - lowest_level;
-    return tier == 0 && level < first ? 0 : level - first;
+  /// How many size levels one is above the first that a grid level lists; negative if it is not listed there.
+  /// The first grid level lists all.
+  INNERSPHERE_HD int levelsAbove(int level, int grid_level) const {
+    const int first = view.finest + grid_level - 1 - lowest_level;
+    return grid_level == 0 && level < first ? 0 : level - first;
   }
 
   INNERSPHERE_HD int levelAt(float radius) const {
@@ -36,7 +40,7 @@ struct GridPlan {
     return level > 0 ? level : 0;
   }
 
-  /// Of keyOf().
+  /// The number of bits of keyOf().
   INNERSPHERE_HD int keyBits() const {
     int bits = 3 * curve_bits;
     for (int last = levels - 1; last != 0; last >>= 1) ++bits;

@@ -1,27 +1,28 @@
 // The hierarchical hash grid as a query reads it (Weller, Frese, Zachmann 2013, with their level rule
 // corrected).
 //
-// A sphere of radius r has the level e with 2r <= 2^e < 4r. The paper has a grid for each level and lists a
-// sphere in the at most eight cells that it touches, so a walker looks into up to eight cells of its own
-// level and of every coarser one, and nearly all of them are empty.
+// A sphere of radius r has the size level e with 2r <= 2^e < 4r. The paper has a grid for each size level and
+// lists a sphere in the at most eight cells that it touches. So a query sphere looks into up to eight cells
+// of its own level and of every coarser one, and nearly all of them are empty.
 //
-// Here a walker looks into one cell. Its tier has cells of 2^t metres, four times the radius of the largest
-// walkers that come there, and a cell lists all spheres, of that level and of all coarser ones, that a walker
-// with its centre in the cell can meet. What the paper proves of cells holds for these, too: spheres that do
-// not overlap and are not smaller than a part of the cell can only be so many. Levels so fine that there
-// would be many more cells than spheres share the finest tier.
+// Here a query sphere looks into one cell. The cells of its grid level are 2^t metres wide, four times the
+// radius of the largest query spheres that look there. A cell lists all spheres, of that size level and of
+// all coarser ones, that a query sphere with its centre in the cell can meet. What the paper proves of cells
+// holds for these, too: only so many spheres that do not overlap and are not smaller than a part of the cell
+// can be there. Size levels so fine that there would be many more cells than spheres share the finest grid
+// level.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
-#include "core/vec3.hpp"
 #include "innersphere/geometry.hpp"
+#include "innersphere/vec3.hpp"
 
 namespace innersphere::core {
 
-/// Exponent e of the level of a radius: the smallest with 2 radius <= 2^e. Rises with the radius.
+/// The size level of a radius: the smallest exponent e with 2 radius <= 2^e. It rises with the radius.
 INNERSPHERE_HD inline int levelOf(float radius) {
   constexpr float kTiny = 1e-37f;  // keeps 2^-e finite
   if (!(radius > kTiny)) radius = kTiny;
@@ -35,25 +36,26 @@ INNERSPHERE_HD inline int levelOf(float radius) {
 constexpr int kAxisBits = 19;  ///< a cell coordinate has at most so many bits, whatever the packing
 constexpr std::uint32_t kClusterSize = 32;
 
-/// Lists begin at multiples of it, and are filled up with places of no sphere.
+/// Lists begin at multiples of this number, and are filled up with places of no sphere.
 constexpr std::uint32_t kListStep = 4;
 
-/// A cell: a run of GridView::listed. An empty slot of the table has none.
+/// A cell, which lists a run of GridView::listed. An empty slot of the table has count 0.
 struct alignas(16) Cell {
   std::uint64_t key;
   std::uint32_t first;
   std::uint32_t count;
 };
 
-/// Up to kClusterSize neighbours on one level: a run of spheres with a ball around them.
+/// Up to kClusterSize neighbours of one size level: a run of spheres with a ball around them.
 struct alignas(16) Cluster {
   Sphere ball;
   std::uint32_t first;
   std::uint32_t count;
 };
 
-INNERSPHERE_HD inline std::uint64_t cellKey(int tier, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  return static_cast<std::uint64_t>(tier) << (3 * kAxisBits) |
+INNERSPHERE_HD inline std::uint64_t cellKey(int grid_level, std::uint32_t x, std::uint32_t y,
+                                            std::uint32_t z) {
+  return static_cast<std::uint64_t>(grid_level) << (3 * kAxisBits) |
          static_cast<std::uint64_t>(z) << (2 * kAxisBits) | static_cast<std::uint64_t>(y) << kAxisBits | x;
 }
 
@@ -65,7 +67,7 @@ INNERSPHERE_HD inline float powerOfTwo(int exponent) {
   return x;
 }
 
-/// Cells of a tier, both ends included.
+/// Cells of a grid level, both ends included.
 struct CellBox {
   std::uint32_t lo[3];
   std::uint32_t hi[3];
@@ -75,35 +77,35 @@ struct CellBox {
 /// to `centre`, so that positions keep their digits in single precision where the packing is far from its
 /// origin.
 struct GridView {
-  const Sphere* spheres;     ///< `count` of them, by level and, within one, along a Hilbert curve
-  const Sphere* centred;     ///< the same, relative to `centre`, and one that meets nothing; CPU only
-  const std::uint32_t* ids;  ///< their indices in the packing
+  const Sphere* spheres;     ///< The `count` spheres by size level and, within one, along a Hilbert curve.
+  const Sphere* centred;     ///< The spheres relative to `centre`, and one that meets nothing. CPU only.
+  const std::uint32_t* ids;  ///< The indices of the spheres in the packing.
   const Cluster* clusters;
-  const Cell* cells;            ///< the hash table, at most half full
-  const std::uint32_t* listed;  ///< places of spheres: the lists of all cells
+  const Cell* cells;            ///< The hash table, at most half full.
+  const std::uint32_t* listed;  ///< The lists of all cells: places of spheres.
   std::uint32_t count;
   std::uint32_t cluster_count;
   std::uint32_t listed_count;
-  int hash_shift;  ///< 64 minus the bits of the table's size
-  int finest;      ///< exponent of the finest tier's cells
-  int tiers;
+  int hash_shift;  ///< 64 minus the bits of the table's size.
+  int finest;      ///< The exponent of the width of the finest grid level's cells.
+  int grid_levels;
   Vec3f centre;
-  Vec3f half;     ///< half the size of the box around all spheres
-  float radius;   ///< of a ball about `centre` around all spheres
-  float reach;    ///< of a ball about the packing's origin around all spheres
-  float largest;  ///< radius of any sphere
+  Vec3f half;     ///< Half the size of the box around all spheres.
+  float radius;   ///< The radius of a ball about `centre` around all spheres.
+  float reach;    ///< The radius of a ball about the packing's origin around all spheres.
+  float largest;  ///< The largest radius of any sphere.
 };
 
-/// The tier where a sphere of this level looks for partners that are at least as large; beyond the last one
-/// there are none.
-INNERSPHERE_HD inline int tierOf(const GridView& grid, int level) {
-  const int tier = level + 1 - grid.finest;
-  return tier > 0 ? tier : 0;
+/// The grid level where a sphere of this size level looks for partners that are at least as large. Beyond the
+/// last grid level there are none.
+INNERSPHERE_HD inline int gridLevelOf(const GridView& grid, int level) {
+  const int grid_level = level + 1 - grid.finest;
+  return grid_level > 0 ? grid_level : 0;
 }
 
-/// How far walkers of a tier may reach if they are to look into one cell only.
-INNERSPHERE_HD inline float reachOf(const GridView& grid, int tier) {
-  return powerOfTwo(grid.finest + tier - 2);
+/// How far query spheres of a grid level may reach if they are to look into one cell only.
+INNERSPHERE_HD inline float reachOf(const GridView& grid, int grid_level) {
+  return powerOfTwo(grid.finest + grid_level - 2);
 }
 
 constexpr std::uint64_t kHashFactor = 0x9e3779b97f4a7c15u;
@@ -139,10 +141,10 @@ INNERSPHERE_HD inline bool cellRange(float lo, float hi, float half, float inver
 
 }  // namespace detail
 
-/// The cells of a tier between two points (relative to the centre); false if all are outside the grid.
-INNERSPHERE_HD inline bool cellBox(const GridView& grid, int tier, const Vec3f& lo, const Vec3f& hi,
+/// The cells of a grid level between two points (relative to the centre); false if all are outside the grid.
+INNERSPHERE_HD inline bool cellBox(const GridView& grid, int grid_level, const Vec3f& lo, const Vec3f& hi,
                                    CellBox& box) {
-  const float k = powerOfTwo(-(grid.finest + tier));
+  const float k = powerOfTwo(-(grid.finest + grid_level));
   return detail::cellRange(lo.x, hi.x, grid.half.x, k, box.lo[0], box.hi[0]) &&
          detail::cellRange(lo.y, hi.y, grid.half.y, k, box.lo[1], box.hi[1]) &&
          detail::cellRange(lo.z, hi.z, grid.half.z, k, box.lo[2], box.hi[2]);

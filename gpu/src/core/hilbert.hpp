@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/vec3.hpp"
+#include "innersphere/vec3.hpp"
 
 namespace innersphere::core {
 

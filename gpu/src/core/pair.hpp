@@ -11,8 +11,8 @@ namespace innersphere::core {
 
 /// A pair in double precision and world axes.
 struct Pair {
-  Vec3r a, b;     ///< centres, each relative to the origin of its own body
-  Vec3r v;        ///< from the centre of a to that of b
+  Vec3d a, b;     ///< centres, each relative to the origin of its own body
+  Vec3d v;        ///< from the centre of a to that of b
   double ra, rb;  ///< radii, grown by the margin
   double distance2;
 };
@@ -21,8 +21,8 @@ struct Pair {
 /// changes places.
 INNERSPHERE_HD inline Pair makePair(const Frame& frame, const Sphere& a, const Sphere& b) {
   Pair pair;
-  pair.a = frame.matrix_a * Vec3r{a.x, a.y, a.z};
-  pair.b = frame.matrix_b * Vec3r{b.x, b.y, b.z};
+  pair.a = frame.matrix_a * Vec3d{a.x, a.y, a.z};
+  pair.b = frame.matrix_b * Vec3d{b.x, b.y, b.z};
   pair.v = frame.offset + (pair.b - pair.a);
   pair.ra = frame.scale_a * a.radius + frame.margin_a;
   pair.rb = frame.scale_b * b.radius + frame.margin_b;
@@ -36,16 +36,16 @@ INNERSPHERE_HD inline bool overlaps(const Pair& pair) {
   return pair.distance2 < sum * sum;
 }
 
-/// Who of the two finds the pair: the smaller sphere walks through the other's grid; of equals, that of A.
-INNERSPHERE_HD inline bool walksToPartner(const Pair& pair, bool from_a) {
-  const bool a_walks = pair.rb >= pair.ra;
-  return a_walks == from_a;
+/// Who of the two finds the pair: the smaller sphere traverses the other's grid; of equals, that of A.
+INNERSPHERE_HD inline bool searchesPartner(const Pair& pair, bool from_a) {
+  const bool a_searches = pair.rb >= pair.ra;
+  return a_searches == from_a;
 }
 
 /// True if a candidate of a cluster overlaps and is this side's to report.
-INNERSPHERE_HD inline bool isHit(const Pair& pair, bool from_a) {
-  const bool walks = walksToPartner(pair, from_a);
-  return overlaps(pair) ? walks : false;
+INNERSPHERE_HD inline bool isReported(const Pair& pair, bool from_a) {
+  const bool searches = searchesPartner(pair, from_a);
+  return overlaps(pair) ? searches : false;
 }
 
 /// An overlapping pair's lens, with the unit vector from a to b. Concentric spheres have no direction: n is
@@ -53,7 +53,7 @@ INNERSPHERE_HD inline bool isHit(const Pair& pair, bool from_a) {
 struct Contact {
   Balls balls;
   Lens lens;
-  Vec3r n;
+  Vec3d n;
 };
 
 INNERSPHERE_HD inline Contact makeContact(const Pair& pair) {
@@ -79,7 +79,7 @@ INNERSPHERE_HD inline Contact makeContact(const Pair& pair) {
 }
 
 /// Volume times centroid of the lens, relative to the origin of A.
-INNERSPHERE_HD inline Vec3r lensMoment(const Pair& pair, const Contact& contact) {
+INNERSPHERE_HD inline Vec3d lensMoment(const Pair& pair, const Contact& contact) {
   return contact.lens.volume * pair.a + contact.lens.moment * pair.v;
 }
 

@@ -1,28 +1,28 @@
-// One query of a batch, checked and brought into the form that the walk reads. Plain data: it is copied to
-// the device.
+// One query of a batch, checked and brought into the form that the traversal reads. Plain data: it is copied
+// to the device.
 #pragma once
 
 #include <cstdint>
 
 #include "core/fixed_sum.hpp"
 #include "core/grid_view.hpp"
-#include "core/vec3.hpp"
+#include "core/mat3.hpp"
 
 namespace innersphere::core {
 
-/// What takes two spheres into double precision and world axes. A body's own frame is scaled and rotated, not
-/// translated, into the axes of the world.
+/// The transforms that take spheres of both bodies into double precision and world axes. A body's own frame
+/// is scaled and rotated, not translated, into the axes of the world.
 struct Frame {
-  Mat3<double> matrix_a, matrix_b;  ///< scale times rotation
+  Mat3<double> matrix_a, matrix_b;  ///< Scale times rotation.
   double scale_a, scale_b;
-  double margin_a, margin_b;  ///< every radius grows by it [m]
-  Vec3r offset;               ///< from the origin of A to that of B, axes of the world [m]
+  double margin_a, margin_b;  ///< What every radius grows by [m].
+  Vec3d offset;               ///< From the origin of A to that of B, in axes of the world [m].
 };
 
 /// A body as a query sees it.
 struct Body {
   GridView grid;
-  std::uint32_t clusters;  ///< that walk through the other's grid: none if the bodies are apart
+  std::uint32_t clusters;  ///< The clusters that traverse the other's grid: 0 if the bodies are apart.
 };
 
 /// How spheres of one body are looked up in the other's grid, in that grid's lengths. The transform is in
@@ -30,15 +30,15 @@ struct Body {
 /// grid; the lookup then makes everything larger by `tolerance`, which is more than that rounding. It only
 /// picks candidates.
 struct Search {
-  Mat3<double> matrix;  ///< from the packing's frame of the sphere that walks
-  Vec3r offset;         ///< from the grid's centre to the origin of that frame
-  float ratio;          ///< of the scales
-  float margin;         ///< of the spheres that walk
-  float grid_margin;    ///< of those in the grid
+  Mat3<double> matrix;  ///< From the frame of the query sphere's packing.
+  Vec3d offset;         ///< From the grid's centre to the origin of that frame.
+  float ratio;          ///< The scale of the query spheres over that of the grid.
+  float margin;         ///< The margin of the query spheres.
+  float grid_margin;    ///< The margin of the spheres in the grid.
   float tolerance;
 };
 
-/// Of the sums, for each kind of quantity.
+/// The units of the sums, for each kind of quantity.
 struct Units {
   Unit volume, moment, torque, area, energy;
 };

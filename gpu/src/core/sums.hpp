@@ -34,28 +34,28 @@ INNERSPHERE_HD inline const Unit& unitOf(const Units& units, int term) {
 struct Terms {
   double terms[kTerms];
 
-  INNERSPHERE_HD void set(int term, const Vec3r& v) {
+  INNERSPHERE_HD void set(int term, const Vec3d& v) {
     terms[term] = v.x;
     terms[term + 1] = v.y;
     terms[term + 2] = v.z;
   }
 };
 
-/// With kWrench all terms but the energy, otherwise the first kVolumeTerms.
+/// Sets all terms but the energy with kWrench, otherwise the first kVolumeTerms.
 template <bool kWrench>
 INNERSPHERE_HD inline void setTerms(const Pair& pair, const Contact& contact, Terms& terms) {
   const double volume = contact.lens.volume, rim = contact.lens.rim_area;
   terms.terms[kVolume] = volume;
   terms.set(kMoment, lensMoment(pair, contact));
   if (!kWrench) return;
-  const Vec3r force = volume * contact.n;
+  const Vec3d force = volume * contact.n;
   terms.set(kForce, force);
   terms.set(kTorque, cross(pair.b, force));  // the force is central, so any point of its line will do
   terms.set(kArea, rim * contact.n);
   terms.terms[kStiffness] = rim;
 }
 
-/// All terms with kWrench, otherwise the first kVolumeTerms.
+/// Makes all terms with kWrench, otherwise the first kVolumeTerms.
 template <bool kWrench>
 INNERSPHERE_HD inline Terms makeTerms(const Pair& pair) {
   const Contact contact = makeContact(pair);

@@ -3,49 +3,63 @@
 #include <algorithm>
 #include <utility>
 
+#include "batch/results.hpp"
 #include "cpu/kernels.hpp"
 
 namespace innersphere {
 
-void CpuBackend::run(const std::vector<PreparedQuery>& queries, Want want, std::vector<core::Sums>& sums,
-                     Hits& hits) {
+void CpuBackend::start(const std::vector<PreparedQuery>& queries, Want want) {
+  queries_ = &queries;
+  want_ = want;
+  traverse();
+}
+
+void CpuBackend::finish(QueryResult& result) {
+  constexpr std::size_t kGrain = 64;
+  sorter_.run(*queries_, sums_, found_pairs_, want_, workers_, result);
+  result.overlaps.resize(queries_->size());
+  workers_.forRanges(queries_->size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      result.overlaps[i] = toOverlap(toTotals(sums_[i], (*queries_)[i].setup.units));
+  });
+}
+
+void CpuBackend::traverse() {
   constexpr std::size_t kGrain = 16;  // clusters: some 512 spheres
-  first_.resize(queries.size() + 1);
+  first_.resize(queries_->size() + 1);
   first_[0] = 0;
-  for (std::size_t q = 0; q < queries.size(); ++q) first_[q + 1] = first_[q] + queries[q].clusters();
+  for (std::size_t q = 0; q < queries_->size(); ++q) first_[q + 1] = first_[q] + (*queries_)[q].clusters();
   while (true) {
-    sums.resize(queries.size());
-    for (core::Sums& sum : sums) sum.clear();
+    sums_.resize(queries_->size());
+    for (core::Sums& sum : sums_) sum.clear();
     cursor_ = 0;
-    workers_.forRanges(first_.back(), kGrain, [&](std::size_t begin, std::size_t end) {
-      walkRange(queries, begin, end, want, sums, hits);
-    });
-    hits.count = cursor_;
-    if (hits.count <= hits.room(wantsContacts(want))) return;
-    hits.reserve(hits.count, wantsContacts(want));  // now the room that is needed is known: walk again
+    workers_.forRanges(first_.back(), kGrain,
+                       [&](std::size_t begin, std::size_t end) { traverseRange(begin, end); });
+    found_pairs_.count = cursor_;
+    if (found_pairs_.count <= found_pairs_.room(wantsContacts(want_))) return;
+    found_pairs_.reserve(found_pairs_.count,
+                         wantsContacts(want_));  // now the room that is needed is known: once more
   }
 }
 
-void CpuBackend::walkRange(const std::vector<PreparedQuery>& queries, std::size_t begin, std::size_t end,
-                           Want want, std::vector<core::Sums>& sums, Hits& hits) {
+void CpuBackend::traverseRange(std::size_t begin, std::size_t end) {
   auto next = std::upper_bound(first_.begin(), first_.end(), begin);
   while (begin < end) {
     const std::size_t q = static_cast<std::size_t>(next - first_.begin()) - 1;
     const std::size_t stop = std::min(end, *next);
-    if (begin < stop)
-      walkQuery(queries[q], static_cast<std::uint32_t>(q), begin - first_[q], stop - first_[q], want, sums[q],
-                hits);
+    if (begin < stop) traverseQuery(static_cast<std::uint32_t>(q), begin - first_[q], stop - first_[q]);
     begin = stop;
     ++next;
   }
 }
 
-/// Decides the candidates of one query, and sums what counts. Hits that find no room are only counted.
+/// Decides the candidates of one query, and sums what counts. Overlapping pairs that find no room are only
+/// counted.
 class CpuBackend::Summer : public CandidateSink {
  public:
-  Summer(const PreparedQuery& query, std::uint32_t index, Want want, Hits& hits,
+  Summer(const PreparedQuery& query, std::uint32_t index, Want want, OverlappingPairs& found_pairs,
          std::atomic<std::size_t>& cursor)
-      : setup_(query.setup), index_(index), want_(want), hits_(hits), cursor_(cursor) {
+      : setup_(query.setup), index_(index), want_(want), found_pairs_(found_pairs), cursor_(cursor) {
     sums_.clear();
   }
 
@@ -58,7 +72,7 @@ class CpuBackend::Summer : public CandidateSink {
     (all ? kernels.sumAll : kernels.sumVolumes)(setup_, from_a_, candidates, tally_);
     if (tally_.pairs > 0) {
       add(all ? core::kTerms : core::kVolumeTerms);
-      if (wantsHits(want_)) write(candidates);
+      if (wantsPairs(want_)) write(candidates);
     }
     candidates.count = 0;
     return true;
@@ -78,20 +92,20 @@ class CpuBackend::Summer : public CandidateSink {
   void write(const Candidates& candidates) {
     const bool with_values = wantsContacts(want_);
     const std::size_t at = cursor_.fetch_add(tally_.pairs, std::memory_order_relaxed);
-    if (at + tally_.pairs > hits_.room(with_values)) return;
-    const auto& as = from_a_ ? candidates.walker : candidates.partner;
-    const auto& bs = from_a_ ? candidates.partner : candidates.walker;
-    Hit* hit = hits_.items.data() + at;
+    if (at + tally_.pairs > found_pairs_.room(with_values)) return;
+    const auto& as = from_a_ ? candidates.query_sphere : candidates.partner;
+    const auto& bs = from_a_ ? candidates.partner : candidates.query_sphere;
+    OverlappingPair* found = found_pairs_.items.data() + at;
     for (std::size_t k = 0; k < candidates.count; ++k) {
-      if (tally_.hit[k]) *hit++ = {index_, setup_.a.grid.ids[as[k]], setup_.b.grid.ids[bs[k]]};
+      if (tally_.found[k]) *found++ = {index_, setup_.a.grid.ids[as[k]], setup_.b.grid.ids[bs[k]]};
     }
-    if (with_values) cpuKernels().writeValues(tally_, candidates.count, hits_.values.data() + at);
+    if (with_values) cpuKernels().writeValues(tally_, candidates.count, found_pairs_.values.data() + at);
   }
 
   const core::Setup& setup_;
   std::uint32_t index_;
   Want want_;
-  Hits& hits_;
+  OverlappingPairs& found_pairs_;
   std::atomic<std::size_t>& cursor_;
   bool from_a_ = true;
   Tally tally_;
@@ -107,12 +121,12 @@ class CpuBackend::Toucher : public CandidateSink {
   bool done() const { return touched_.load(std::memory_order_relaxed) != 0; }
 
   bool take(Candidates& candidates) override {
-    const auto& as = from_a_ ? candidates.walker : candidates.partner;
-    const auto& bs = from_a_ ? candidates.partner : candidates.walker;
+    const auto& as = from_a_ ? candidates.query_sphere : candidates.partner;
+    const auto& bs = from_a_ ? candidates.partner : candidates.query_sphere;
     for (std::size_t k = 0; k < candidates.count; ++k) {
       const core::Pair pair =
           core::makePair(setup_.frame, setup_.a.grid.spheres[as[k]], setup_.b.grid.spheres[bs[k]]);
-      if (core::isHit(pair, from_a_)) touched_.store(1, std::memory_order_relaxed);
+      if (core::isReported(pair, from_a_)) touched_.store(1, std::memory_order_relaxed);
     }
     candidates.count = 0;
     return !done();
@@ -128,27 +142,28 @@ namespace {
 
 constexpr std::size_t kTogether = 64;  ///< clusters, at most
 
-/// Walks those of the clusters begin..end (all of A's, then all of B's) that can meet the other body,
+/// Traverses those of the clusters begin..end (all of A's, then all of B's) that can meet the other body,
 /// `together` at a time, until the sink wants no more.
 template <typename Sink>
-void walkClusters(const PreparedQuery& query, std::size_t begin, std::size_t end, std::size_t together,
-                  Sink& sink) {
+void traverseClusters(const PreparedQuery& query, std::size_t begin, std::size_t end, std::size_t together,
+                      Sink& sink) {
   const core::Setup& setup = query.setup;
   const CpuKernels& kernels = cpuKernels();
   Candidates candidates;
   std::array<std::uint32_t, kTogether> clusters;
   for (const bool from_a : {true, false}) {
     sink.setFromA(from_a);
-    const core::Walker walker = core::walkerOf(setup, from_a);
+    const core::Traversal traversal = core::traversalOf(setup, from_a);
     const HashGrid& grid = (from_a ? query.grid_b : query.grid_a)->onCpu();
     const SphereColumns listed = grid.listedSpheres();
     std::size_t count = 0;
-    const auto walk = [&] {
+    const auto traverse = [&] {
       const std::size_t n = std::exchange(count, 0);
-      return kernels.walk(walker, listed, clusters.data(), n, candidates, sink) && sink.take(candidates);
+      return kernels.traverse(traversal, listed, clusters.data(), n, candidates, sink) &&
+             sink.take(candidates);
     };
     const auto meeting = [&](const Sphere* balls, std::uint32_t n) {
-      return kernels.ballsMeeting(walker, grid.occupancy(), balls, n);
+      return kernels.ballsMeeting(traversal, grid.occupancy(), balls, n);
     };
     const std::size_t before = from_a ? 0 : setup.a.clusters;
     const std::size_t all = from_a ? setup.a.clusters : setup.b.clusters;
@@ -157,23 +172,24 @@ void walkClusters(const PreparedQuery& query, std::size_t begin, std::size_t end
     const ClusterTree& tree = (from_a ? query.grid_a : query.grid_b)->onCpu().clusterTree();
     const bool go_on = tree.forMeeting(first, last, meeting, [&](std::size_t cluster) {
       clusters[count++] = static_cast<std::uint32_t>(cluster);
-      return count < together || walk();
+      return count < together || traverse();
     });
-    if (!go_on || !walk()) return;
+    if (!go_on || !traverse()) return;
   }
 }
 
 }  // namespace
 
-void CpuBackend::walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin,
-                           std::size_t end, Want want, core::Sums& total, Hits& hits) {
-  if (want == Want::touch) {
+void CpuBackend::traverseQuery(std::uint32_t index, std::size_t begin, std::size_t end) {
+  const PreparedQuery& query = (*queries_)[index];
+  core::Sums& total = sums_[index];
+  if (want_ == Want::touch) {
     Toucher toucher(query.setup, total);
-    if (!toucher.done()) walkClusters(query, begin, end, 1, toucher);
+    if (!toucher.done()) traverseClusters(query, begin, end, 1, toucher);
     return;
   }
-  Summer summer(query, index, want, hits, cursor_);
-  walkClusters(query, begin, end, kTogether, summer);
+  Summer summer(query, index, want_, found_pairs_, cursor_);
+  traverseClusters(query, begin, end, kTogether, summer);
   if (summer.sums().pairs == 0) return;
   const tbb::spin_mutex::scoped_lock lock(locks_[index % locks_.size()]);
   total.add(summer.sums());

@@ -1,38 +1,48 @@
-// The walk on the CPU, spread over threads by clusters of spheres.
+// Batches on the CPU, spread over threads by clusters of spheres.
 #pragma once
 
 #include <tbb/spin_mutex.h>
 
 #include <array>
 #include <atomic>
+#include <vector>
 
 #include "batch/backend.hpp"
-#include "batch/hits.hpp"
+#include "batch/overlapping_pairs.hpp"
 #include "common/workers.hpp"
+#include "cpu/pair_sorter.hpp"
 
 namespace innersphere {
 
-class CpuBackend {
+/// A batch is done when start() returns: the calling thread and the workers do it all.
+class CpuBackend : public QueryBackend {
  public:
   explicit CpuBackend(Workers& workers) : workers_(workers) {}
 
-  /// Sums over all overlapping pairs of each query, into sums[0 .. queries.size()). Want::touch gives only a
-  /// pair count of 0 or 1. With Want::contacts and Want::pairs all pairs also go into `hits`, which grows
-  /// where needed.
-  void run(const std::vector<PreparedQuery>& queries, Want want, std::vector<core::Sums>& sums, Hits& hits);
+  void start(const std::vector<PreparedQuery>& queries, Want want) override;
+  bool ready() override { return true; }
+  void finish(QueryResult& result) override;
 
  private:
   class Summer;
   class Toucher;
-  void walkRange(const std::vector<PreparedQuery>& queries, std::size_t begin, std::size_t end, Want want,
-                 std::vector<core::Sums>& sums, Hits& hits);
-  void walkQuery(const PreparedQuery& query, std::uint32_t index, std::size_t begin, std::size_t end,
-                 Want want, core::Sums& total, Hits& hits);
+
+  /// Traverses the grids of all queries and sums over the overlapping pairs of each. Want::touch gives only a
+  /// pair count of 0 or 1. With contacts or pairs wanted all pairs also go into `hits_`, which grows where
+  /// needed.
+  void traverse();
+  void traverseRange(std::size_t begin, std::size_t end);
+  void traverseQuery(std::uint32_t index, std::size_t begin, std::size_t end);
 
   Workers& workers_;
+  const std::vector<PreparedQuery>* queries_ = nullptr;
+  Want want_ = Want::wrench;
+  std::vector<core::Sums> sums_;
+  OverlappingPairs found_pairs_;
+  PairSorter sorter_;
   std::vector<std::size_t> first_;         ///< clusters of all queries before each
   std::array<tbb::spin_mutex, 64> locks_;  ///< of the sums, by query modulo their number
-  std::atomic<std::size_t> cursor_{0};     ///< where the next hits go
+  std::atomic<std::size_t> cursor_{0};     ///< where the next overlapping pairs go
 };
 
 }  // namespace innersphere

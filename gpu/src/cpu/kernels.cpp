@@ -49,24 +49,24 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
   constexpr int kTerms = kWrench ? core::kTerms : core::kVolumeTerms;
   SpherePairs<kSize> spheres;
   const std::size_t n = spheres.template load<Lanes>(
-      setup, (from_a ? candidates.walker : candidates.partner).data(),
-      (from_a ? candidates.partner : candidates.walker).data(), candidates.count);
+      setup, (from_a ? candidates.query_sphere : candidates.partner).data(),
+      (from_a ? candidates.partner : candidates.query_sphere).data(), candidates.count);
   double(*const terms)[kSize] = tally.terms;
-  alignas(64) std::int64_t hits[kSize];
+  alignas(64) std::int64_t found_pairs[kSize];
   const core::Frame frame = setup.frame;
   const std::int64_t last = static_cast<std::int64_t>(candidates.count);
   for (std::size_t k = 0; k < n; ++k) {
     core::Pair pair = core::makePair(frame, spheres.a(k), spheres.b(k));
-    const bool hit = static_cast<std::int64_t>(k) < last ? core::isHit(pair, from_a) : false;
-    hits[k] = hit ? 1 : 0;
+    const bool found = static_cast<std::int64_t>(k) < last ? core::isReported(pair, from_a) : false;
+    found_pairs[k] = found ? 1 : 0;
     const double sum = pair.ra + pair.rb;
-    pair.distance2 = hit ? pair.distance2 : sum * sum;  // two balls that touch from outside add nothing
+    pair.distance2 = found ? pair.distance2 : sum * sum;  // two balls that touch from outside add nothing
     const core::Terms added = core::makeTerms<kWrench>(pair);
     for (int i = 0; i < kTerms; ++i) terms[i][k] = added.terms[i];
   }
   tally.pairs = 0;
-  for (std::size_t k = 0; k < n; ++k) tally.pairs += static_cast<std::size_t>(hits[k]);
-  for (std::size_t k = 0; k < n; ++k) tally.hit[k] = static_cast<std::uint8_t>(hits[k]);
+  for (std::size_t k = 0; k < n; ++k) tally.pairs += static_cast<std::size_t>(found_pairs[k]);
+  for (std::size_t k = 0; k < n; ++k) tally.found[k] = static_cast<std::uint8_t>(found_pairs[k]);
   for (int i = 0; i < kTerms; ++i) {
     const core::Unit unit = core::unitOf(setup.units, i);
     core::ShortSum sum{0, 0};
@@ -76,52 +76,53 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
 }
 
 template <typename Lanes>
-inline void writeValuesImpl(const Tally& tally, std::size_t count, HitValues* values) {
+inline void writeValuesImpl(const Tally& tally, std::size_t count, ContactValues* values) {
   constexpr std::size_t kRows = Lanes::kRows;
-  static_assert(HitValues::kVolume == 1 && HitValues::kMoment == 2 && HitValues::kArea == 5);
+  static_assert(ContactValues::kVolume == 1 && ContactValues::kMoment == 2 && ContactValues::kArea == 5);
   const auto& terms = tally.terms;
   const double* const columns[] = {terms[core::kVolume],     terms[core::kMoment], terms[core::kMoment + 1],
                                    terms[core::kMoment + 2], terms[core::kArea],   terms[core::kArea + 1],
                                    terms[core::kArea + 2]};
   for (std::size_t k = 0; k < count; k += kRows) {
-    std::size_t here = 0, hits = 0;
-    for (; here < kRows && k + here < count; ++here) hits += tally.hit[k + here];
-    if (hits == kRows) {
+    std::size_t here = 0, found_pairs = 0;
+    for (; here < kRows && k + here < count; ++here) found_pairs += tally.found[k + here];
+    if (found_pairs == kRows) {
       Lanes::writeRows(columns, k, values);
       values += kRows;
       continue;
     }
-    HitValues rows[kRows];
+    ContactValues rows[kRows];
     Lanes::writeRows(columns, k, rows);
     for (std::size_t row = 0; row < here; ++row) {
-      if (tally.hit[k + row]) *values++ = rows[row];
+      if (tally.found[k + row]) *values++ = rows[row];
     }
   }
 }
 
-inline void addValues(const double* values, double (&sums)[HitValues::kCount]) {
-  for (std::size_t i = 0; i < HitValues::kCount; ++i) sums[i] += values[i];
+inline void addValues(const double* values, double (&sums)[ContactValues::kCount]) {
+  for (std::size_t i = 0; i < ContactValues::kCount; ++i) sums[i] += values[i];
 }
 
-/// Those of a sphere with many partners are summed in kContactShares shares, every so many of them, then
+/// The values of a sphere with many partners go to kPartialSums partial sums, every so many of them, then
 /// these sums: so a device can sum them side by side, to the same bits.
-inline void sumContactsImpl(const HitValues* values, const std::uint32_t* order, const std::size_t* heads,
+inline void sumContactsImpl(const ContactValues* values, const std::uint32_t* order, const std::size_t* heads,
                             std::size_t begin, std::size_t end, SphereContact* contacts) {
-  constexpr std::size_t kCount = HitValues::kCount, kMoment = HitValues::kMoment;
+  constexpr std::size_t kCount = ContactValues::kCount, kMoment = ContactValues::kMoment;
   for (std::size_t c = begin; c < end; ++c) {
-    const std::uint32_t* const hits = order + heads[c];
+    const std::uint32_t* const found_pairs = order + heads[c];
     const std::size_t count = heads[c + 1] - heads[c];
     double sums[kCount] = {};
-    if (count <= kContactShares) {
-      for (std::size_t k = 0; k < count; ++k) addValues(values[hits[k]].of, sums);
+    if (count <= kPartialSums) {
+      for (std::size_t k = 0; k < count; ++k) addValues(values[found_pairs[k]].of, sums);
     } else {
-      for (std::size_t share = 0; share < kContactShares; ++share) {
-        double of_share[kCount] = {};
-        for (std::size_t k = share; k < count; k += kContactShares) addValues(values[hits[k]].of, of_share);
-        addValues(of_share, sums);
+      for (std::size_t part = 0; part < kPartialSums; ++part) {
+        double partial[kCount] = {};
+        for (std::size_t k = part; k < count; k += kPartialSums)
+          addValues(values[found_pairs[k]].of, partial);
+        addValues(partial, sums);
       }
     }
-    const double volume = sums[HitValues::kVolume], inverse = volume > 0 ? 1 / volume : 0;
+    const double volume = sums[ContactValues::kVolume], inverse = volume > 0 ? 1 / volume : 0;
     for (std::size_t i = 0; i < 3; ++i) sums[kMoment + i] *= inverse;
     float numbers[kCount];
     for (std::size_t i = 0; i < kCount; ++i) numbers[i] = static_cast<float>(sums[i]);
@@ -134,7 +135,7 @@ inline void sumContactsImpl(const HitValues* values, const std::uint32_t* order,
 }
 
 inline void nearestDirectionsImpl(const float* x, const float* y, const float* z, std::size_t count,
-                                  const core::Vec3f* directions, std::size_t direction_count,
+                                  const Vec3f* directions, std::size_t direction_count,
                                   std::uint32_t* nearest) {
   for (std::size_t first = 0; first < count; first += kLanes) {
     alignas(64) float best[kLanes];
@@ -142,7 +143,7 @@ inline void nearestDirectionsImpl(const float* x, const float* y, const float* z
     std::fill_n(best, kLanes, -2.0f);
     std::fill_n(found, kLanes, 0u);
     for (std::size_t d = 0; d < direction_count; ++d) {
-      const core::Vec3f n = directions[d];
+      const Vec3f n = directions[d];
       for (std::size_t k = 0; k < kLanes; ++k) {
         const float cosine = x[first + k] * n.x + y[first + k] * n.y + z[first + k] * n.z;
         const bool nearer = cosine > best[k];
@@ -157,14 +158,15 @@ inline void nearestDirectionsImpl(const float* x, const float* y, const float* z
 // Each variant is the same code, inlined into a function for its instructions.
 #define INNERSPHERE_KERNELS(name, Lanes, attributes)                                                       \
   struct name {                                                                                            \
-    attributes static std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy,   \
-                                                 const Sphere* balls, std::uint32_t count) {               \
-      return innersphere::ballsMeeting(walker, occupancy, balls, count);                                   \
+    attributes static std::uint32_t ballsMeeting(const core::Traversal& traversal,                         \
+                                                 const Occupancy& occupancy, const Sphere* balls,          \
+                                                 std::uint32_t count) {                                    \
+      return innersphere::ballsMeeting(traversal, occupancy, balls, count);                                \
     }                                                                                                      \
-    attributes static bool walk(const core::Walker& walker, const SphereColumns& listed,                   \
-                                const std::uint32_t* clusters, std::size_t count, Candidates& candidates,  \
-                                CandidateSink& sink) {                                                     \
-      return walkClusters<Lanes>(walker, listed, clusters, count, candidates, sink);                       \
+    attributes static bool traverse(const core::Traversal& traversal, const SphereColumns& listed,         \
+                                    const std::uint32_t* clusters, std::size_t count,                      \
+                                    Candidates& candidates, CandidateSink& sink) {                         \
+      return traverseClusters<Lanes>(traversal, listed, clusters, count, candidates, sink);                \
     }                                                                                                      \
     attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
                                   Tally& tally) {                                                          \
@@ -174,20 +176,20 @@ inline void nearestDirectionsImpl(const float* x, const float* y, const float* z
                                       Tally& tally) {                                                      \
       sumImpl<Lanes, false>(setup, from_a, candidates, tally);                                             \
     }                                                                                                      \
-    attributes static void writeValues(const Tally& tally, std::size_t count, HitValues* values) {         \
+    attributes static void writeValues(const Tally& tally, std::size_t count, ContactValues* values) {     \
       writeValuesImpl<Lanes>(tally, count, values);                                                        \
     }                                                                                                      \
-    attributes static void sumContacts(const HitValues* values, const std::uint32_t* order,                \
+    attributes static void sumContacts(const ContactValues* values, const std::uint32_t* order,            \
                                        const std::size_t* heads, std::size_t begin, std::size_t end,       \
                                        SphereContact* contacts) {                                          \
       sumContactsImpl(values, order, heads, begin, end, contacts);                                         \
     }                                                                                                      \
     attributes static void nearestDirections(const float* x, const float* y, const float* z,               \
-                                             std::size_t count, const core::Vec3f* directions,             \
+                                             std::size_t count, const Vec3f* directions,                   \
                                              std::size_t direction_count, std::uint32_t* nearest) {        \
       nearestDirectionsImpl(x, y, z, count, directions, direction_count, nearest);                         \
     }                                                                                                      \
-    static constexpr CpuKernels kKernels{ballsMeeting, walk,        sumAll,           sumVolumes,          \
+    static constexpr CpuKernels kKernels{ballsMeeting, traverse,    sumAll,           sumVolumes,          \
                                          writeValues,  sumContacts, nearestDirections};                    \
   }
 

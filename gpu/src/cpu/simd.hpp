@@ -1,6 +1,6 @@
 // What compilers do not make of loops by themselves: spheres from any places as columns, and a list of those
-// that a walker meets. A version for each generation of x86-64 processors and one for all others; the same
-// bits.
+// that a query sphere meets. A version for each generation of x86-64 processors and one for all others; the
+// same bits.
 #pragma once
 
 #include <bit>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/walk.hpp"
+#include "core/traversal.hpp"
 #include "cpu/kernels.hpp"
 #include "grid/cell_spheres.hpp"
 
@@ -38,12 +38,12 @@ struct ListRange {
 /// What core::countsIn() asks of the centre of a partner, in cells from the edge of the grid: is it in this
 /// window? `inverse` is of the cells' size.
 struct CellWindow {
-  core::Vec3f half;
+  Vec3f half;
   float inverse;
   float lo[3], end[3];
 
   CellWindow(const core::GridView& grid, const core::Cells& cells, const std::uint32_t (&cell)[3])
-      : half(grid.half), inverse(core::powerOfTwo(-(grid.finest + cells.tier))) {
+      : half(grid.half), inverse(core::powerOfTwo(-(grid.finest + cells.grid_level))) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
       const float number = static_cast<float>(static_cast<std::int32_t>(cell[axis]));
@@ -66,7 +66,7 @@ struct LanesAny {
     }
   }
 
-  /// A bit for each sphere that the walker meets.
+  /// A bit for each sphere that the query sphere meets.
   static std::uint32_t meeting(const core::Lookup& lookup, const SphereColumns& spheres) {
     std::uint32_t bits[kLanes];
     for (std::uint32_t k = 0; k < kLanes; ++k) {
@@ -83,7 +83,7 @@ struct LanesAny {
 
   /// A bit for each sphere with its centre in a window.
   static std::uint32_t within(const CellWindow& window, const SphereColumns& spheres) {
-    const core::Vec3f half = window.half;
+    const Vec3f half = window.half;
     std::uint32_t bits = 0;
     for (std::uint32_t k = 0; k < kLanes; ++k) {
       const float x = (spheres.x[k] + half.x) * window.inverse, y = (spheres.y[k] + half.y) * window.inverse,
@@ -95,12 +95,12 @@ struct LanesAny {
     return bits;
   }
 
-  /// Writes the pairs of a walker with the places of these bits, from number c on, and returns how many there
-  /// are then. There must be room for kLanes.
-  static std::size_t append(std::uint32_t walker, const std::uint32_t* places, std::uint32_t bits,
+  /// Writes the pairs of a query sphere with the places of these bits, from number c on, and returns how many
+  /// there are then. There must be room for kLanes.
+  static std::size_t append(std::uint32_t query_sphere, const std::uint32_t* places, std::uint32_t bits,
                             Candidates& to, std::size_t c) {
     for (; bits != 0; bits &= bits - 1, ++c) {
-      to.walker[c] = walker;
+      to.query_sphere[c] = query_sphere;
       to.partner[c] = places[std::countr_zero(bits)];
     }
     return c;
@@ -131,7 +131,7 @@ struct LanesAny {
   static constexpr std::size_t kRows = 8;
 
   /// A zero and seven columns, of kRows items from number k on, to rows.
-  static void writeRows(const double* const (&columns)[7], std::size_t k, HitValues* rows) {
+  static void writeRows(const double* const (&columns)[7], std::size_t k, ContactValues* rows) {
     for (std::size_t row = 0; row < kRows; ++row) {
       rows[row].of[0] = 0;
       for (std::size_t i = 0; i < 7; ++i) rows[row].of[i + 1] = columns[i][k + row];
@@ -151,7 +151,7 @@ struct LanesAny {
 
 #ifdef INNERSPHERE_X86
 
-/// For each set of 8 items, the numbers of those in it, and then any.
+/// The numbers of the items in each set of 8 items, and then any others.
 struct KeptNumbers {
   alignas(32) std::uint32_t numbers[256][8] = {};
 
@@ -219,13 +219,13 @@ struct LanesAvx2 : LanesAny {
     return bits;
   }
 
-  INNERSPHERE_AVX2 static std::size_t append(std::uint32_t walker, const std::uint32_t* places,
+  INNERSPHERE_AVX2 static std::size_t append(std::uint32_t query_sphere, const std::uint32_t* places,
                                              std::uint32_t bits, Candidates& to, std::size_t c) {
-    const __m256i self = _mm256_set1_epi32(static_cast<int>(walker));
+    const __m256i self = _mm256_set1_epi32(static_cast<int>(query_sphere));
     for (std::size_t k = 0; k < kLanes; k += 8) {
       const std::uint32_t here = bits >> k & 255u;
       keep(here, places + k, to.partner.data() + c);
-      _mm256_storeu_si256(reinterpret_cast<__m256i*>(to.walker.data() + c), self);
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(to.query_sphere.data() + c), self);
       c += static_cast<std::size_t>(std::popcount(here));
     }
     return c;
@@ -304,17 +304,17 @@ struct LanesAvx512 : LanesAny {
            in(spheres.z, window.half.z, 2);
   }
 
-  INNERSPHERE_AVX512 static std::size_t append(std::uint32_t walker, const std::uint32_t* places,
+  INNERSPHERE_AVX512 static std::size_t append(std::uint32_t query_sphere, const std::uint32_t* places,
                                                std::uint32_t bits, Candidates& to, std::size_t c) {
     const __m512i met = _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), _mm512_loadu_si512(places));
-    const __m512i self = _mm512_set1_epi32(static_cast<int>(walker));
-    std::uint32_t *walkers = to.walker.data() + c, *partners = to.partner.data() + c;
+    const __m512i self = _mm512_set1_epi32(static_cast<int>(query_sphere));
+    std::uint32_t *query_spheres = to.query_sphere.data() + c, *partners = to.partner.data() + c;
     const int count = std::popcount(bits);
     // Mostly few: short stores seldom cross a line of the cache.
-    std::memcpy(walkers, &self, 16);
+    std::memcpy(query_spheres, &self, 16);
     std::memcpy(partners, &met, 16);
     if (count > 4) {
-      std::memcpy(walkers, &self, 64);
+      std::memcpy(query_spheres, &self, 64);
       std::memcpy(partners, &met, 64);
     }
     return c + static_cast<std::size_t>(count);
@@ -336,7 +336,7 @@ struct LanesAvx512 : LanesAny {
   };
 
   INNERSPHERE_AVX512 static void writeRows(const double* const (&columns)[7], std::size_t k,
-                                           HitValues* rows) {
+                                           ContactValues* rows) {
     constexpr __mmask8 kEvery = 0xff;
     __m512d even[4] = {_mm512_setzero_pd()}, odd[4];  // columns of the rows
     for (std::size_t i = 0; i < 4; ++i) odd[i] = _mm512_load_pd(columns[2 * i] + k);
@@ -350,7 +350,7 @@ struct LanesAvx512 : LanesAny {
       const __m512d left26 = _mm512_maskz_shuffle_f64x2(kEvery, pairs[0], pairs[1], 0xdd);
       const __m512d right04 = _mm512_maskz_shuffle_f64x2(kEvery, pairs[2], pairs[3], 0x88);
       const __m512d right26 = _mm512_maskz_shuffle_f64x2(kEvery, pairs[2], pairs[3], 0xdd);
-      HitValues* const to = rows + parity;
+      ContactValues* const to = rows + parity;
       _mm512_store_pd(to[0].of, _mm512_maskz_shuffle_f64x2(kEvery, left04, right04, 0x88));
       _mm512_store_pd(to[2].of, _mm512_maskz_shuffle_f64x2(kEvery, left26, right26, 0x88));
       _mm512_store_pd(to[4].of, _mm512_maskz_shuffle_f64x2(kEvery, left04, right04, 0xdd));

@@ -1,5 +1,5 @@
-// The walk on the CPU. Many walkers go together, so that each step is done for all of them side by side:
-// where they are, where their cells are, and the tests.
+// The traversal on the CPU. Many query spheres go together, so that each step is done for all of them side by
+// side: where they are, where their cells are, and the tests.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +13,18 @@ namespace innersphere {
 
 static_assert(kLanes <= CellLists::kPastEnd, "lists are read in groups");
 
-/// What a walk goes through: a grid, and the spheres that its cells list.
-struct WalkedGrid {
+/// What a traversal goes through: a grid, and the spheres that its cells list.
+struct TraversedGrid {
   const core::GridView& grid;
   SphereColumns listed;
 };
 
-/// A bit for each of up to 32 balls of the walking body that can meet the grid.
-inline std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& occupancy, const Sphere* balls,
-                                  std::uint32_t count) {
+/// A bit for each of up to 32 balls of the searching body that can meet the grid.
+inline std::uint32_t ballsMeeting(const core::Traversal& traversal, const Occupancy& occupancy,
+                                  const Sphere* balls, std::uint32_t count) {
   constexpr std::uint32_t kMost = 32;
-  const core::Search search = walker.search;
-  const core::GridView grid = walker.grid;
+  const core::Search search = traversal.search;
+  const core::GridView grid = traversal.grid;
   float x[kMost], y[kMost], z[kMost], radius[kMost];
   std::uint32_t met = 0;
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -43,8 +43,8 @@ inline std::uint32_t ballsMeeting(const core::Walker& walker, const Occupancy& o
   return left;
 }
 
-/// Walkers that can meet the grid.
-struct Walkers {
+/// Query spheres that can meet the grid.
+struct QuerySpheres {
   static constexpr std::uint32_t kSize = kMostCells;
   static constexpr std::uint32_t kRoom = kSize + kLanes;  ///< whole groups are written
   alignas(64) float x[kRoom], y[kRoom], z[kRoom], reach[kRoom], smallest[kRoom];
@@ -56,15 +56,15 @@ struct Walkers {
 
   /// What core::makeLookup does, for the spheres of a cluster.
   template <typename Lanes>
-  void add(const core::Walker& walker, const core::Cluster& cluster) {
+  void add(const core::Traversal& traversal, const core::Cluster& cluster) {
     constexpr std::uint32_t kAll = core::kClusterSize;
     static_assert(kAll % kLanes == 0);
     alignas(64) float px[kAll], py[kAll], pz[kAll], all[kAll], least[kAll];
     alignas(64) std::uint32_t place[kAll];
     alignas(64) std::uint32_t active[kAll] = {};
-    const core::Search search = walker.search;
-    const core::GridView grid = walker.grid;
-    const Sphere* spheres = walker.own.spheres + cluster.first;
+    const core::Search search = traversal.search;
+    const core::GridView grid = traversal.grid;
+    const Sphere* spheres = traversal.own.spheres + cluster.first;
     for (std::uint32_t k = 0; k < cluster.count; ++k) {
       const core::Probe probe = core::makeProbe(search, spheres[k]);
       px[k] = probe.p.x;
@@ -93,57 +93,58 @@ struct Walkers {
 };
 
 /// The lists where they look: what core::cellsOf does where that is one.
-struct WalkerLists {
-  static constexpr std::uint32_t kSize = Walkers::kSize;
+struct QuerySphereLists {
+  static constexpr std::uint32_t kSize = QuerySpheres::kSize;
   alignas(64) std::int32_t one[kSize];  ///< they look into one cell
   alignas(64) ListRange lists[kSize];
 
   template <typename Lanes>
-  void find(const core::GridView& view, const Walkers& walkers) {
-    alignas(64) std::int32_t tier[kSize], x[kSize], y[kSize], z[kSize];
+  void find(const core::GridView& view, const QuerySpheres& query_spheres) {
+    alignas(64) std::int32_t grid_level[kSize], x[kSize], y[kSize], z[kSize];
     alignas(64) std::uint64_t keys[kSize + kLanes];
     const core::GridView grid = view;
-    const std::uint32_t count = walkers.count;
+    const std::uint32_t count = query_spheres.count;
     for (std::uint32_t k = 0; k < count; ++k) {
       constexpr float kEnd = 1 << core::kAxisBits;
-      const int t = core::tierOf(grid, core::levelOf(walkers.smallest[k]));
+      const int t = core::gridLevelOf(grid, core::levelOf(query_spheres.smallest[k]));
       const float inverse = core::powerOfTwo(-(grid.finest + t));
-      const float cx = std::floor((walkers.x[k] + grid.half.x) * inverse) + 1;
-      const float cy = std::floor((walkers.y[k] + grid.half.y) * inverse) + 1;
-      const float cz = std::floor((walkers.z[k] + grid.half.z) * inverse) + 1;
+      const float cx = std::floor((query_spheres.x[k] + grid.half.x) * inverse) + 1;
+      const float cy = std::floor((query_spheres.y[k] + grid.half.y) * inverse) + 1;
+      const float cz = std::floor((query_spheres.z[k] + grid.half.z) * inverse) + 1;
       const float lowest = std::min(std::min(cx, cy), cz), highest = std::max(std::max(cx, cy), cz);
-      std::int32_t single = core::reachOf(grid, t) - walkers.reach[k] >= 0 ? 1 : 0;
+      std::int32_t single = core::reachOf(grid, t) - query_spheres.reach[k] >= 0 ? 1 : 0;
       single = lowest >= 0 ? single : 0;
       one[k] = highest < kEnd ? single : 0;
-      tier[k] = t;
+      grid_level[k] = t;
       x[k] = static_cast<std::int32_t>(std::min(std::max(cx, 0.0f), kEnd));
       y[k] = static_cast<std::int32_t>(std::min(std::max(cy, 0.0f), kEnd));
       z[k] = static_cast<std::int32_t>(std::min(std::max(cz, 0.0f), kEnd));
     }
     for (std::uint32_t k = 0; k < count; ++k)
-      keys[k] = core::cellKey(tier[k], static_cast<std::uint32_t>(x[k]), static_cast<std::uint32_t>(y[k]),
-                              static_cast<std::uint32_t>(z[k]));
+      keys[k] = core::cellKey(grid_level[k], static_cast<std::uint32_t>(x[k]),
+                              static_cast<std::uint32_t>(y[k]), static_cast<std::uint32_t>(z[k]));
     for (std::uint32_t k = count; k % kLanes != 0; ++k) keys[k] = 0;
     Lanes::findCells(grid, keys, count, lists);
   }
 };
 
-/// Walkers whose lists are tested, a group of up to kLanes spheres of each at a time: no branch hangs on how
-/// long the list of a walker is.
+/// Query spheres whose lists are tested, a group of up to kLanes spheres of each at a time: no branch hangs
+/// on how long the list of a query sphere is.
 struct Testing {
-  static constexpr std::uint32_t kRoom = Walkers::kRoom;
-  alignas(64) std::uint32_t walker[kRoom], first[kRoom], left[kRoom];  ///< number; what is left of its list
+  static constexpr std::uint32_t kRoom = QuerySpheres::kRoom;
+  alignas(64) std::uint32_t query_sphere[kRoom], first[kRoom],
+      left[kRoom];  ///< number; what is left of its list
   std::uint32_t count = 0;
 
   template <typename Lanes>
-  void begin(const Walkers& walkers, const WalkerLists& where) {
+  void begin(const QuerySpheres& query_spheres, const QuerySphereLists& where) {
     alignas(64) std::uint32_t number[kRoom], from[kRoom], length[kRoom] = {};
-    for (std::uint32_t k = 0; k < walkers.count; ++k) {
+    for (std::uint32_t k = 0; k < query_spheres.count; ++k) {
       number[k] = k;
       from[k] = where.lists[k].first;
       length[k] = where.one[k] ? where.lists[k].count : 0;
     }
-    keep<Lanes>(number, from, length, walkers.count);
+    keep<Lanes>(number, from, length, query_spheres.count);
   }
 
   /// Goes to the next group of each.
@@ -155,11 +156,11 @@ struct Testing {
       left[k] -= tested;
     }
     for (std::uint32_t k = count; k % kLanes != 0; ++k) left[k] = 0;
-    keep<Lanes>(walker, first, left, count);
+    keep<Lanes>(query_sphere, first, left, count);
   }
 
  private:
-  /// Those with something left; `lefts` is zero beyond the last one.
+  /// Keeps those with something left; `lefts` is zero beyond the last one.
   template <typename Lanes>
   void keep(const std::uint32_t* numbers, const std::uint32_t* firsts, const std::uint32_t* lefts,
             std::uint32_t all) {
@@ -167,7 +168,7 @@ struct Testing {
     for (std::uint32_t k = 0; k < all; k += kLanes) {
       const std::uint32_t bits = Lanes::bitsOf(lefts + k);
       const typename Lanes::Kept kept(bits);
-      kept.copy(numbers + k, walker + count);
+      kept.copy(numbers + k, query_sphere + count);
       kept.copy(firsts + k, first + count);
       kept.copy(lefts + k, left + count);
       count += static_cast<std::uint32_t>(std::popcount(bits));
@@ -175,16 +176,17 @@ struct Testing {
   }
 };
 
-/// Tests a group of each walker. Most groups meet none, so those that do are told apart before they are
+/// Tests a group of each query sphere. Most groups meet none, so those that do are told apart before they are
 /// written: without a branch, which would be foretold badly.
 template <typename Lanes>
-inline bool testGroups(const WalkedGrid& walked, const Walkers& walkers, const Testing& testing,
-                       Candidates& candidates, CandidateSink& sink) {
+inline bool testGroups(const TraversedGrid& traversed, const QuerySpheres& query_spheres,
+                       const Testing& testing, Candidates& candidates, CandidateSink& sink) {
   alignas(64) std::uint32_t met[Testing::kRoom], numbers[Testing::kRoom], meeting[Testing::kRoom];
   for (std::uint32_t k = 0; k < testing.count; ++k)
     met[k] = (1u << std::min<std::uint32_t>(testing.left[k], kLanes)) - 1;  // a bit for each sphere
   for (std::uint32_t k = 0; k < testing.count; ++k)
-    met[k] &= Lanes::meeting(walkers.lookup(testing.walker[k]), walked.listed.from(testing.first[k]));
+    met[k] &= Lanes::meeting(query_spheres.lookup(testing.query_sphere[k]),
+                             traversed.listed.from(testing.first[k]));
   for (std::uint32_t k = testing.count; k % kLanes != 0; ++k) met[k] = 0;
   for (std::uint32_t k = 0; k < testing.count; ++k) numbers[k] = k;
   std::uint32_t groups = 0;
@@ -201,15 +203,15 @@ inline bool testGroups(const WalkedGrid& walked, const Walkers& walkers, const T
       count = 0;
     }
     const std::uint32_t k = meeting[g];
-    count = Lanes::append(walkers.self[testing.walker[k]], walked.grid.listed + testing.first[k], met[k],
-                          candidates, count);
+    count = Lanes::append(query_spheres.self[testing.query_sphere[k]],
+                          traversed.grid.listed + testing.first[k], met[k], candidates, count);
   }
   candidates.count = count;
   return true;
 }
 
-/// Tests a walker against some spheres in columns and adds their places; `counts` has the last word on groups
-/// of which it meets some.
+/// Tests a query sphere against some spheres in columns and adds their places; `counts` has the last word on
+/// groups of which it meets some.
 template <typename Lanes, typename Counts>
 inline bool testList(const core::Lookup& lookup, std::uint32_t self, const SphereColumns& spheres,
                      const std::uint32_t* places, std::uint32_t count, const Counts& counts,
@@ -225,7 +227,7 @@ inline bool testList(const core::Lookup& lookup, std::uint32_t self, const Spher
   return true;
 }
 
-/// Tests a walker against all spheres of the grid.
+/// Tests a query sphere against all spheres of the grid.
 template <typename Lanes>
 inline bool testAll(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t self,
                     Candidates& candidates, CandidateSink& sink) {
@@ -241,26 +243,26 @@ inline bool testAll(const core::GridView& grid, const core::Lookup& lookup, std:
   return true;
 }
 
-/// Some of the cells where a walker looks.
+/// Some of the cells where a query sphere looks.
 struct SomeCells {
   static constexpr std::uint32_t kSize = kMostCells;
   alignas(64) std::uint64_t keys[kSize] = {};  // all of them are looked up
   std::uint32_t at[kSize][3];
   std::uint32_t count = 0;
 
-  void add(int tier, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    keys[count] = core::cellKey(tier, x, y, z);
+  void add(int grid_level, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    keys[count] = core::cellKey(grid_level, x, y, z);
     at[count][0] = x;
     at[count][1] = y;
     at[count++][2] = z;
   }
 };
 
-/// Tests a walker against the spheres in all cells where it looks.
+/// Tests a query sphere against the spheres in all cells where it looks.
 template <typename Lanes>
-inline bool walkCells(const WalkedGrid& walked, const core::Lookup& lookup, std::uint32_t self,
-                      Candidates& candidates, CandidateSink& sink) {
-  const core::GridView& grid = walked.grid;
+inline bool traverseCells(const TraversedGrid& traversed, const core::Lookup& lookup, std::uint32_t self,
+                          Candidates& candidates, CandidateSink& sink) {
+  const core::GridView& grid = traversed.grid;
   const core::Cells cells = core::cellsOf(grid, lookup);
   if (cells.all) return testAll<Lanes>(grid, lookup, self, candidates, sink);
   if (cells.count == 0) return true;
@@ -272,7 +274,7 @@ inline bool walkCells(const WalkedGrid& walked, const core::Lookup& lookup, std:
       if (lists[c].count == 0) continue;
       const CellWindow window(grid, cells, some.at[c]);
       const auto here = [&](const SphereColumns& spheres) { return Lanes::within(window, spheres); };
-      if (!testList<Lanes>(lookup, self, walked.listed.from(lists[c].first), grid.listed + lists[c].first,
+      if (!testList<Lanes>(lookup, self, traversed.listed.from(lists[c].first), grid.listed + lists[c].first,
                            lists[c].count, here, candidates, sink))
         return false;
     }
@@ -284,43 +286,45 @@ inline bool walkCells(const WalkedGrid& walked, const core::Lookup& lookup, std:
     for (std::uint32_t y = lo[1]; y <= hi[1]; ++y) {
       for (std::uint32_t x = lo[0]; x <= hi[0]; ++x) {
         if (some.count == SomeCells::kSize && !test()) return false;
-        some.add(cells.tier, x, y, z);
+        some.add(cells.grid_level, x, y, z);
       }
     }
   }
   return test();
 }
 
-/// Takes all walkers through the grid.
+/// Takes all query spheres through the grid.
 template <typename Lanes>
-inline bool walkTogether(const WalkedGrid& walked, Walkers& walkers, Candidates& candidates,
-                         CandidateSink& sink) {
-  WalkerLists where;
-  where.find<Lanes>(walked.grid, walkers);
+inline bool traverseTogether(const TraversedGrid& traversed, QuerySpheres& query_spheres,
+                             Candidates& candidates, CandidateSink& sink) {
+  QuerySphereLists where;
+  where.find<Lanes>(traversed.grid, query_spheres);
   Testing testing;
-  for (testing.begin<Lanes>(walkers, where); testing.count > 0; testing.next<Lanes>()) {
-    if (!testGroups<Lanes>(walked, walkers, testing, candidates, sink)) return false;
+  for (testing.begin<Lanes>(query_spheres, where); testing.count > 0; testing.next<Lanes>()) {
+    if (!testGroups<Lanes>(traversed, query_spheres, testing, candidates, sink)) return false;
   }
-  for (std::uint32_t w = 0; w < walkers.count; ++w) {
-    if (!where.one[w] && !walkCells<Lanes>(walked, walkers.lookup(w), walkers.self[w], candidates, sink))
+  for (std::uint32_t w = 0; w < query_spheres.count; ++w) {
+    if (!where.one[w] &&
+        !traverseCells<Lanes>(traversed, query_spheres.lookup(w), query_spheres.self[w], candidates, sink))
       return false;
   }
-  walkers.count = 0;
+  query_spheres.count = 0;
   return true;
 }
 
 /// Takes some clusters through the grid.
 template <typename Lanes>
-inline bool walkClusters(const core::Walker& walker, const SphereColumns& listed,
-                         const std::uint32_t* clusters, std::size_t count, Candidates& candidates,
-                         CandidateSink& sink) {
-  const WalkedGrid walked{walker.grid, listed};
-  Walkers walkers;
+inline bool traverseClusters(const core::Traversal& traversal, const SphereColumns& listed,
+                             const std::uint32_t* clusters, std::size_t count, Candidates& candidates,
+                             CandidateSink& sink) {
+  const TraversedGrid traversed{traversal.grid, listed};
+  QuerySpheres query_spheres;
   for (std::size_t c = 0; c < count; ++c) {
-    if (!walkers.hasRoom() && !walkTogether<Lanes>(walked, walkers, candidates, sink)) return false;
-    walkers.add<Lanes>(walker, walker.own.clusters[clusters[c]]);
+    if (!query_spheres.hasRoom() && !traverseTogether<Lanes>(traversed, query_spheres, candidates, sink))
+      return false;
+    query_spheres.add<Lanes>(traversal, traversal.own.clusters[clusters[c]]);
   }
-  return walkTogether<Lanes>(walked, walkers, candidates, sink);
+  return traverseTogether<Lanes>(traversed, query_spheres, candidates, sink);
 }
 
 }  // namespace innersphere

@@ -6,17 +6,17 @@
 #include <cstdint>
 
 #include "core/sums.hpp"
-#include "core/walk.hpp"
+#include "core/traversal.hpp"
 
 namespace innersphere::device {
 
 constexpr unsigned kWarp = 32;
 constexpr unsigned kAll = 0xffffffffu;
 static_assert(core::kClusterSize == kWarp, "a warp walks one cluster");
-constexpr unsigned kGroup = 32;  ///< clusters under one ball
-constexpr unsigned kItem = 8;    ///< neighbouring clusters that a warp of a batch takes at once
+constexpr unsigned kGroup = 32;        ///< clusters under one ball
+constexpr unsigned kTaskClusters = 8;  ///< neighbouring clusters in a task, which a warp takes from a batch
 
-/// Two neighbours in a list, as halves, the first one's below: see cuda_entries.hpp.
+/// Two neighbours in a list, as halves, the first one's below: see half_spheres.hpp.
 struct alignas(16) EntryPair {
   unsigned x, y, z, radius;
 };
@@ -24,8 +24,8 @@ struct alignas(16) EntryPair {
 /// A grid, with what only kernels read.
 struct alignas(16) Grid {
   core::GridView view;
-  /// The spheres of view.listed. After them come all spheres in their order, for walkers that look at all,
-  /// and some that meet nothing.
+  /// The spheres of view.listed. After them come all spheres in their order, for query spheres that look at
+  /// all, and some that meet nothing.
   const EntryPair* entries;
   const Sphere* groups;         ///< balls around kGroup clusters each
   const std::uint32_t* places;  ///< of the packing's spheres in the grid
@@ -61,20 +61,21 @@ constexpr unsigned kSumWords = sizeof(DeviceSums) / sizeof(unsigned long long);
 
 /// What the kernels of one batch count; zero before each.
 struct Counters {
-  unsigned items;            ///< of Batch::items
+  unsigned tasks;            ///< of Batch::tasks
   unsigned taken;            ///< of these
   unsigned blocks;           ///< that are done
-  unsigned long long found;  ///< hits, also those beyond the capacity
+  unsigned long long found;  ///< overlapping pairs, also those beyond the capacity
 };
 
 constexpr unsigned kResultWords = sizeof(core::Totals) / sizeof(unsigned long long);
 
 /// What the host watches, in its own memory.
 struct HostSignal {
-  /// The result of a single query and the number of its hits, as 32-bit pieces, each below the number of its
-  /// run. So every piece says by itself that it has come, and none has to wait for another.
-  unsigned long long pieces[2 * (kResultWords + 1)];
-  /// The number of the last batch that is done, and its hits.
+  /// The result of a single query and the number of its overlapping pairs, as 32-bit halves of words, each
+  /// below the number of its run. So every half says by itself that it has come, and none has to wait for
+  /// another.
+  unsigned long long halves[2 * (kResultWords + 1)];
+  /// The number of the last batch that is done, and its overlapping pairs.
   unsigned done;
   unsigned long long found;
 };
@@ -85,10 +86,11 @@ struct Batch {
   unsigned count;
   DeviceSums* sums;  ///< zero before, and again after a single query
   Counters* counters;
-  unsigned long long* items;  ///< active clusters of all queries, kItem neighbours in each: see makeItem()
+  unsigned long long*
+      tasks;  ///< active clusters of all queries, kTaskClusters neighbours in each: see packTask()
   /// Pairs of overlapping spheres: number of the query, sphere of A, sphere of B, so many bits each. Null if
   /// they are not wanted.
-  unsigned long long* hits;
+  unsigned long long* found_pairs;
   unsigned long long capacity;
   unsigned bits_a, bits_b;
   HostSignal* signal;

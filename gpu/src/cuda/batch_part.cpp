@@ -14,12 +14,13 @@ namespace innersphere::device {
 namespace {
 
 constexpr std::size_t kGrain = 64;           ///< queries that one thread gathers
-constexpr std::size_t kMostItems = 1 << 19;  ///< of one part
-constexpr std::size_t kFewHits = 1 << 12;
-static_assert(kMostQueries <= 1u << 24, "see packItem()");
+constexpr std::size_t kMostTasks = 1 << 19;  ///< of one part
+constexpr std::size_t kFewPairs = 1 << 12;
+static_assert(kMostQueries <= 1u << 24, "see packTask()");
 
-std::size_t itemsOf(const PreparedQuery& query) {
-  return (query.setup.a.clusters + kItem - 1) / kItem + (query.setup.b.clusters + kItem - 1) / kItem;
+std::size_t tasksOf(const PreparedQuery& query) {
+  return (query.setup.a.clusters + kTaskClusters - 1) / kTaskClusters +
+         (query.setup.b.clusters + kTaskClusters - 1) / kTaskClusters;
 }
 
 unsigned bitsOf(std::uint32_t count) {
@@ -57,32 +58,32 @@ Query makeQuery(const PreparedQuery& from, Grids& grids) {
 
 }  // namespace
 
-std::size_t Part::endOf(const std::vector<PreparedQuery>& queries, std::size_t begin) {
-  std::size_t items = 0, end = begin;
+std::size_t BatchPart::endOf(const std::vector<PreparedQuery>& queries, std::size_t begin) {
+  std::size_t tasks = 0, end = begin;
   unsigned bits_a = 0, bits_b = 0;
   for (; end < queries.size() && end - begin < kMostQueries; ++end) {
-    items += itemsOf(queries[end]);
+    tasks += tasksOf(queries[end]);
     bits_a = std::max(bits_a, bitsOf(queries[end].setup.a.grid.count));
     bits_b = std::max(bits_b, bitsOf(queries[end].setup.b.grid.count));
-    const bool wide = (end - begin) >> (64 - bits_a - bits_b) != 0;  // for the keys of hits
-    if (end > begin && (items > kMostItems || wide)) break;
+    const bool wide = (end - begin) >> (64 - bits_a - bits_b) != 0;  // for the keys of overlapping pairs
+    if (end > begin && (tasks > kMostTasks || wide)) break;
   }
   return end;
 }
 
-void Part::start(const Device& device, const std::vector<PreparedQuery>& queries, Range range, Want want,
-                 Workers& workers) {
+void BatchPart::start(const Device& device, const std::vector<PreparedQuery>& queries, Range range, Want want,
+                      Workers& workers) {
   device_ = device;
   range_ = range;
   want_ = want;
   kernel_time_ = 0;
   most_clusters_ = 0;
-  most_items_ = 0;
+  most_tasks_ = 0;
   batch_.bits_a = batch_.bits_b = 0;
   for (std::size_t q = range.begin; q < range.end; ++q) {
     const core::Setup& setup = queries[q].setup;
     most_clusters_ = std::max(most_clusters_, static_cast<unsigned>(queries[q].clusters()));
-    most_items_ += itemsOf(queries[q]);
+    most_tasks_ += tasksOf(queries[q]);
     batch_.bits_a = std::max(batch_.bits_a, bitsOf(setup.a.grid.count));
     batch_.bits_b = std::max(batch_.bits_b, bitsOf(setup.b.grid.count));
   }
@@ -95,7 +96,7 @@ void Part::start(const Device& device, const std::vector<PreparedQuery>& queries
   launch();
 }
 
-void Part::gather(const std::vector<PreparedQuery>& queries, Workers& workers) {
+void BatchPart::gather(const std::vector<PreparedQuery>& queries, Workers& workers) {
   queries_.reserve(range_.size());
   workers.forRanges(range_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     const CurrentDevice current(device_.number);
@@ -105,14 +106,14 @@ void Part::gather(const std::vector<PreparedQuery>& queries, Workers& workers) {
   });
 }
 
-void Part::launch() {
+void BatchPart::launch() {
   const std::size_t count = range_.size();
   const bool single = count == 1;
   batch_.count = static_cast<unsigned>(count);
   if (most_clusters_ == 0) {
     std::fill_n(results_.data(), count, core::Totals{});
     found_ = 0;
-    stage_ = Stage::walked;
+    stage_ = Stage::traversed;
     return;
   }
   if (counters_.capacity() < 1 || sums_.capacity() < count) clean_ = false;
@@ -124,67 +125,67 @@ void Part::launch() {
   }
   clean_ = false;
   if (!single) {
-    items_.reserve(most_items_);
+    tasks_.reserve(most_tasks_);
     device_queries_.reserve(count);
     copyAsync(device_queries_.data(), queries_.data(), count, device_.stream);
   }
   batch_.queries = single ? nullptr : device_queries_.data();
   batch_.sums = sums_.data();
   batch_.counters = counters_.data();
-  batch_.items = items_.data();
-  if (wantsHits(want_)) hits_.reserve(kFewHits);
-  batch_.hits = wantsHits(want_) ? hits_.keys() : nullptr;
-  batch_.capacity = hits_.capacity();
+  batch_.tasks = tasks_.data();
+  if (wantsPairs(want_)) pair_sorter_.reserve(kFewPairs);
+  batch_.found_pairs = wantsPairs(want_) ? pair_sorter_.keys() : nullptr;
+  batch_.capacity = pair_sorter_.capacity();
   batch_.results = results_.data();
   batch_.signal = signal_.data();
   batch_.run = ++run_;
   const Goal goal = want_ == Want::touch ? Goal::touch : want_ == Want::volume ? Goal::volume : Goal::wrench;
   if (device_.time_kernels) INNERSPHERE_CUDA(cudaEventRecord(start_.get(), device_.stream));
-  launchWalk(goal, batch_, single ? queries_.data() : nullptr, most_clusters_, most_items_,
-             device_.processors, device_.stream);
+  launchTraversal(goal, batch_, single ? queries_.data() : nullptr, most_clusters_, most_tasks_,
+                  device_.processors, device_.stream);
   if (device_.time_kernels) INNERSPHERE_CUDA(cudaEventRecord(stop_.get(), device_.stream));
-  stage_ = Stage::walk;
+  stage_ = Stage::traversal;
 }
 
 /// Whether the kernels told the host that they are done.
-bool Part::walked() const {
+bool BatchPart::traversed() const {
   const volatile HostSignal& signal = *signal_.data();
   if (range_.size() > 1) return signal.done == run_;
-  return std::all_of(std::begin(signal.pieces), std::end(signal.pieces),
-                     [&](unsigned long long piece) { return piece >> 32 == run_; });
+  return std::all_of(std::begin(signal.halves), std::end(signal.halves),
+                     [&](unsigned long long half) { return half >> 32 == run_; });
 }
 
-void Part::takeResult() {
+void BatchPart::takeResult() {
   std::atomic_thread_fence(std::memory_order_acquire);
   const HostSignal& signal = *signal_.data();
   found_ = signal.found;
   if (range_.size() > 1) return;
   unsigned long long words[kResultWords + 1];
   for (std::size_t i = 0; i <= kResultWords; ++i)
-    words[i] = (signal.pieces[2 * i] & 0xffffffffu) | signal.pieces[2 * i + 1] << 32;
+    words[i] = (signal.halves[2 * i] & 0xffffffffu) | signal.halves[2 * i + 1] << 32;
   std::memcpy(results_.data(), words, sizeof(core::Totals));
   found_ = words[kResultWords];
   clean_ = true;
 }
 
-bool Part::advance() {
+bool BatchPart::advance() {
   if (stage_ == Stage::done) return true;
-  if (stage_ == Stage::walk) {
-    if (!walked()) {
+  if (stage_ == Stage::traversal) {
+    if (!traversed()) {
       const cudaError_t status = cudaStreamQuery(device_.stream);  // the driver knows if the kernels failed
       if (status != cudaErrorNotReady) INNERSPHERE_CUDA(status);
-      if (!walked()) return false;
+      if (!traversed()) return false;
     }
     takeResult();
     if (device_.time_kernels) {
       INNERSPHERE_CUDA(cudaEventSynchronize(stop_.get()));
       kernel_time_ += secondsBetween(start_, stop_);
     }
-    stage_ = Stage::walked;
+    stage_ = Stage::traversed;
   }
-  if (stage_ == Stage::walked) {
+  if (stage_ == Stage::traversed) {
     stage_ = Stage::done;
-    if (!wantsHits(want_)) return true;
+    if (!wantsPairs(want_)) return true;
     sort();
     return false;
   }
@@ -195,21 +196,21 @@ bool Part::advance() {
   return true;
 }
 
-void Part::wait() {
+void BatchPart::wait() {
   constexpr int kSpins = 10000;  // some 10 us, before the driver is asked
   do {
-    for (int spin = 0; stage_ == Stage::walk && !walked() && spin < kSpins; ++spin) continue;
+    for (int spin = 0; stage_ == Stage::traversal && !traversed() && spin < kSpins; ++spin) continue;
   } while (!advance());
 }
 
-void Part::sort() {
-  if (found_ > hits_.capacity()) {  // now what is needed is known
-    hits_.reserve(found_ + found_ / 8);
+void BatchPart::sort() {
+  if (found_ > pair_sorter_.capacity()) {  // now what is needed is known
+    pair_sorter_.reserve(found_ + found_ / 8);
     launch();
     return;
   }
-  hits_.start(batch_, *queries_.data(), found_, want_, device_.stream);
-  stage_ = Stage::sort;
+  pair_sorter_.start(batch_, *queries_.data(), found_, want_, device_.stream);
+  stage_ = Stage::sorting;
 }
 
 }  // namespace innersphere::device

@@ -5,9 +5,9 @@
 
 #include "batch/prepare.hpp"
 #include "common/workers.hpp"
-#include "cuda/hits.hpp"
 #include "cuda/kernels.hpp"
 #include "cuda/memory.hpp"
+#include "cuda/pair_sorter.hpp"
 
 namespace innersphere::device {
 
@@ -22,7 +22,7 @@ struct Device {
 /// Keeps its memory from one run to the next. What goes to the device is one copy, or for a single query the
 /// arguments of its launch; sums come home through memory of the host that the kernels write to, so the host
 /// needs no copy and no call to the driver to have them.
-class Part {
+class BatchPart {
  public:
   struct Range {
     std::size_t begin = 0, end = 0;
@@ -42,15 +42,15 @@ class Part {
   Range range() const { return range_; }
   const core::Totals* results() const { return results_.data(); }
   /// Where contacts or pairs are wanted.
-  const HitLists& lists() const { return hits_.lists(); }
+  const PinnedLists& lists() const { return pair_sorter_.lists(); }
   double kernelTime() const { return kernel_time_; }
 
  private:
-  enum class Stage { walk, walked, sort, done };
+  enum class Stage { traversal, traversed, sorting, done };
 
   void gather(const std::vector<PreparedQuery>& queries, Workers& workers);
   void launch();
-  bool walked() const;
+  bool traversed() const;
   void takeResult();
   void sort();
 
@@ -60,8 +60,8 @@ class Part {
   Stage stage_ = Stage::done;
   Batch batch_{};
   unsigned most_clusters_ = 0;
-  std::size_t most_items_ = 0;
-  std::size_t found_ = 0;  ///< hits
+  std::size_t most_tasks_ = 0;
+  std::size_t found_ = 0;  ///< overlapping pairs
   double kernel_time_ = 0;
   Event start_, stop_;
 
@@ -73,8 +73,8 @@ class Part {
   DeviceArray<Counters> counters_;
   DeviceArray<Query> device_queries_;
   DeviceArray<DeviceSums> sums_;
-  DeviceArray<unsigned long long> items_;
-  CudaHits hits_;
+  DeviceArray<unsigned long long> tasks_;
+  CudaPairSorter pair_sorter_;
 };
 
 }  // namespace innersphere::device

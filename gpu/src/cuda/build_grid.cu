@@ -65,7 +65,7 @@ __global__ void __launch_bounds__(kListThreads, kBlocks)
   const Threads threads{std::uint64_t{blockIdx.x} * kListThreads + threadIdx.x,
                         std::uint64_t{gridDim.x} * kListThreads};
   WarpCells& of_warp = shared.cells[threadIdx.x / kWarp];
-  const std::uint64_t cell_count = steps.count ? plan.tiers.first[plan.tiers.count] : 0;
+  const std::uint64_t cell_count = steps.count ? plan.grid_levels.first[plan.grid_levels.count] : 0;
   if (steps.order) {
     for (unsigned i = threadIdx.x; i < sizeof shared.table / sizeof(unsigned); i += kListThreads)
       reinterpret_cast<unsigned*>(&shared.table)[i] = reinterpret_cast<const unsigned*>(&hilbert_table)[i];
@@ -92,7 +92,7 @@ __global__ void __launch_bounds__(kListThreads, kBlocks)
           arrays.cell_sums[cell] = sum;
           const std::uint32_t count = arrays.cell_counts[cell];
           if (count > 0)
-            arrays.used[sum >> kPlaceBits] = {keyOf(plan.tiers, cell),
+            arrays.used[sum >> kPlaceBits] = {keyOf(plan.grid_levels, cell),
                                               static_cast<std::uint32_t>(placesOf(sum)), count};
         },
         arrays.block_sums, shared);
@@ -118,7 +118,7 @@ unsigned mostBlocks() {
 void launchBuild(const BuildPlan& plan, const GridArrays& grid, const Sphere* given, BuildSteps steps,
                  BuildScratch& scratch, cudaStream_t stream) {
   const std::uint32_t spheres = plan.grid.view.count;
-  const std::uint64_t cells = steps.count ? plan.tiers.first[plan.tiers.count] : 0;
+  const std::uint64_t cells = steps.count ? plan.grid_levels.first[plan.grid_levels.count] : 0;
   const std::uint64_t buckets = plan.buckets.all + 1;
   if (scratch.most_blocks == 0) scratch.most_blocks = mostBlocks();
   for (auto& keys : scratch.keys) keys.reserve(spheres);
@@ -149,7 +149,7 @@ void launchBuild(const BuildPlan& plan, const GridArrays& grid, const Sphere* gi
                      scratch.counts.data() + cells + 1,
                      scratch.status.data()};
   void* arguments[] = {&plan_argument, &grid_argument, &arrays, &steps};
-  const std::uint64_t busy = std::max(cells, std::uint64_t{kWarp} * plan.jobs.all + spheres);
+  const std::uint64_t busy = std::max(cells, std::uint64_t{kWarp} * plan.list_tasks.all + spheres);
   const auto blocks = static_cast<unsigned>(
       std::min<std::uint64_t>(scratch.most_blocks, (busy + kListThreads - 1) / kListThreads));
   INNERSPHERE_CUDA(cudaLaunchCooperativeKernel(buildGrid, blocks, kListThreads, arguments, 0, stream));

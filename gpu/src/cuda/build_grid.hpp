@@ -3,33 +3,34 @@
 // each list begins, fill the lists, and hash the cells.
 #pragma once
 
-#include "core/tier_cells.hpp"
+#include "core/grid_level.hpp"
 #include "cuda/batch.hpp"
 #include "cuda/memory.hpp"
 
 namespace innersphere::device {
 
-/// All tiers of a grid; their cells numbered through.
-struct Tiers {
-  core::TierCells of[core::kMostLevels];
+/// All grid levels of a grid; their cells numbered through.
+struct GridLevels {
+  core::GridLevel of[core::kMostLevels];
   std::uint64_t first[core::kMostLevels + 1];  ///< cell of each; after the last: how many there are
   int count;
 };
 
-/// A warp takes a cluster and a tier, or a part of that: large spheres are in many cells. The largest come
-/// first, as they take longest.
-struct Jobs {
-  unsigned end[core::kMostLevels];  ///< of the jobs of each level and of all above it
+/// A warp takes a cluster and a grid level, or a slice of that: large spheres are in many cells. The largest
+/// come first, as they take longest.
+struct ListTasks {
+  unsigned end[core::kMostLevels];  ///< of the tasks of each level and of all above it
   unsigned of_cluster[core::kMostLevels];
   unsigned first_cluster[core::kMostLevels];
   unsigned in_cluster[core::kMostLevels];  ///< spheres, at most
-  /// Cells near a sphere, at most, by how many levels its own is above the first one that the tier lists.
+  /// Cells near a sphere, at most, by how many levels its own is above the first one that the grid level
+  /// lists.
   unsigned cells_near[core::kMostLevels];
   unsigned all;
 
-  __host__ __device__ unsigned parts(int level, int above) const {
-    constexpr unsigned kCellsOfAPart = 512;
-    const unsigned full = in_cluster[level] * cells_near[above] / kCellsOfAPart;
+  __host__ __device__ unsigned slices(int level, int above) const {
+    constexpr unsigned kCellsOfASlice = 512;
+    const unsigned full = in_cluster[level] * cells_near[above] / kCellsOfASlice;
     return full > 1 ? full : 1;
   }
 };
@@ -44,12 +45,12 @@ struct Buckets {
 
 struct BuildPlan {
   core::GridPlan grid;
-  Tiers tiers;
-  Jobs jobs;
+  GridLevels grid_levels;
+  ListTasks list_tasks;
   Buckets buckets;
 };
 
-/// Whether all tiers may have a counter for each cell.
+/// Whether all grid levels may have a counter for each cell.
 bool isDense(const BuildPlan& plan);
 BuildPlan makeBuildPlan(const core::GridPlan& plan);
 
@@ -116,12 +117,13 @@ struct BuildSteps {
   bool count;  ///< counts what cells list and makes their lists; where not all fits it only tells the status
 };
 
-/// For dense tiers both steps, and once more without the first when there is room; for others the first.
+/// Dense grid levels take both steps, and once more without the first when there is room. Others take the
+/// first.
 void launchBuild(const BuildPlan& plan, const GridArrays& grid, const Sphere* given, BuildSteps steps,
                  BuildScratch& scratch, cudaStream_t stream);
 
-/// The lists of any tiers, by sorting. The first step waits for the device and gives the status; then room
-/// must be made.
+/// The lists of any grid levels, by sorting. The first step waits for the device and gives the status; then
+/// room must be made.
 BuildStatus sortLists(const BuildPlan& plan, const GridArrays& arrays, BuildScratch& scratch,
                       cudaStream_t stream);
 void launchSorted(const BuildPlan& plan, const GridArrays& arrays, const BuildStatus& status,

@@ -35,23 +35,23 @@ struct CellCounts {
   }
 };
 
-inline __device__ std::uint64_t keyOf(const Tiers& tiers, std::uint64_t cell) {
+inline __device__ std::uint64_t keyOf(const GridLevels& grid_levels, std::uint64_t cell) {
   int t = 0;
-  while (cell >= tiers.first[t + 1]) ++t;
-  return tiers.of[t].keyOf(static_cast<std::uint32_t>(cell - tiers.first[t]));
+  while (cell >= grid_levels.first[t + 1]) ++t;
+  return grid_levels.of[t].keyOf(static_cast<std::uint32_t>(cell - grid_levels.first[t]));
 }
 
-/// A counter for each cell of all tiers. While the lists are filled, the sums of cells move on.
+/// A counter for each cell of all grid levels. While the lists are filled, the sums of cells move on.
 struct DenseCells : CellCounts {
   const core::Cell* used;  ///< those with a list, by rising key
 
-  __device__ core::Cell find(const Tiers& tiers, std::uint64_t key) const {
+  __device__ core::Cell find(const GridLevels& grid_levels, std::uint64_t key) const {
     constexpr std::uint64_t kMask = (1u << core::kAxisBits) - 1;
     const auto axis = [&](int number) {
       return static_cast<std::uint32_t>(key >> number * core::kAxisBits & kMask);
     };
     const int t = static_cast<int>(key >> (3 * core::kAxisBits));
-    const std::uint64_t cell = tiers.first[t] + tiers.of[t].cellAt(axis(0), axis(1), axis(2));
+    const std::uint64_t cell = grid_levels.first[t] + grid_levels.of[t].cellAt(axis(0), axis(1), axis(2));
     const std::uint32_t count = counts[cell];
     return {key, static_cast<std::uint32_t>(placesOf(sums[cell])) - count, count};
   }
@@ -61,7 +61,7 @@ struct DenseCells : CellCounts {
 struct SortedCells : CellCounts {
   const std::uint64_t* keys;
 
-  __device__ core::Cell find(const Tiers&, std::uint64_t key) const {
+  __device__ core::Cell find(const GridLevels&, std::uint64_t key) const {
     std::uint64_t lo = 0;
     for (std::uint64_t hi = cells; lo + 1 < hi;) {
       const std::uint64_t middle = lo + (hi - lo) / 2;
@@ -115,9 +115,9 @@ inline __device__ void fillGroup(const GridArrays& arrays, std::uint32_t cluster
   const bool valid = cluster < clusters;
   const Sphere s = valid ? arrays.clusters[cluster].ball : Sphere{};
   const auto upper = [&](float x) { return maximum(valid ? x + s.radius : -kMax); };
-  const core::Vec3f lo{-upper(-s.x), -upper(-s.y), -upper(-s.z)}, hi{upper(s.x), upper(s.y), upper(s.z)};
-  const core::Vec3f middle = core::middleOf(lo, hi);
-  const core::Vec3r d = core::Vec3r{s.x, s.y, s.z} - core::Vec3r{middle.x, middle.y, middle.z};
+  const Vec3f lo{-upper(-s.x), -upper(-s.y), -upper(-s.z)}, hi{upper(s.x), upper(s.y), upper(s.z)};
+  const Vec3f middle = core::middleOf(lo, hi);
+  const Vec3d d = Vec3d{s.x, s.y, s.z} - Vec3d{middle.x, middle.y, middle.z};
   const double radius = maximum(valid ? sqrt(dot(d, d)) + s.radius : 0.0);
   if (lane == 0) arrays.groups[group] = {middle.x, middle.y, middle.z, __double2float_ru(radius)};
 }
@@ -135,7 +135,7 @@ __device__ void finishGrid(const BuildPlan& plan, const GridArrays& arrays, cons
                            const BuildStatus& status, std::uint64_t thread, std::uint64_t threads) {
   for (std::uint64_t i = thread; i < tableSizeFor(status.cells); i += threads) {
     const std::uint64_t key = arrays.cells[i].key;
-    arrays.cells[i] = key == kNoKey ? core::Cell{0, 0, 0} : cells.find(plan.tiers, key);
+    arrays.cells[i] = key == kNoKey ? core::Cell{0, 0, 0} : cells.find(plan.grid_levels, key);
   }
   if (thread != 0) return;
   core::GridView view = plan.grid.view;

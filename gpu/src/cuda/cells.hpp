@@ -6,28 +6,28 @@
 
 namespace innersphere::device {
 
-/// A cluster and a tier for a warp, or a part of these.
-struct ClusterJob {
-  unsigned cluster, part, parts;
-  int tier;
+/// A cluster and a grid level for a warp, or a slice of these.
+struct ListTask {
+  unsigned cluster, slice, slices;
+  int grid_level;
   std::uint32_t first, count;  ///< spheres
 };
 
-inline __device__ ClusterJob clusterJob(const BuildPlan& plan, unsigned number) {
-  const Jobs& jobs = plan.jobs;
-  ClusterJob job;
+inline __device__ ListTask listTask(const BuildPlan& plan, unsigned number) {
+  const ListTasks& tasks = plan.list_tasks;
+  ListTask task;
   int level = plan.grid.levels - 1;
-  while (number >= jobs.end[level]) --level;
-  const unsigned at = number - (level + 1 < plan.grid.levels ? jobs.end[level + 1] : 0);
-  const unsigned of_level = at / jobs.of_cluster[level];
-  job.cluster = jobs.first_cluster[level] + of_level;
-  job.first = plan.grid.level_first[level] + of_level * core::kClusterSize;
-  job.count = min(core::kClusterSize, plan.grid.level_first[level + 1] - job.first);
-  job.part = at % jobs.of_cluster[level];
-  for (job.tier = 0;; ++job.tier) {
-    job.parts = jobs.parts(level, plan.grid.levelsAbove(level, job.tier));
-    if (job.part < job.parts) return job;
-    job.part -= job.parts;
+  while (number >= tasks.end[level]) --level;
+  const unsigned at = number - (level + 1 < plan.grid.levels ? tasks.end[level + 1] : 0);
+  const unsigned of_level = at / tasks.of_cluster[level];
+  task.cluster = tasks.first_cluster[level] + of_level;
+  task.first = plan.grid.level_first[level] + of_level * core::kClusterSize;
+  task.count = min(core::kClusterSize, plan.grid.level_first[level + 1] - task.first);
+  task.slice = at % tasks.of_cluster[level];
+  for (task.grid_level = 0;; ++task.grid_level) {
+    task.slices = tasks.slices(level, plan.grid.levelsAbove(level, task.grid_level));
+    if (task.slice < task.slices) return task;
+    task.slice -= task.slices;
   }
 }
 
@@ -73,16 +73,16 @@ struct CellBoxOfWarp {
   }
 };
 
-/// Those from number `from` on.
+/// Looks at kTogether cells near a sphere, from number `from` on.
 template <typename Cell>
-__device__ __forceinline__ void lookAt(const core::TierCells& tier, const core::CellsNear& near,
+__device__ __forceinline__ void lookAt(const core::GridLevel& grid_level, const core::CellsNear& near,
                                        const CellBoxOfWarp& box, unsigned from, SomeCells<Cell>& some) {
   const std::uint32_t nx = near.hi[0] - near.lo[0] + 1, ny = near.hi[1] - near.lo[1] + 1, row = from / nx;
   std::uint32_t x = near.lo[0] + from % nx, y = near.lo[1] + row % ny, z = near.lo[2] + row / ny;
   some.mask = 0;
 #pragma unroll
   for (unsigned k = 0; k < kTogether; ++k) {
-    some.cells[k] = (static_cast<Cell>(z) * tier.size[1] + y) * tier.size[0] + x;
+    some.cells[k] = (static_cast<Cell>(z) * grid_level.size[1] + y) * grid_level.size[0] + x;
     some.in_box[k] = ((z - box.lo[2]) * box.size[1] + y - box.lo[1]) * box.size[0] + x - box.lo[0];
     if (z <= near.hi[2] && !near.isFar(x, y, z)) some.mask |= 1u << k;
     const bool next_row = ++x > near.hi[0];
@@ -94,18 +94,18 @@ __device__ __forceinline__ void lookAt(const core::TierCells& tier, const core::
   }
 }
 
-/// Calls f(some, whether the box of all of them fits) for all cells of the job's tier that list one of its
-/// spheres, kTogether at a time; all lanes call f together. `sphere` is the lane's, relative to the centre.
-/// Lanes share all cells, as some spheres are in many.
+/// Calls f(some, whether the box of all of them fits) for all cells of the task's grid level that list one of
+/// its spheres, kTogether at a time; all lanes call f together. `sphere` is the lane's, relative to the
+/// centre. Lanes share all cells, as some spheres are in many.
 template <typename Cell, typename F>
-__device__ void forCells(const Tiers& tiers, const ClusterJob& job, const Sphere& sphere, unsigned lane,
-                         core::CellsNear (&shared)[kWarp], const F& f) {
-  const core::TierCells& tier = tiers.of[job.tier];
+__device__ void forCells(const GridLevels& grid_levels, const ListTask& task, const Sphere& sphere,
+                         unsigned lane, core::CellsNear (&shared)[kWarp], const F& f) {
+  const core::GridLevel& grid_level = grid_levels.of[task.grid_level];
   unsigned calls = 0;
   core::CellsNear near{};
   __syncwarp();
-  if (lane < job.count && job.first + lane >= tier.first_place) {
-    near = tier.near(sphere);
+  if (lane < task.count && task.first + lane >= grid_level.first_place) {
+    near = grid_level.near(sphere);
     unsigned cells = 1;
     for (int axis = 0; axis < 3; ++axis) cells *= near.hi[axis] - near.lo[axis] + 1;
     calls = (cells + kTogether - 1) / kTogether;
@@ -115,7 +115,7 @@ __device__ void forCells(const Tiers& tiers, const ClusterJob& job, const Sphere
   const unsigned scanned = scan(calls, lane), begin = scanned - calls;
   const unsigned total = __shfl_sync(kAll, scanned, kWarp - 1);
   __syncwarp();
-  for (unsigned all = job.part * kWarp; all < total; all += job.parts * kWarp) {
+  for (unsigned all = task.slice * kWarp; all < total; all += task.slices * kWarp) {
     const unsigned at = all + lane;
     unsigned owner = 0;
 #pragma unroll
@@ -124,9 +124,9 @@ __device__ void forCells(const Tiers& tiers, const ClusterJob& job, const Sphere
     }
     const unsigned first = __shfl_sync(kAll, begin, owner);
     SomeCells<Cell> some;
-    some.place = job.first + owner;
+    some.place = task.first + owner;
     if (at < total) {
-      lookAt(tier, shared[owner], box, kTogether * (at - first), some);
+      lookAt(grid_level, shared[owner], box, kTogether * (at - first), some);
     } else {
       some.mask = 0;
     }

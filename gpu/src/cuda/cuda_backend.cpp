@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 
-#include "cpu/hit_sorter.hpp"
+#include "batch/results.hpp"
 #include "cuda/batch_part.hpp"
 
 namespace innersphere {
 
 namespace {
 
-using device::Part;
+using device::BatchPart;
 
 /// A batch goes in parts, two of them at a time, so that the device need not wait for the host.
 class CudaBackend : public QueryBackend {
@@ -79,13 +79,13 @@ class CudaBackend : public QueryBackend {
     ranges.first.assign(queries_->size() + 1, 0);
   }
 
-  Part& oldest() { return parts_[first_ % parts_.size()]; }
+  BatchPart& oldest() { return parts_[first_ % parts_.size()]; }
 
   /// False if there is no other part, or no room for it now.
   bool startPart() {
     if (next_ == queries_->size() || under_way_ == parts_.size()) return false;
-    Part& part = parts_[(first_ + under_way_) % parts_.size()];
-    const std::size_t end = Part::endOf(*queries_, next_);
+    BatchPart& part = parts_[(first_ + under_way_) % parts_.size()];
+    const std::size_t end = BatchPart::endOf(*queries_, next_);
     part.start(device_, *queries_, {next_, end}, want_, workers_);
     ++under_way_;
     next_ = end;
@@ -93,8 +93,8 @@ class CudaBackend : public QueryBackend {
   }
 
   void collect() {
-    const Part& part = oldest();
-    const Part::Range range = part.range();
+    const BatchPart& part = oldest();
+    const BatchPart::Range range = part.range();
     for (std::size_t q = range.begin; q < range.end; ++q)
       staged_.overlaps[q] = toOverlap(part.results()[q - range.begin]);
     if (want_ == Want::pairs) append(part.lists().pairs, range, staged_.pairs);
@@ -107,7 +107,7 @@ class CudaBackend : public QueryBackend {
   }
 
   template <typename T>
-  void append(const device::HitList<T>& from, Part::Range range, QueryResult::Ranges<T>& to) {
+  void append(const device::PinnedList<T>& from, BatchPart::Range range, QueryResult::Ranges<T>& to) {
     constexpr std::size_t kGrain = 4096;
     const std::size_t before = to.first[range.begin], count = from.first.data()[range.size()];
     to.items.resize(before + count);
@@ -119,7 +119,7 @@ class CudaBackend : public QueryBackend {
 
   Workers& workers_;
   device::Device device_;
-  std::array<Part, 2> parts_;
+  std::array<BatchPart, 2> parts_;
   const std::vector<PreparedQuery>* queries_ = nullptr;
   Want want_ = Want::wrench;
   std::size_t next_ = 0;       ///< query that no part has

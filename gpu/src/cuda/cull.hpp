@@ -10,18 +10,18 @@ constexpr unsigned kCullWarps = 4;  ///< in a block
 /// A block takes a query, a warp up to kWarp groups of one of its bodies: a lane tests a group, then all test
 /// the clusters of each group that passed.
 __global__ void __launch_bounds__(kCullWarps* kWarp) cullClusters(const __grid_constant__ Batch batch) {
-  constexpr unsigned kTask = kWarp * kGroup;  // clusters
+  constexpr unsigned kWarpClusters = kWarp * kGroup;
   const unsigned lane = threadIdx.x % kWarp, number = blockIdx.x;
   const Query& query = batch.queries[number];
-  unsigned task = blockIdx.y * kCullWarps + threadIdx.x / kWarp;
-  if (task == 0) {
+  unsigned warp = blockIdx.y * kCullWarps + threadIdx.x / kWarp;
+  if (warp == 0) {
     for (unsigned i = lane; i < kSumWords; i += kWarp)
       reinterpret_cast<unsigned long long*>(batch.sums + number)[i] = 0;
   }
-  const unsigned tasks_a = (query.clusters[0] + kTask - 1) / kTask;
-  const unsigned side = task < tasks_a ? 0 : 1;
-  if (side != 0) task -= tasks_a;
-  const unsigned clusters = query.clusters[side], first = task * kTask;
+  const unsigned warps_a = (query.clusters[0] + kWarpClusters - 1) / kWarpClusters;
+  const unsigned side = warp < warps_a ? 0 : 1;
+  if (side != 0) warp -= warps_a;
+  const unsigned clusters = query.clusters[side], first = warp * kWarpClusters;
   if (first >= clusters) return;
   const Grid& own = *query.grids[side];
   const core::GridView& grid = query.grids[1 - side]->view;
@@ -37,15 +37,16 @@ __global__ void __launch_bounds__(kCullWarps* kWarp) cullClusters(const __grid_c
     const unsigned meeting = __ballot_sync(kAll, meets);
     if (lane == from) mask = meeting;
   }
-  unsigned items = 0;
-  for (unsigned k = 0; k < kGroup; k += kItem) items += (mask >> k & ((1u << kItem) - 1)) != 0;
-  const unsigned before = scan(items, lane);
+  unsigned tasks = 0;
+  for (unsigned k = 0; k < kGroup; k += kTaskClusters)
+    tasks += (mask >> k & ((1u << kTaskClusters) - 1)) != 0;
+  const unsigned before = scan(tasks, lane);
   unsigned at = 0;
-  if (lane == kWarp - 1 && before > 0) at = atomicAdd(&batch.counters->items, before);
-  at = __shfl_sync(kAll, at, kWarp - 1) + before - items;
-  for (unsigned k = 0; k < kGroup; k += kItem) {
-    const unsigned some = mask >> k & ((1u << kItem) - 1);
-    if (some != 0) batch.items[at++] = packItem({number, side, first + lane * kGroup + k, some});
+  if (lane == kWarp - 1 && before > 0) at = atomicAdd(&batch.counters->tasks, before);
+  at = __shfl_sync(kAll, at, kWarp - 1) + before - tasks;
+  for (unsigned k = 0; k < kGroup; k += kTaskClusters) {
+    const unsigned some = mask >> k & ((1u << kTaskClusters) - 1);
+    if (some != 0) batch.tasks[at++] = packTask({number, side, first + lane * kGroup + k, some});
   }
 }
 

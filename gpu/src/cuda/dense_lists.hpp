@@ -40,10 +40,11 @@ inline __device__ void listIn(const SomeCells<std::uint32_t>& some, bool togethe
 /// Puts a cluster's spheres into lists.
 inline __device__ void fillLists(const BuildPlan& plan, const GridArrays& grid, std::uint64_t* sums,
                                  unsigned number, unsigned lane, WarpCells& shared) {
-  const ClusterJob job = clusterJob(plan, number);
-  const Sphere s = lane < job.count ? plan.grid.centred(loadNew(grid.spheres + job.first + lane)) : Sphere{};
-  auto* const next = reinterpret_cast<unsigned long long*>(sums) + plan.tiers.first[job.tier];
-  forCells<std::uint32_t>(plan.tiers, job, s, lane, shared.near,
+  const ListTask task = listTask(plan, number);
+  const Sphere s =
+      lane < task.count ? plan.grid.centred(loadNew(grid.spheres + task.first + lane)) : Sphere{};
+  auto* const next = reinterpret_cast<unsigned long long*>(sums) + plan.grid_levels.first[task.grid_level];
+  forCells<std::uint32_t>(plan.grid_levels, task, s, lane, shared.near,
                           [&](const SomeCells<std::uint32_t>& some, bool together) {
                             listIn(some, together, next, grid.listed, shared);
                           });
@@ -65,7 +66,7 @@ inline __device__ void fillGrid(const BuildPlan& plan, const GridArrays& grid, c
   });
   if (!room) return;
   shared.clear(threads.lane());
-  threads.eachWarp(plan.jobs.all, [&](std::uint64_t number, unsigned lane) {
+  threads.eachWarp(plan.list_tasks.all, [&](std::uint64_t number, unsigned lane) {
     fillLists(plan, grid, cells.sums, static_cast<unsigned>(number), lane, shared);
   });
   last_first.each(entriesOfAll(plan.grid.view.count),
@@ -77,7 +78,7 @@ inline __device__ void fillGrid(const BuildPlan& plan, const GridArrays& grid, c
 
 constexpr unsigned kLanes = 16;  ///< that put a list in order
 
-/// Of a list, while it is put in order.
+/// The memory of a list while it is put in order.
 struct alignas(16) ListInOrder {
   std::uint32_t filled[kLongestInOrder];
   std::uint32_t sorted[kLongestInOrder];

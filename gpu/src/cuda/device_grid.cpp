@@ -8,8 +8,8 @@ namespace innersphere::device {
 
 namespace {
 
-/// Cells near a sphere, at most, if its level is `above` that of the tier's largest walkers, whose diameter
-/// is half a cell.
+/// Cells near a sphere, at most, if its level is `above` that of the grid level's largest query spheres,
+/// whose diameter is half a cell.
 double cellsNear(int above) {
   const double radius = std::ldexp(0.25, above);  // in cells
   return std::pow(2 * (radius + 0.25) + 2, 3);
@@ -18,26 +18,26 @@ double cellsNear(int above) {
 }  // namespace
 
 bool isDense(const BuildPlan& plan) {
-  const Tiers& tiers = plan.tiers;
-  for (int t = 0; t < tiers.count; ++t) {
-    if (!core::isDense(tiers.of[t], plan.grid.view.count)) return false;
+  const GridLevels& grid_levels = plan.grid_levels;
+  for (int t = 0; t < grid_levels.count; ++t) {
+    if (!core::isDense(grid_levels.of[t], plan.grid.view.count)) return false;
   }
   constexpr std::uint64_t kMostCells = 1u << 27;  // more are not worth their memory, nor fit sums of cells
-  return tiers.first[tiers.count] <= kMostCells;
+  return grid_levels.first[grid_levels.count] <= kMostCells;
 }
 
 BuildPlan makeBuildPlan(const core::GridPlan& grid) {
   BuildPlan plan{};
   plan.grid = grid;
-  plan.tiers.count = grid.view.tiers;
-  for (int t = 0; t < grid.view.tiers; ++t) {
-    plan.tiers.of[t] = core::makeTier(grid, t);
-    plan.tiers.first[t + 1] = plan.tiers.first[t] + plan.tiers.of[t].count;
+  plan.grid_levels.count = grid.view.grid_levels;
+  for (int t = 0; t < grid.view.grid_levels; ++t) {
+    plan.grid_levels.of[t] = core::makeGridLevel(grid, t);
+    plan.grid_levels.first[t + 1] = plan.grid_levels.first[t] + plan.grid_levels.of[t].count;
   }
-  Jobs& jobs = plan.jobs;
-  constexpr double kMostNear = 1 << 21;  // beyond that parts grow
+  ListTasks& tasks = plan.list_tasks;
+  constexpr double kMostNear = 1 << 21;  // beyond that slices grow
   for (int above = 0; above < grid.levels; ++above)
-    jobs.cells_near[above] = static_cast<unsigned>(std::min(cellsNear(above), kMostNear));
+    tasks.cells_near[above] = static_cast<unsigned>(std::min(cellsNear(above), kMostNear));
   unsigned clusters[core::kMostLevels] = {}, before = 0;
   for (int level = 0; level < grid.levels; ++level) {
     const unsigned spheres = grid.level_first[level + 1] - grid.level_first[level];
@@ -45,18 +45,18 @@ BuildPlan makeBuildPlan(const core::GridPlan& grid) {
     plan.buckets.first[level] = plan.buckets.all;
     plan.buckets.shift[level] = 3 * grid.curve_bits - bits;
     plan.buckets.all += 1u << bits;
-    jobs.in_cluster[level] = std::min(spheres, core::kClusterSize);
+    tasks.in_cluster[level] = std::min(spheres, core::kClusterSize);
     clusters[level] = (spheres + core::kClusterSize - 1) / core::kClusterSize;
     if (spheres > 0 && cellsNear(grid.levelsAbove(level, 0)) >= 0x1p31)
       throw Error(ErrorCode::bad_argument, "the spheres differ too much in size for a device; use fewer");
-    jobs.first_cluster[level] = before;
+    tasks.first_cluster[level] = before;
     before += clusters[level];
-    for (int t = 0; t < grid.view.tiers && grid.levelsAbove(level, t) >= 0; ++t)
-      jobs.of_cluster[level] += jobs.parts(level, grid.levelsAbove(level, t));
+    for (int t = 0; t < grid.view.grid_levels && grid.levelsAbove(level, t) >= 0; ++t)
+      tasks.of_cluster[level] += tasks.slices(level, grid.levelsAbove(level, t));
   }
   for (int level = grid.levels - 1; level >= 0; --level) {
-    jobs.all += clusters[level] * jobs.of_cluster[level];
-    jobs.end[level] = jobs.all;
+    tasks.all += clusters[level] * tasks.of_cluster[level];
+    tasks.end[level] = tasks.all;
   }
   return plan;
 }

@@ -9,8 +9,8 @@ namespace innersphere::device {
 
 /// The list that a sphere of the cluster goes through. A step tests up to kStepPairs pairs of its spheres
 /// that are `steps` apart, so that lanes with neighbouring steps read neighbours.
-struct alignas(16) Walk {
-  HalfWalker walker;
+struct alignas(16) ListTraversal {
+  HalfQuerySphere query_sphere;
   unsigned self;   ///< place, with flags
   unsigned shift;  ///< from the step of the warp to the first pair in the list, modulo 2^32
   unsigned steps;
@@ -19,17 +19,17 @@ struct alignas(16) Walk {
 constexpr unsigned kStepPairs = 4;  ///< see entriesOfAll()
 
 /// The spheres of the cluster that have a list to go through, as all lanes read them.
-struct Walking {
-  Walk walks[kWarp];
+struct ListTraversals {
+  ListTraversal of[kWarp];
   core::Lookup lookups[kWarp];  ///< of those that look into several cells
 };
 
-/// Flags of a walker's place.
+/// Flags of a query sphere's place.
 constexpr unsigned kFromA = 1u << 31;
 constexpr unsigned kSeveral = 1u << 30;  ///< it looks into several cells
 constexpr unsigned kPlace = kSeveral - 1;
 
-/// A pair to decide: walker, and where its partner is listed.
+/// A pair to decide: query sphere, and where its partner is listed.
 using Candidate = uint2;
 
 /// The bits of all lanes.
@@ -46,7 +46,7 @@ inline __device__ unsigned anyLane(unsigned bits) {
 struct List {
   std::uint32_t first, count;
   unsigned flags;
-  HalfWalker walker;
+  HalfQuerySphere query_sphere;
 };
 
 inline __device__ unsigned pairsOf(unsigned spheres) {
@@ -62,18 +62,17 @@ inline __device__ core::Cell cellAt(const core::GridView& grid, std::uint64_t ke
   }
 }
 
-/// What a walker meets in the cell number `number` of those where it looks, `count` in all. Nearly all look
-/// into one; beyond the grid there is none.
+/// What a query sphere meets in the cell number `number` of those where it looks, `count` in all. Nearly all
+/// look into one; beyond the grid there is none.
 inline __device__ List listOf(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t number,
                               std::uint32_t& count) {
   constexpr float kEnd = 1 << core::kAxisBits;
-  int tier = core::tierOf(grid, core::levelOf(lookup.smallest));
-  const float scale = core::powerOfTwo(-(grid.finest + tier));
-  core::Vec3f cell{floorf((lookup.p.x + grid.half.x) * scale) + 1,
-                   floorf((lookup.p.y + grid.half.y) * scale) + 1,
-                   floorf((lookup.p.z + grid.half.z) * scale) + 1};
+  int grid_level = core::gridLevelOf(grid, core::levelOf(lookup.smallest));
+  const float scale = core::powerOfTwo(-(grid.finest + grid_level));
+  Vec3f cell{floorf((lookup.p.x + grid.half.x) * scale) + 1, floorf((lookup.p.y + grid.half.y) * scale) + 1,
+             floorf((lookup.p.z + grid.half.z) * scale) + 1};
   List list{};
-  if (lookup.reach <= core::reachOf(grid, tier) && fminf(fminf(cell.x, cell.y), cell.z) >= 0 &&
+  if (lookup.reach <= core::reachOf(grid, grid_level) && fminf(fminf(cell.x, cell.y), cell.z) >= 0 &&
       fmaxf(fmaxf(cell.x, cell.y), cell.z) < kEnd) {
     count = 1;
     if (number > 0) return {};
@@ -82,23 +81,25 @@ inline __device__ List listOf(const core::GridView& grid, const core::Lookup& lo
     count = cells.count;
     if (number >= count) return {};
     if (cells.all)  // see Grid::entries
-      return {grid.listed_count / 2, pairsOf(grid.count), 0, makeHalfWalker(grid, frameOfAll(grid), lookup)};
+      return {grid.listed_count / 2, pairsOf(grid.count), 0,
+              makeHalfQuerySphere(grid, frameOfAll(grid), lookup)};
     std::uint32_t at[3];
     cells.coordinates(number, at);
     cell = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
-    tier = cells.tier;
+    grid_level = cells.grid_level;
     list.flags = count > 1 ? kSeveral : 0;
   }
-  list.walker = makeHalfWalker(grid, frameOf(grid, tier, cell), lookup);
+  list.query_sphere = makeHalfQuerySphere(grid, frameOf(grid, grid_level, cell), lookup);
   const core::Cell found =
-      cellAt(grid, core::cellKey(tier, static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y),
-                                 static_cast<std::uint32_t>(cell.z)));
+      cellAt(grid, core::cellKey(grid_level, static_cast<std::uint32_t>(cell.x),
+                                 static_cast<std::uint32_t>(cell.y), static_cast<std::uint32_t>(cell.z)));
   list.first = found.first / 2;
   list.count = pairsOf(found.count);
   return list;
 }
 
-/// Of a walker that looks into several cells: whether the partner at this place of a list counts in this one.
+/// Whether the partner of a query sphere that looks into several cells, at this place of a list, counts in
+/// this one.
 inline __device__ bool countsHere(const core::GridView& grid, const core::Lookup& lookup,
                                   std::uint32_t number, std::uint32_t listed) {
   const core::Cells cells = core::cellsOf(grid, lookup);
@@ -125,9 +126,9 @@ struct Lists {
   }
 };
 
-/// Puts the lists of all lanes into a row, with their walkers, those that have one, in `walking`.
+/// Puts the lists of all lanes into a row, with their query spheres, those that have one, in `traversals`.
 inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, unsigned self, unsigned lane,
-                               Walking& walking) {
+                               ListTraversals& traversals) {
   const unsigned steps = (list.count + kStepPairs - 1) / kStepPairs;
   const unsigned scanned = scan(steps, lane);
   const unsigned owners = __ballot_sync(kAll, steps != 0);
@@ -135,9 +136,9 @@ inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, uns
   __syncwarp();
   if (lists.any) {
     const unsigned to = __popc(owners & ((1u << lane) - 1));
-    walking.walks[to] = {list.walker, self | list.flags, list.first - lists.begin, steps,
+    traversals.of[to] = {list.query_sphere, self | list.flags, list.first - lists.begin, steps,
                          list.first + list.count};
-    if (list.flags & kSeveral) walking.lookups[to] = lookup;
+    if (list.flags & kSeveral) traversals.lookups[to] = lookup;
   }
   __syncwarp();
   return lists;
@@ -146,18 +147,20 @@ inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, uns
 /// The candidates of a warp that wait to be decided. Most clusters have fewer.
 constexpr unsigned kQueue = 288;
 using Queue = Candidate[kQueue];
-static_assert(kQueue >= kWarp - 1 + kWarp * 2 * kStepPairs, "room for one round beside what is left over");
+static_assert(kQueue >= kWarp - 1 + kWarp * 2 * kStepPairs,
+              "room for one iteration beside what is left over");
 
-/// One round: each lane tests a step. `number` is that of the cell of walkers that look into several. False,
-/// and nothing is queued, if there is no room. All lanes call it.
+/// One iteration: each lane tests a step. `number` is that of the cell of query spheres that look into
+/// several. False, and nothing is queued, if there is no room. All lanes call it.
 inline __device__ bool testStep(const Grid& grid, const Lists& lists, std::uint32_t number, unsigned first,
-                                unsigned lane, const Walking& walking, Queue& queue, unsigned& queued) {
+                                unsigned lane, const ListTraversals& traversals, Queue& queue,
+                                unsigned& queued) {
   const unsigned owner = lists.ownerOf(first, lane);
   const auto pairOfBit = [](unsigned bit) { return 15 - bit % 16; };
   const bool any = first + lane < lists.total;
-  const Walk& walk = walking.walks[owner];
-  const unsigned self = walk.self, end = walk.end, steps = any ? walk.steps : 0;
-  const unsigned at = any ? walk.shift + first + lane : end;
+  const ListTraversal& list = traversals.of[owner];
+  const unsigned self = list.self, end = list.end, steps = any ? list.steps : 0;
+  const unsigned at = any ? list.shift + first + lane : end;
   EntryPair pairs[kStepPairs];  // maybe some beyond the end
 #pragma unroll
   for (unsigned k = 0; k < kStepPairs; ++k) pairs[k] = load(grid.entries + (at + k * steps));
@@ -165,14 +168,14 @@ inline __device__ bool testStep(const Grid& grid, const Lists& lists, std::uint3
   unsigned found = 0;  // bit 31 - k: the second of pair k; 15 - k: the first
 #pragma unroll
   for (unsigned k = 0; k < kStepPairs; ++k) {
-    const unsigned both = met(walk.walker, pairs[k]) >> k;
+    const unsigned both = met(list.query_sphere, pairs[k]) >> k;
     if (at + k * steps < end) found |= both;
   }
   if (found != 0 && self & kSeveral) {
     for (unsigned left = found; left != 0; left &= left - 1) {
       const auto bit = static_cast<unsigned>(__ffs(static_cast<int>(left)) - 1);
       const unsigned listed = 2 * (at + pairOfBit(bit) * steps) + bit / 16;
-      if (!countsHere(grid.view, walking.lookups[owner], number, listed)) found ^= 1u << bit;
+      if (!countsHere(grid.view, traversals.lookups[owner], number, listed)) found ^= 1u << bit;
     }
   }
   const unsigned mine = __popc(found), before = scan(mine, lane);

@@ -1,36 +1,38 @@
-// The spheres of lists as a walk tests them: in half precision, two by two, so that one instruction does two
-// of them. Each is a little larger than its sphere, so that nothing is missed: core::Pair has the last word.
+// The spheres of lists as a traversal tests them: in half precision, two by two, so that one instruction does
+// two of them. Each is a little larger than its sphere, so that nothing is missed: core::Pair has the last
+// word.
 //
-// Positions are relative to the middle of the list's cell, in its edges. If a walker meets a partner, |q - p|
+// Positions are relative to the middle of the list's cell, in its edges. If a query sphere meets a partner,
+// |q - p|
 // <= r + R, then so do their copies, whose radii grow by what rounding moves the centres. With u = 2^-11,
 // what a half rounds by, the square of the copies' distance comes out by up to 5 u too large, and radii and
-// their sum by up to 2 u too small, so radii also grow by 5 u; and walkers by something, as squares of halves
-// can be too small for one.
+// their sum by up to 2 u too small, so radii also grow by 5 u; and query spheres by something, as squares of
+// halves can be too small for one.
 #pragma once
 
 #include <cuda_fp16.h>
 
 #include <cstring>
 
-#include "core/tier_cells.hpp"
+#include "core/grid_level.hpp"
 #include "cuda/batch.hpp"
 
 namespace innersphere::device {
 
 /// Where a list's spheres are measured from.
 struct CellFrame {
-  core::Vec3f middle;  ///< in edges, from the corner of the box around the grid
-  float scale;         ///< edges in a metre
+  Vec3f middle;  ///< in edges, from the corner of the box around the grid
+  float scale;   ///< edges in a metre
 };
 
-/// Of the cell with these coordinates; number 0 is before the first.
-inline __device__ CellFrame frameOf(const core::GridView& grid, int tier, const core::Vec3f& cell) {
-  return {cell - core::Vec3f{0.5f, 0.5f, 0.5f}, core::powerOfTwo(-(grid.finest + tier))};
+/// The frame of the cell with these coordinates; number 0 is before the first.
+inline __device__ CellFrame frameOf(const core::GridView& grid, int grid_level, const Vec3f& cell) {
+  return {cell - Vec3f{0.5f, 0.5f, 0.5f}, core::powerOfTwo(-(grid.finest + grid_level))};
 }
 
-/// Of the list of all spheres: a cell around them.
+/// The frame of the list of all spheres: a cell around them.
 inline __device__ CellFrame frameOfAll(const core::GridView& grid) {
-  const core::Vec3f& half = grid.half;
+  const Vec3f& half = grid.half;
   const float scale = core::powerOfTwo(-core::levelOf(fmaxf(fmaxf(half.x, half.y), half.z)));
   return {scale * half, scale};
 }
@@ -57,9 +59,9 @@ constexpr float kHalfFloor = 1.0f / (1 << 11);  ///< in edges
 /// A copy of a ball at `p`, relative to the centre of the grid; its radius is in edges. Squares of halves
 /// reach to 65504, so what is beyond `farthest` becomes a ball about the middle that meets all that has to do
 /// with the cell.
-inline __device__ HalfBall halfBall(const core::GridView& grid, const CellFrame& frame, const core::Vec3f& p,
+inline __device__ HalfBall halfBall(const core::GridView& grid, const CellFrame& frame, const Vec3f& p,
                                     float radius, float farthest, float everything) {
-  const core::Vec3f at = frame.scale * (p + grid.half) - frame.middle;
+  const Vec3f at = frame.scale * (p + grid.half) - frame.middle;
   const bool far = !(fmaxf(fmaxf(fabsf(at.x), fabsf(at.y)), fmaxf(fabsf(at.z), radius)) <= farthest);
   const __half2 xy = __floats2half2_rn(at.x, at.y);
   const float z = __half2float(__float2half_rn(at.z));
@@ -68,7 +70,7 @@ inline __device__ HalfBall halfBall(const core::GridView& grid, const CellFrame&
   return {xy, __floats2half2_rn(z, kHalfGrown * (radius + moved))};
 }
 
-/// A sphere of a list. A walker that has to do with its cell is not farther than 60 edges from it.
+/// A sphere of a list. A query sphere that has to do with its cell is not farther than 60 edges from it.
 inline __device__ HalfBall partnerBall(const core::GridView& grid, const CellFrame& frame, const Sphere& s) {
   return halfBall(grid, frame, {s.x, s.y, s.z}, frame.scale * s.radius, 128, 120);
 }
@@ -84,14 +86,14 @@ inline __device__ EntryPair pairOf(const HalfBall& a, const HalfBall& b) {
           bitsOf(__lows2half2(a.z_radius, b.z_radius)), bitsOf(__highs2half2(a.z_radius, b.z_radius))};
 }
 
-/// A walker's copy.
-struct HalfWalker {
+/// A query sphere's copy.
+struct HalfQuerySphere {
   unsigned xy, z_reach;
   unsigned smallest;  ///< of copies that are not too small for it; twice
 };
 
-inline __device__ HalfWalker makeHalfWalker(const core::GridView& grid, const CellFrame& frame,
-                                            const core::Lookup& lookup) {
+inline __device__ HalfQuerySphere makeHalfQuerySphere(const core::GridView& grid, const CellFrame& frame,
+                                                      const core::Lookup& lookup) {
   constexpr float kShrunk =
       kHalfGrown * (1 - 2.0f / (1 << 11));  // both are rounded, and the smallest to a quantum
   const HalfBall ball = halfBall(grid, frame, lookup.p, frame.scale * lookup.reach + kHalfFloor, 60, 100);
@@ -101,16 +103,16 @@ inline __device__ HalfWalker makeHalfWalker(const core::GridView& grid, const Ce
 
 constexpr unsigned kFirstMet = 1u << 15, kSecondMet = 1u << 31;
 
-/// Bits for those of two that a walker meets.
-inline __device__ unsigned met(const HalfWalker& walker, const EntryPair& pair) {
-  const __half2 xy = halvesOf(walker.xy), z_reach = halvesOf(walker.z_reach);
+/// Bits for those of two that a query sphere meets.
+inline __device__ unsigned met(const HalfQuerySphere& query_sphere, const EntryPair& pair) {
+  const __half2 xy = halvesOf(query_sphere.xy), z_reach = halvesOf(query_sphere.z_reach);
   const __half2 dx = __hsub2(halvesOf(pair.x), __low2half2(xy));
   const __half2 dy = __hsub2(halvesOf(pair.y), __high2half2(xy));
   const __half2 dz = __hsub2(halvesOf(pair.z), __low2half2(z_reach));
   const __half2 radius = halvesOf(pair.radius), sum = __hadd2(radius, __high2half2(z_reach));
   const __half2 distance2 = __hfma2(dz, dz, __hfma2(dy, dy, __hmul2(dx, dx)));
   const unsigned nearer = bitsOf(__hfma2(__hneg2(sum), sum, distance2));  // negative
-  const unsigned too_small = bitsOf(__hsub2(radius, halvesOf(walker.smallest)));
+  const unsigned too_small = bitsOf(__hsub2(radius, halvesOf(query_sphere.smallest)));
   return nearer & ~too_small & (kFirstMet | kSecondMet);
 }
 

@@ -5,8 +5,9 @@
 
 namespace innersphere::device {
 
-/// Walks a batch, or a `single` query. `most_clusters`: of both bodies of any query; `most_items`: of all.
-void launchWalk(Goal goal, const Batch& batch, const Query* single, unsigned most_clusters,
-                std::size_t most_items, unsigned processors, cudaStream_t stream);
+/// Traverses a batch, or a `single` query. `most_clusters`: of both bodies of any query; `most_tasks`: of
+/// all.
+void launchTraversal(Goal goal, const Batch& batch, const Query* single, unsigned most_clusters,
+                     std::size_t most_tasks, unsigned processors, cudaStream_t stream);
 
 }  // namespace innersphere::device

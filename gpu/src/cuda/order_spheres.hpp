@@ -21,7 +21,7 @@ struct Threads {
 
   __device__ unsigned lane() const { return static_cast<unsigned>(first % kWarp); }
 
-  /// For warps. f gets a number and the lane.
+  /// Calls f(item, lane) with a warp for each item.
   template <typename F>
   __device__ void eachWarp(std::uint64_t items, const F& f) const {
     for (std::uint64_t i = first / kWarp; i < items; i += count / kWarp) f(i, lane());
@@ -101,9 +101,9 @@ inline __device__ void orderBuckets(const BuildPlan& plan, const GridArrays& gri
 inline __device__ Sphere ballAround(const Sphere& s, bool valid) {
   constexpr float kMax = 3.402823466e+38f;
   const auto upper = [&](float x) { return maximum(valid ? x : -kMax); };
-  const core::Vec3f lo{-upper(-s.x), -upper(-s.y), -upper(-s.z)}, hi{upper(s.x), upper(s.y), upper(s.z)};
-  const core::Vec3f middle = core::middleOf(lo, hi);
-  const core::Vec3r d = core::Vec3r{s.x, s.y, s.z} - core::Vec3r{middle.x, middle.y, middle.z};
+  const Vec3f lo{-upper(-s.x), -upper(-s.y), -upper(-s.z)}, hi{upper(s.x), upper(s.y), upper(s.z)};
+  const Vec3f middle = core::middleOf(lo, hi);
+  const Vec3d d = Vec3d{s.x, s.y, s.z} - Vec3d{middle.x, middle.y, middle.z};
   const double radius = maximum(valid ? sqrt(dot(d, d)) + s.radius : 0.0);
   return {middle.x, middle.y, middle.z, nextafterf(static_cast<float>(radius), INFINITY)};
 }
@@ -129,17 +129,17 @@ inline __device__ void countCells(const SomeCells<std::uint32_t>& some, bool tog
 inline __device__ void makeClusters(const BuildPlan& plan, const GridArrays& grid, const BuildArrays& arrays,
                                     bool count, WarpCells& shared, const Threads& threads) {
   shared.clear(threads.lane());
-  threads.eachWarp(plan.jobs.all, [&](std::uint64_t number, unsigned lane) {
-    const ClusterJob job = clusterJob(plan, static_cast<unsigned>(number));
-    const bool valid = lane < job.count;
-    const Sphere s = valid ? loadNew(grid.spheres + job.first + lane) : Sphere{};
-    if (job.part == 0 && job.tier == 0) {
+  threads.eachWarp(plan.list_tasks.all, [&](std::uint64_t number, unsigned lane) {
+    const ListTask task = listTask(plan, static_cast<unsigned>(number));
+    const bool valid = lane < task.count;
+    const Sphere s = valid ? loadNew(grid.spheres + task.first + lane) : Sphere{};
+    if (task.slice == 0 && task.grid_level == 0) {
       const Sphere ball = ballAround(s, valid);
-      if (lane == 0) grid.clusters[job.cluster] = {ball, job.first, job.count};
+      if (lane == 0) grid.clusters[task.cluster] = {ball, task.first, task.count};
     }
     if (!count) return;
-    std::uint32_t* const counts = arrays.cell_counts + plan.tiers.first[job.tier];
-    forCells<std::uint32_t>(plan.tiers, job, plan.grid.centred(s), lane, shared.near,
+    std::uint32_t* const counts = arrays.cell_counts + plan.grid_levels.first[task.grid_level];
+    forCells<std::uint32_t>(plan.grid_levels, task, plan.grid.centred(s), lane, shared.near,
                             [&](const SomeCells<std::uint32_t>& some, bool together) {
                               countCells(some, together, counts, shared);
                             });

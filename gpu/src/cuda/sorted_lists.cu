@@ -24,15 +24,15 @@ __global__ void findPairs(const __grid_constant__ BuildPlan plan, const Sphere* 
   __shared__ core::CellsNear shared[kWarps][kWarp];
   const unsigned lane = threadIdx.x % kWarp, warp = threadIdx.x / kWarp;
   const unsigned number = blockIdx.x * kWarps + warp;
-  if (number >= plan.jobs.all) return;
-  const ClusterJob job = clusterJob(plan, number);
-  const Sphere s = lane < job.count ? plan.grid.centred(load(spheres + job.first + lane)) : Sphere{};
+  if (number >= plan.list_tasks.all) return;
+  const ListTask task = listTask(plan, number);
+  const Sphere s = lane < task.count ? plan.grid.centred(load(spheres + task.first + lane)) : Sphere{};
   forCells<std::uint64_t>(
-      plan.tiers, job, s, lane, shared[warp], [&](const SomeCells<std::uint64_t>& some, bool) {
+      plan.grid_levels, task, s, lane, shared[warp], [&](const SomeCells<std::uint64_t>& some, bool) {
         unsigned long long at = atomicAdd(found, static_cast<unsigned long long>(__popc(some.mask)));
         if (!keys) return;
         forSome(some, [&](unsigned k) {
-          keys[at] = plan.tiers.of[job.tier].keyOf(some.cells[k]);
+          keys[at] = plan.grid_levels.of[task.grid_level].keyOf(some.cells[k]);
           numbers[at++] = some.place;
         });
       });
@@ -95,7 +95,7 @@ BuildStatus sortLists(const BuildPlan& plan, const GridArrays& arrays, BuildScra
   std::uint64_t pairs = 0;
   const auto find = [&](std::uint64_t* keys, std::uint32_t* numbers) {
     INNERSPHERE_CUDA(cudaMemsetAsync(scratch.found.data(), 0, sizeof(unsigned long long), stream));
-    findPairs<<<blocksFor(std::uint64_t{kWarp} * plan.jobs.all), kListThreads, 0, stream>>>(
+    findPairs<<<blocksFor(std::uint64_t{kWarp} * plan.list_tasks.all), kListThreads, 0, stream>>>(
         plan, arrays.spheres, scratch.found.data(), keys, numbers);
     INNERSPHERE_CUDA(cudaGetLastError());
   };
@@ -115,7 +115,7 @@ BuildStatus sortLists(const BuildPlan& plan, const GridArrays& arrays, BuildScra
   });
   withScratch(scratch.cub, [&](void* p, std::size_t& size) {
     return cub::DeviceRadixSort::SortPairs(p, size, other_keys, keys, other_numbers, numbers, count, 0,
-                                           3 * core::kAxisBits + bitsOf(plan.grid.view.tiers), stream);
+                                           3 * core::kAxisBits + bitsOf(plan.grid.view.grid_levels), stream);
   });
   scratch.counts.reserve(pairs + 1);
   withScratch(scratch.cub, [&](void* p, std::size_t& size) {

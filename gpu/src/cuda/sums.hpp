@@ -5,26 +5,26 @@
 
 namespace innersphere::device {
 
-constexpr int kPass = 4;                          ///< terms that the lanes exchange at once
-constexpr unsigned kShare = kWarp / (2 * kPass);  ///< lanes that sum one column
+constexpr int kPass = 4;                                ///< terms that the lanes exchange at once
+constexpr unsigned kColumnLanes = kWarp / (2 * kPass);  ///< lanes that sum one column
 
 /// Coarse and fine parts of some terms, a row for each lane. Lanes that sum columns use different banks.
 struct Columns {
-  static constexpr unsigned kTwos = kWarp / kShare / 2;  ///< pairs of rows that a lane sums
-  static constexpr unsigned kGap = 2 * kShare;
+  static constexpr unsigned kTwos = kWarp / kColumnLanes / 2;  ///< pairs of rows that a lane sums
+  static constexpr unsigned kGap = 2 * kColumnLanes;
   alignas(16) double of[2 * kPass][kWarp + kGap];
 
-  /// Of the rows of one lane, as integers; see core::Parts.
+  /// The sum of the rows of one lane, as integers; see core::Parts.
   __device__ unsigned long long sum(unsigned lane) const {
-    const auto* rows = reinterpret_cast<const ulonglong2*>(of[lane / kShare]) + lane % kShare;
+    const auto* rows = reinterpret_cast<const ulonglong2*>(of[lane / kColumnLanes]) + lane % kColumnLanes;
     unsigned long long sum = 0ull - 2 * kTwos * core::kMagicBits;
 #pragma unroll
-    for (unsigned k = 0; k < kTwos; ++k) sum += rows[k * kShare].x + rows[k * kShare].y;
+    for (unsigned k = 0; k < kTwos; ++k) sum += rows[k * kColumnLanes].x + rows[k * kColumnLanes].y;
     return sum;
   }
 };
 
-/// Of a warp: of every pass, each lane's.
+/// The sums of a warp: those of each lane, for every pass.
 struct Sums {
   static constexpr int kPasses = (core::kTerms + kPass - 1) / kPass;
   unsigned long long of[kPasses][kWarp];
@@ -51,7 +51,7 @@ inline __device__ void addTerm(Limbs& limbs, int bits, bool coarse, unsigned lon
   atomicAdd(&limbs.coarse_high, static_cast<unsigned long long>(whole >> 32));
 }
 
-/// The sums of a warp over one query. The lanes exchange the terms of their pairs, and each keeps its share
+/// The sums of a warp over one query. The lanes exchange the terms of their pairs, and each keeps its part
 /// of one column of every pass: that takes far fewer registers than sums of all terms in every lane.
 template <Goal goal>
 class Summer {
@@ -69,22 +69,22 @@ class Summer {
     const std::uint32_t place_a = from_a ? own : partner, place_b = from_a ? partner : own;
     core::Pair pair = core::makePair(scene.query.frame, load(scene.grids[0].view.spheres + place_a),
                                      load(scene.grids[1].view.spheres + place_b));
-    const bool hit = valid && core::isHit(pair, from_a);
-    const unsigned hits = __ballot_sync(kAll, hit);
-    pairs_ += __popc(hits);
+    const bool found = valid && core::isReported(pair, from_a);
+    const unsigned found_pairs = __ballot_sync(kAll, found);
+    pairs_ += __popc(found_pairs);
     if constexpr (goal != Goal::touch) {
-      if (hits == 0) return false;
-      if (batch.hits) write(batch, scene, query, place_a, place_b, hits, lane);
+      if (found_pairs == 0) return false;
+      if (batch.found_pairs) write(batch, scene, query, place_a, place_b, found_pairs, lane);
       const double sum = pair.ra + pair.rb;
-      if (!hit) pair.distance2 = sum * sum;  // two balls that touch from outside add nothing
+      if (!found) pair.distance2 = sum * sum;  // two balls that touch from outside add nothing
       exchange(pair, scene.query.units, lane, columns, sums);
-      ++rounds_;
+      ++additions_;
     }
-    return hits != 0;
+    return found_pairs != 0;
   }
 
   /// True if the next pairs could overflow the sums, also those of some such warps.
-  __device__ bool full() const { return rounds_ + 1 > (1u << core::kShortSumBits) / (kWarp * kMostWarps); }
+  __device__ bool full() const { return additions_ + 1 > (1u << core::kShortSumBits) / (kWarp * kMostWarps); }
 
   /// Moves the sums to those of the query.
   __device__ void flush(DeviceSums& total, const core::Units& units, unsigned lane, Sums& sums) {
@@ -95,7 +95,8 @@ class Summer {
     clear(lane, sums);
   }
 
-  /// The same for all warps of a block together: its first warps take a pass each. All threads call it.
+  /// Moves the sums of all warps of a block to those of the query. The first warps take a pass each. All
+  /// threads call it.
   template <typename SumsOf>
   __device__ void flushBlock(DeviceSums& total, const core::Units& units, unsigned warps, unsigned lane,
                              const SumsOf& sumsOf) {
@@ -119,17 +120,17 @@ class Summer {
 
   __device__ void clear(unsigned lane, Sums& sums) {
     for (int pass = 0; pass < kPasses; ++pass) sums.of[pass][lane] = 0;
-    pairs_ = rounds_ = 0;
+    pairs_ = additions_ = 0;
   }
 
   /// Adds all lanes' sums of one pass.
   static __device__ void addPass(DeviceSums& total, const core::Units& units, int pass,
                                  unsigned long long sum, unsigned lane) {
-    for (unsigned step = 1; step < kShare; step *= 2) sum += __shfl_xor_sync(kAll, sum, step);
-    const unsigned long long other = __shfl_xor_sync(kAll, sum, kShare);
-    const unsigned column = lane / kShare;
+    for (unsigned step = 1; step < kColumnLanes; step *= 2) sum += __shfl_xor_sync(kAll, sum, step);
+    const unsigned long long other = __shfl_xor_sync(kAll, sum, kColumnLanes);
+    const unsigned column = lane / kColumnLanes;
     const int term = pass * kPass + static_cast<int>(column / 2);
-    if (lane % kShare == 0 && term < kTerms)
+    if (lane % kColumnLanes == 0 && term < kTerms)
       addTerm(total.terms[term], unitOf(units, term).fine_bits, column % 2 == 0, sum, other);
   }
 
@@ -158,16 +159,17 @@ class Summer {
   }
 
   __device__ void write(const Batch& batch, const Scene& scene, unsigned query, std::uint32_t place_a,
-                        std::uint32_t place_b, unsigned hits, unsigned lane) {
+                        std::uint32_t place_b, unsigned found_pairs, unsigned lane) {
     unsigned long long at = 0;
-    if (lane == 0) at = atomicAdd(&batch.counters->found, static_cast<unsigned long long>(__popc(hits)));
-    at = __shfl_sync(kAll, at, 0) + __popc(hits & ((1u << lane) - 1));
-    if ((hits >> lane & 1) == 0 || at >= batch.capacity) return;
+    if (lane == 0)
+      at = atomicAdd(&batch.counters->found, static_cast<unsigned long long>(__popc(found_pairs)));
+    at = __shfl_sync(kAll, at, 0) + __popc(found_pairs & ((1u << lane) - 1));
+    if ((found_pairs >> lane & 1) == 0 || at >= batch.capacity) return;
     const unsigned long long a = scene.grids[0].view.ids[place_a], b = scene.grids[1].view.ids[place_b];
-    batch.hits[at] = (static_cast<unsigned long long>(query) << batch.bits_a | a) << batch.bits_b | b;
+    batch.found_pairs[at] = (static_cast<unsigned long long>(query) << batch.bits_a | a) << batch.bits_b | b;
   }
 
-  unsigned pairs_, rounds_;
+  unsigned pairs_, additions_;
 };
 
 /// One term of a query's sums, in floating point.

@@ -16,8 +16,8 @@ static_assert(kSingleWarps <= kMostWarps && kBatchWarps <= kMostWarps);
 
 struct WarpMemory {
   union {
-    Walking walking;  ///< while candidates are found
-    Columns columns;  ///< while they are decided
+    ListTraversals traversals;  ///< while candidates are found
+    Columns columns;            ///< while they are decided
   };
   Sums sums;
   Queue queue;
@@ -41,42 +41,42 @@ struct Warp {
   }
 };
 
-/// A cluster to walk, or a share of it: the rounds `part`, part + parts, ...
-struct Job {
-  unsigned side, cluster, part, parts;
+/// A cluster to traverse, or a slice of its tests: the iterations `slice`, slice + slices, ...
+struct ClusterSlice {
+  unsigned side, cluster, slice, slices;
 };
 
-/// How far a job has come.
+/// How far the traversal of a slice has come.
 struct Progress {
-  std::uint32_t number = 0;  ///< of the walkers' cells
-  unsigned round = 0;        ///< of the job in these cells
+  std::uint32_t number = 0;  ///< of the query spheres' cells
+  unsigned iteration = 0;    ///< of the slice in these cells
 };
 
 /// Queues a cluster's candidates. True at its end; false if the queue is full first. All lanes call it.
 template <Goal goal>
-__device__ __forceinline__ bool findCandidates(const Scene& scene, const Job& job, Progress& progress,
-                                               Warp<goal>& warp) {
+__device__ __forceinline__ bool findCandidates(const Scene& scene, const ClusterSlice& slice,
+                                               Progress& progress, Warp<goal>& warp) {
   const unsigned lane = warp.lane;
-  const Grid &own = scene.grids[job.side], &grid = scene.grids[1 - job.side];
-  const uint2 run = __ldg(reinterpret_cast<const uint2*>(&own.view.clusters[job.cluster].first));
+  const Grid &own = scene.grids[slice.side], &grid = scene.grids[1 - slice.side];
+  const uint2 run = __ldg(reinterpret_cast<const uint2*>(&own.view.clusters[slice.cluster].first));
   bool more = true;
-  for (; more; ++progress.number, progress.round = 0) {
+  for (; more; ++progress.number, progress.iteration = 0) {
     core::Lookup lookup{};
     List list{};
-    const core::Walker walker{own.view, grid.view, scene.query.searches[job.side]};
+    const core::Traversal traversal{own.view, grid.view, scene.query.searches[slice.side]};
     std::uint32_t count = 0;
-    if (lane < run.y && core::makeLookup(walker, load(own.view.spheres + run.x + lane), lookup))
+    if (lane < run.y && core::makeLookup(traversal, load(own.view.spheres + run.x + lane), lookup))
       list = listOf(grid.view, lookup, progress.number, count);
     more = __any_sync(kAll, progress.number + 1 < count);
-    const unsigned self = (run.x + lane) | (job.side == 0 ? kFromA : 0);
-    const Lists lists = lineUp(lookup, list, self, lane, warp.memory.walking);
+    const unsigned self = (run.x + lane) | (slice.side == 0 ? kFromA : 0);
+    const Lists lists = lineUp(lookup, list, self, lane, warp.memory.traversals);
     while (true) {
-      const unsigned first = (progress.round * job.parts + job.part) * kWarp;
+      const unsigned first = (progress.iteration * slice.slices + slice.slice) * kWarp;
       if (first >= lists.total) break;
-      if (!testStep(grid, lists, progress.number, first, lane, warp.memory.walking, warp.memory.queue,
+      if (!testStep(grid, lists, progress.number, first, lane, warp.memory.traversals, warp.memory.queue,
                     warp.queued))
         return false;
-      ++progress.round;
+      ++progress.iteration;
     }
   }
   progress = {};
@@ -133,8 +133,8 @@ __device__ bool isLastBlock(const Batch& batch) {
   return last;
 }
 
-/// Into how many jobs a cluster is cut: where a block has few, all its warps should get something.
-__device__ unsigned partsOf(unsigned clusters) {
+/// The number of slices of each cluster. Where a block has few clusters, all its warps should get something.
+__device__ unsigned slicesOf(unsigned clusters) {
   return clusters <= kSingleWarps / 4 ? 4 : clusters <= kSingleWarps / 2 ? 2 : 1;
 }
 
@@ -172,7 +172,7 @@ __device__ __forceinline__ void decideTogether(const Batch& batch, const Scene& 
 /// and the last block brings the sums home.
 template <Goal goal>
 __global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
-    walkSingle(const __grid_constant__ Batch batch, const __grid_constant__ Query query) {
+    traverseSingle(const __grid_constant__ Batch batch, const __grid_constant__ Query query) {
   constexpr unsigned kThreads = kSingleWarps * kWarp;
   __shared__ WarpMemory memory[kSingleWarps];
   __shared__ Scene scene;
@@ -197,15 +197,15 @@ __global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
     __syncthreads();
     unsigned active_count = 0;
     for (const unsigned of_warp : active) active_count += __popc(of_warp);
-    const unsigned parts = partsOf(active_count), jobs = parts * active_count;
-    for (unsigned number = threadIdx.x / kWarp; number < jobs; number += kSingleWarps) {
-      Job job{0, first + bitOf(active, number / parts) * gridDim.x, number % parts, parts};
-      job.side = job.cluster < clusters_a ? 0 : 1;
-      if (job.side != 0) job.cluster -= clusters_a;
+    const unsigned slices = slicesOf(active_count), all_slices = slices * active_count;
+    for (unsigned number = threadIdx.x / kWarp; number < all_slices; number += kSingleWarps) {
+      ClusterSlice slice{0, first + bitOf(active, number / slices) * gridDim.x, number % slices, slices};
+      slice.side = slice.cluster < clusters_a ? 0 : 1;
+      if (slice.side != 0) slice.cluster -= clusters_a;
       Progress progress;
       bool done;
       do {
-        done = findCandidates(scene, job, progress, warp);
+        done = findCandidates(scene, slice, progress, warp);
         if (!done || goal == Goal::touch) decide(batch, scene, 0, done, *batch.sums, warp);
       } while (!done && !warp.touched);
       if (goal == Goal::touch && warp.touched) warp.flush(*batch.sums, scene.query.units);  // for all to see
@@ -221,7 +221,7 @@ __global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
                                         ? resultOf<goal>(*batch.sums, scene.query.units, threadIdx.x)
                                         : __ldcg(&batch.counters->found);
     const unsigned long long run = static_cast<unsigned long long>(batch.run) << 32;
-    auto* to = reinterpret_cast<ulonglong2*>(batch.signal->pieces) + threadIdx.x;
+    auto* to = reinterpret_cast<ulonglong2*>(batch.signal->halves) + threadIdx.x;
     *to = {run | (word & 0xffffffffu), run | word >> 32};
   }
   __syncthreads();
@@ -230,57 +230,57 @@ __global__ void __launch_bounds__(kSingleWarps* kWarp, kSingleBlocks)
 }
 
 /// A power of two: few enough that all warps end at about the same time.
-__device__ unsigned itemsAtOnce(unsigned items_of_warp) {
-  constexpr unsigned kShares = 8, kMost = 8;
+__device__ unsigned tasksAtOnce(unsigned tasks_of_warp) {
+  constexpr unsigned kTakes = 8, kMost = 8;
   unsigned at_once = 1;
-  while (at_once < kMost && 2 * at_once * kShares <= items_of_warp) at_once *= 2;
+  while (at_once < kMost && 2 * at_once * kTakes <= tasks_of_warp) at_once *= 2;
   return at_once;
 }
 
-/// All queries: warps take items, which belong to many of them, until none is left.
+/// All queries: warps take tasks, which belong to many of them, until none is left.
 template <Goal goal>
 __global__ void __launch_bounds__(kBatchWarps* kWarp, kBatchBlocks)
-    walkBatch(const __grid_constant__ Batch batch) {
+    traverseBatch(const __grid_constant__ Batch batch) {
   constexpr unsigned kNone = ~0u;
   __shared__ WarpMemory memory[kBatchWarps];
   __shared__ Scene scenes[kBatchWarps];
   const unsigned lane = threadIdx.x % kWarp;
   Scene& scene = scenes[threadIdx.x / kWarp];
   Warp<goal> warp(memory[threadIdx.x / kWarp], lane);
-  const unsigned items = batch.counters->items;
-  const unsigned chunk = itemsAtOnce(items / (gridDim.x * kBatchWarps));
-  const auto take = [&] { return lane == 0 ? atomicAdd(&batch.counters->taken, chunk) : 0; };
+  const unsigned tasks = batch.counters->tasks;
+  const unsigned at_once = tasksAtOnce(tasks / (gridDim.x * kBatchWarps));
+  const auto take = [&] { return lane == 0 ? atomicAdd(&batch.counters->taken, at_once) : 0; };
   unsigned taken = take(), at = 0, query = kNone;
-  unsigned long long bits = 0;  // of the item
+  unsigned long long bits = 0;  // of the task
   Progress progress;            // in its first cluster
   bool left = true;
   while (left) {
-    while (left && unpackItem(bits).mask == 0) {
-      if (at % chunk == 0) {
+    while (left && unpackTask(bits).mask == 0) {
+      if (at % at_once == 0) {
         at = __shfl_sync(kAll, taken, 0);
         taken = take();  // ahead
       }
-      left = at < items;
-      if (left) bits = __ldg(batch.items + at++);
-      if (goal == Goal::touch && left && isTouched(batch.sums[unpackItem(bits).query])) bits = 0;
+      left = at < tasks;
+      if (left) bits = __ldg(batch.tasks + at++);
+      if (goal == Goal::touch && left && isTouched(batch.sums[unpackTask(bits).query])) bits = 0;
     }
-    const Item item = unpackItem(bits);
-    const bool drain = !left || item.query != query;
+    const ClusterTask task = unpackTask(bits);
+    const bool drain = !left || task.query != query;
     bool done = true;
     if (!drain) {
-      const auto cluster = item.first + static_cast<unsigned>(__ffs(static_cast<int>(item.mask)) - 1);
-      done = findCandidates(scene, {item.side, cluster, 0, 1}, progress, warp);
+      const auto cluster = task.first + static_cast<unsigned>(__ffs(static_cast<int>(task.mask)) - 1);
+      done = findCandidates(scene, {task.side, cluster, 0, 1}, progress, warp);
     }
     if (query != kNone) decide(batch, scene, query, drain, batch.sums[query], warp);
     if (!drain) {
-      if (done) bits ^= item.mask & -item.mask;
+      if (done) bits ^= task.mask & -task.mask;
       if (!warp.touched) continue;
       bits = 0;
       progress = {};
     }
     if (query != kNone) warp.flush(batch.sums[query], scene.query.units);
     if (!drain || !left) continue;
-    query = item.query;
+    query = task.query;
     __syncwarp();
     copyScene(batch.queries[query], lane, kWarp, scene);
     __syncwarp();
@@ -304,20 +304,20 @@ __global__ void finishBatch(const __grid_constant__ Batch batch) {
 }
 
 template <Goal goal>
-void launchGoal(const Batch& batch, const Query* single, unsigned most_clusters, std::size_t most_items,
+void launchGoal(const Batch& batch, const Query* single, unsigned most_clusters, std::size_t most_tasks,
                 unsigned processors, cudaStream_t stream) {
   if (single) {
     const unsigned clusters = single->clusters[0] + single->clusters[1];
     const unsigned blocks = std::min(kSingleBlocks * processors, clusters);
-    walkSingle<goal><<<blocks, kSingleWarps * kWarp, 0, stream>>>(batch, *single);
+    traverseSingle<goal><<<blocks, kSingleWarps * kWarp, 0, stream>>>(batch, *single);
   } else {
-    constexpr unsigned kTask = kWarp * kGroup, kThreads = 128;
-    const unsigned tasks = most_clusters / kTask + 2;  // of both bodies together
-    cullClusters<<<dim3(batch.count, (tasks + kCullWarps - 1) / kCullWarps), kCullWarps * kWarp, 0, stream>>>(
+    constexpr unsigned kWarpClusters = kWarp * kGroup, kThreads = 128;
+    const unsigned warps = most_clusters / kWarpClusters + 2;  // of both bodies together
+    cullClusters<<<dim3(batch.count, (warps + kCullWarps - 1) / kCullWarps), kCullWarps * kWarp, 0, stream>>>(
         batch);
     const auto blocks = static_cast<unsigned>(
-        std::min<std::size_t>(kBatchBlocks * processors, (most_items + kBatchWarps - 1) / kBatchWarps));
-    walkBatch<goal><<<blocks, kBatchWarps * kWarp, 0, stream>>>(batch);
+        std::min<std::size_t>(kBatchBlocks * processors, (most_tasks + kBatchWarps - 1) / kBatchWarps));
+    traverseBatch<goal><<<blocks, kBatchWarps * kWarp, 0, stream>>>(batch);
     finishBatch<goal><<<(batch.count * kResultWords + kThreads - 1) / kThreads, kThreads, 0, stream>>>(batch);
   }
   INNERSPHERE_CUDA(cudaGetLastError());
@@ -325,12 +325,12 @@ void launchGoal(const Batch& batch, const Query* single, unsigned most_clusters,
 
 }  // namespace
 
-void launchWalk(Goal goal, const Batch& batch, const Query* single, unsigned most_clusters,
-                std::size_t most_items, unsigned processors, cudaStream_t stream) {
+void launchTraversal(Goal goal, const Batch& batch, const Query* single, unsigned most_clusters,
+                     std::size_t most_tasks, unsigned processors, cudaStream_t stream) {
   const auto launch = goal == Goal::touch    ? &launchGoal<Goal::touch>
                       : goal == Goal::volume ? &launchGoal<Goal::volume>
                                              : &launchGoal<Goal::wrench>;
-  launch(batch, single, most_clusters, most_items, processors, stream);
+  launch(batch, single, most_clusters, most_tasks, processors, stream);
 }
 
 }  // namespace innersphere::device

@@ -5,23 +5,23 @@
 
 namespace innersphere::device {
 
-/// Some of kItem neighbouring clusters of one body of a query.
-struct Item {
+/// Some of kTaskClusters neighbouring clusters of one body of a query.
+struct ClusterTask {
   unsigned query;
   unsigned side;   ///< 0: A
   unsigned first;  ///< cluster
   unsigned mask;   ///< a bit for each that is active
 };
-inline __device__ unsigned long long packItem(const Item& item) {
-  return static_cast<unsigned long long>(item.query) << 40 |
-         static_cast<unsigned long long>(item.side) << 39 |
-         static_cast<unsigned long long>(item.first / kItem) << kItem | item.mask;
+inline __device__ unsigned long long packTask(const ClusterTask& task) {
+  return static_cast<unsigned long long>(task.query) << 40 |
+         static_cast<unsigned long long>(task.side) << 39 |
+         static_cast<unsigned long long>(task.first / kTaskClusters) << kTaskClusters | task.mask;
 }
 
-inline __device__ Item unpackItem(unsigned long long bits) {
+inline __device__ ClusterTask unpackTask(unsigned long long bits) {
   return {static_cast<unsigned>(bits >> 40), static_cast<unsigned>(bits >> 39 & 1),
-          static_cast<unsigned>(bits >> kItem & 0x7fffffffu) * kItem,
-          static_cast<unsigned>(bits & ((1u << kItem) - 1))};
+          static_cast<unsigned>(bits >> kTaskClusters & 0x7fffffffu) * kTaskClusters,
+          static_cast<unsigned>(bits & ((1u << kTaskClusters) - 1))};
 }
 
 inline __device__ Sphere load(const Sphere* sphere) {
@@ -29,7 +29,7 @@ inline __device__ Sphere load(const Sphere* sphere) {
   return {s.x, s.y, s.z, s.w};
 }
 
-/// Of what the same launch has written.
+/// Loads what the same launch has written.
 inline __device__ Sphere loadNew(const Sphere* sphere) {
   const float4 s = *reinterpret_cast<const float4*>(sphere);
   return {s.x, s.y, s.z, s.w};
@@ -46,12 +46,12 @@ inline __device__ EntryPair load(const EntryPair* pair) {
   return p;
 }
 
-/// False if nothing in the ball, which is in the walker's frame, can meet the grid.
+/// False if nothing in the ball, which is in the query sphere's frame, can meet the grid.
 inline __device__ bool ballMeets(const core::GridView& grid, const core::Search& search, const Sphere& ball) {
   return core::ballMeets(search, grid, ball);
 }
 
-/// Over all lanes.
+/// The maximum over all lanes.
 template <typename T>
 inline __device__ T maximum(T x) {
   for (unsigned step = 1; step < kWarp; step *= 2) x = max(x, __shfl_xor_sync(kAll, x, step));
@@ -66,7 +66,7 @@ inline __device__ int maximum(int x) {
 #endif
 }
 
-/// By the order of their bits. Of zeros, the one without a sign.
+/// The maximum over all lanes, by the order of their bits. Of zeros, the one without a sign.
 inline __device__ float maximum(float x) {
   const auto swapped = [](int bits) { return bits < 0 ? bits ^ 0x7fffffff : bits; };
   return __int_as_float(swapped(maximum(swapped(__float_as_int(x)))));

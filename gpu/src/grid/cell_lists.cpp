@@ -12,7 +12,7 @@
 
 namespace innersphere {
 
-using core::TierCells;
+using core::GridLevel;
 
 namespace {
 
@@ -31,15 +31,15 @@ void enlarge(std::vector<T>& items, std::size_t size, const T& value) {
 
 }  // namespace
 
-/// Adds an entry for each cell of the tier that lists the sphere.
+/// Adds an entry for each cell of the grid level that lists the sphere.
 template <typename Entry>
-void CellLister::addCells(const TierCells& tier, const Sphere& sphere, std::uint32_t place,
+void CellLister::addCells(const GridLevel& grid_level, const Sphere& sphere, std::uint32_t place,
                           Entries<Entry>& entries) {
-  const core::CellsNear near = tier.near(sphere);
+  const core::CellsNear near = grid_level.near(sphere);
   const auto &lo = near.lo, &hi = near.hi;
   using Cell = decltype(Entry::cell);
   const auto cellAt = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    return static_cast<Cell>(tier.cellAt(x, y, z));
+    return static_cast<Cell>(grid_level.cellAt(x, y, z));
   };
   if (hi[0] - lo[0] < 2 && hi[1] - lo[1] < 2 && hi[2] - lo[2] < 2) {  // as most are: no branches
     constexpr float kOutside = std::numeric_limits<float>::infinity();
@@ -50,7 +50,7 @@ void CellLister::addCells(const TierCells& tier, const Sphere& sphere, std::uint
     }
     Entry* to = entries.room(8);
     const Cell first = cellAt(lo[0], lo[1], lo[2]);
-    const Cell steps[3] = {1, tier.size[0], static_cast<Cell>(tier.size[0]) * tier.size[1]};
+    const Cell steps[3] = {1, grid_level.size[0], static_cast<Cell>(grid_level.size[0]) * grid_level.size[1]};
     for (std::size_t z = 0; z < 2; ++z) {
       for (std::size_t y = 0; y < 2; ++y) {
         for (std::size_t x = 0; x < 2; ++x) {
@@ -81,10 +81,10 @@ void CellLister::list(const core::GridPlan& plan, const Sphere* centred, CellLis
   cells_.clear();
   lists.listed.clear();
   const core::GridView& view = plan.view;
-  for (int number = 0; number < view.tiers; ++number) {
-    const TierCells tier = core::makeTier(plan, number);
-    const bool dense = core::isDense(tier, view.count);
-    (this->*(dense ? &CellLister::listDense : &CellLister::listSparse))(tier, view.count, centred,
+  for (int number = 0; number < view.grid_levels; ++number) {
+    const GridLevel grid_level = core::makeGridLevel(plan, number);
+    const bool dense = core::isDense(grid_level, view.count);
+    (this->*(dense ? &CellLister::listDense : &CellLister::listSparse))(grid_level, view.count, centred,
                                                                         lists.listed);
   }
   enlarge(lists.listed, lists.listed.size() + CellLists::kPastEnd, view.count);
@@ -93,17 +93,17 @@ void CellLister::list(const core::GridPlan& plan, const Sphere* centred, CellLis
 
 /// Chunks of spheres count and fill side by side. A cell's list has what comes from the first chunk first, so
 /// it is the same for any number of them.
-void CellLister::listDense(const TierCells& tier, std::uint32_t count, const Sphere* centred,
+void CellLister::listDense(const GridLevel& grid_level, std::uint32_t count, const Sphere* centred,
                            std::vector<std::uint32_t>& listed) {
   constexpr std::uint32_t kChunk = 8192;  // spheres, at least
-  const std::uint32_t spheres = count - tier.first_place;
+  const std::uint32_t spheres = count - grid_level.first_place;
   const auto threads = static_cast<std::uint32_t>(tbb::this_task_arena::max_concurrency());
   const std::uint32_t chunks = std::clamp(spheres / kChunk, 1u, std::clamp(threads, 1u, 16u));
   if (dense_.size() < chunks) dense_.resize(chunks);
   counts_.clear();
-  enlarge(counts_, chunks * tier.count, 0u);
+  enlarge(counts_, chunks * grid_level.count, 0u);
   const auto placeAt = [&](std::uint32_t chunk) {
-    return tier.first_place + static_cast<std::uint32_t>(std::uint64_t{spheres} * chunk / chunks);
+    return grid_level.first_place + static_cast<std::uint32_t>(std::uint64_t{spheres} * chunk / chunks);
   };
   const auto forChunks = [&](const auto& f) {
     if (chunks == 1) return f(0u);
@@ -114,44 +114,44 @@ void CellLister::listDense(const TierCells& tier, std::uint32_t count, const Sph
     Entries<DenseEntry>& entries = dense_[chunk];
     entries.clear(std::size_t{9} * (placeAt(chunk + 1) - placeAt(chunk)));
     for (std::uint32_t place = placeAt(chunk); place < placeAt(chunk + 1); ++place)
-      addCells(tier, centred[place], place, entries);
-    std::uint32_t* const counts = counts_.data() + chunk * tier.count;
+      addCells(grid_level, centred[place], place, entries);
+    std::uint32_t* const counts = counts_.data() + chunk * grid_level.count;
     for (std::size_t e = 0; e < entries.count; ++e) ++counts[entries.items[e].cell];
   });
 
   std::uint64_t end = listed.size();
-  for (std::uint64_t cell = 0; cell < tier.count; ++cell) {
+  for (std::uint64_t cell = 0; cell < grid_level.count; ++cell) {
     std::uint32_t length = 0;
     for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-      std::uint32_t& of_chunk = counts_[chunk * tier.count + cell];
+      std::uint32_t& of_chunk = counts_[chunk * grid_level.count + cell];
       const auto next = static_cast<std::uint32_t>(end + length);
       length += of_chunk;
       of_chunk = next;
     }
     if (length == 0) continue;
-    cells_.push_back({tier.keyOf(cell), static_cast<std::uint32_t>(end), length});
+    cells_.push_back({grid_level.keyOf(cell), static_cast<std::uint32_t>(end), length});
     end += core::padded(length);
     checkSize(end);
   }
   enlarge(listed, end, count);
 
   forChunks([&](std::uint32_t chunk) {
-    std::uint32_t* const next = counts_.data() + chunk * tier.count;
+    std::uint32_t* const next = counts_.data() + chunk * grid_level.count;
     const Entries<DenseEntry>& entries = dense_[chunk];
     for (std::size_t e = 0; e < entries.count; ++e)
       listed[next[entries.items[e].cell]++] = entries.items[e].place;
   });
 }
 
-void CellLister::listSparse(const TierCells& tier, std::uint32_t count, const Sphere* centred,
+void CellLister::listSparse(const GridLevel& grid_level, std::uint32_t count, const Sphere* centred,
                             std::vector<std::uint32_t>& listed) {
-  sparse_.clear(std::size_t{9} * (count - tier.first_place));
-  for (std::uint32_t place = tier.first_place; place < count; ++place)
-    addCells(tier, centred[place], place, sparse_);
+  sparse_.clear(std::size_t{9} * (count - grid_level.first_place));
+  for (std::uint32_t place = grid_level.first_place; place < count; ++place)
+    addCells(grid_level, centred[place], place, sparse_);
   const std::size_t entries = sparse_.count;
   checkSize(listed.size() + std::uint64_t{core::kListStep} * entries);
   spare_.clear(entries);
-  const int bits = std::bit_width(tier.count - 1);
+  const int bits = std::bit_width(grid_level.count - 1);
   SparseEntry *sorted = sparse_.items.get(), *spare = spare_.items.get();
   sortByBits(
       sorted, spare, entries, [](const SparseEntry& entry) { return entry.cell; }, 0, bits);
@@ -160,7 +160,7 @@ void CellLister::listSparse(const TierCells& tier, std::uint32_t count, const Sp
     for (; end < entries && sorted[end].cell == sorted[begin].cell; ++end)
       listed.push_back(sorted[end].place);
     const auto length = static_cast<std::uint32_t>(end - begin);
-    cells_.push_back({tier.keyOf(sorted[begin].cell), first, length});
+    cells_.push_back({grid_level.keyOf(sorted[begin].cell), first, length});
     listed.resize(first + core::padded(length), count);
   }
 }

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/tier_cells.hpp"
+#include "core/grid_level.hpp"
 
 namespace innersphere {
 
@@ -25,13 +25,13 @@ struct CellLists {
 /// fills. Keeps its memory for the next grid.
 class CellLister {
  public:
-  /// Lists each sphere in all cells where a walker can meet it: those of each tier that are not farther from
-  /// its centre than its radius and the reach of the tier's walkers. `centred`: the spheres in the order of
-  /// the grid, relative to its centre.
+  /// Lists each sphere in all cells where a query sphere can meet it: those of each grid level that are not
+  /// farther from its centre than its radius and the reach of the grid level's query spheres. `centred`: the
+  /// spheres in the order of the grid, relative to its centre.
   void list(const core::GridPlan& plan, const Sphere* centred, CellLists& lists);
 
  private:
-  /// A cell of a tier lists a sphere.
+  /// A cell of a grid level lists a sphere.
   struct DenseEntry {
     std::uint32_t cell;
     std::uint32_t place;
@@ -65,11 +65,11 @@ class CellLister {
   };
 
   template <typename Entry>
-  static void addCells(const core::TierCells& tier, const Sphere& sphere, std::uint32_t place,
+  static void addCells(const core::GridLevel& grid_level, const Sphere& sphere, std::uint32_t place,
                        Entries<Entry>& entries);
-  void listDense(const core::TierCells& tier, std::uint32_t count, const Sphere* centred,
+  void listDense(const core::GridLevel& grid_level, std::uint32_t count, const Sphere* centred,
                  std::vector<std::uint32_t>& listed);
-  void listSparse(const core::TierCells& tier, std::uint32_t count, const Sphere* centred,
+  void listSparse(const core::GridLevel& grid_level, std::uint32_t count, const Sphere* centred,
                   std::vector<std::uint32_t>& listed);
   void fillTable(CellLists& lists) const;
 

@@ -1,4 +1,4 @@
-// The spheres that the cells of a grid list, as columns, so that a walker tests many of them with one
+// The spheres that the cells of a grid list, as columns, so that a query sphere tests many of them with one
 // instruction and without looking each of them up.
 #pragma once
 

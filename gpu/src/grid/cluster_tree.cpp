@@ -12,15 +12,15 @@ namespace {
 /// A ball around all of some balls.
 Sphere ballAround(const Sphere* begin, const Sphere* end) {
   constexpr float kMax = std::numeric_limits<float>::max();
-  core::Vec3f lo{kMax, kMax, kMax}, hi{-kMax, -kMax, -kMax};
+  Vec3f lo{kMax, kMax, kMax}, hi{-kMax, -kMax, -kMax};
   for (const Sphere* s = begin; s < end; ++s) {
     lo = {std::min(lo.x, s->x), std::min(lo.y, s->y), std::min(lo.z, s->z)};
     hi = {std::max(hi.x, s->x), std::max(hi.y, s->y), std::max(hi.z, s->z)};
   }
-  const core::Vec3f middle = core::middleOf(lo, hi);
+  const Vec3f middle = core::middleOf(lo, hi);
   double radius = 0;
   for (const Sphere* s = begin; s < end; ++s) {
-    const core::Vec3r d = core::Vec3r{s->x, s->y, s->z} - core::Vec3r{middle.x, middle.y, middle.z};
+    const Vec3d d = Vec3d{s->x, s->y, s->z} - Vec3d{middle.x, middle.y, middle.z};
     radius = std::max(radius, std::sqrt(dot(d, d)) + s->radius);
   }
   return {middle.x, middle.y, middle.z,

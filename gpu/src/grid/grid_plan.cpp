@@ -12,11 +12,10 @@
 namespace innersphere {
 
 using core::GridPlan;
-using core::Vec3r;
 
 namespace {
 
-constexpr double kListed = 8;  ///< cells of the finest tier that list a sphere, on average, at most
+constexpr double kListed = 8;  ///< cells of the finest grid level that list a sphere, on average, at most
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Adds all spheres up in some order, which must not matter: `Sum` has add(sphere) and add(other sum).
@@ -39,7 +38,7 @@ Sum sumOf(const Sphere* spheres, std::size_t count, const Sum& none) {
 /// What holds all spheres, and how many of each level there are.
 struct Measures {
   static constexpr int kLowest = -126;  ///< level of any radius
-  Vec3r hi{-kInfinity, -kInfinity, -kInfinity}, minus_lo = hi;
+  Vec3d hi{-kInfinity, -kInfinity, -kInfinity}, minus_lo = hi;
   double reach2 = 0;  ///< of the centres, from the origin
   float smallest = std::numeric_limits<float>::max(), largest = 0;
   std::array<std::uint32_t, 256> levels{};
@@ -54,7 +53,7 @@ struct Measures {
     ++levels[static_cast<std::size_t>(core::levelOf(s.radius) - kLowest)];
   }
   void add(const Measures& other) {
-    const Vec3r &h = other.hi, &l = other.minus_lo;
+    const Vec3d &h = other.hi, &l = other.minus_lo;
     hi = {std::max(hi.x, h.x), std::max(hi.y, h.y), std::max(hi.z, h.z)};
     minus_lo = {std::max(minus_lo.x, l.x), std::max(minus_lo.y, l.y), std::max(minus_lo.z, l.z)};
     reach2 = std::max(reach2, other.reach2);
@@ -67,12 +66,12 @@ struct Measures {
 /// Half the box and the radius of the ball around all spheres. Measured from the rounded centre, so that
 /// nothing of a small sphere far from the origin is lost.
 struct Extent {
-  Vec3r centre;
-  Vec3r half{0, 0, 0};
+  Vec3d centre;
+  Vec3d half{0, 0, 0};
   double radius = 0;
 
   void add(const Sphere& s) {
-    const Vec3r d = Vec3r{s.x, s.y, s.z} - centre;
+    const Vec3d d = Vec3d{s.x, s.y, s.z} - centre;
     const double r = s.radius;
     half = {std::max(half.x, std::fabs(d.x) + r), std::max(half.y, std::fabs(d.y) + r),
             std::max(half.z, std::fabs(d.z) + r)};
@@ -125,20 +124,21 @@ double cellsNear(double reach) {
   return 1 + reach * (6 + reach * (9.42 + reach * 4.19));
 }
 
-/// The finest tier for which cells are not too many.
-void chooseTiers(GridPlan& plan) {
-  int tier = 1;  // above the lowest level
-  for (; tier < plan.levels; ++tier) {
+/// The finest grid level for which cells are not too many.
+void chooseGridLevels(GridPlan& plan) {
+  int grid_level = 1;  // above the lowest level
+  for (; grid_level < plan.levels; ++grid_level) {
     double listed = 0;
     for (int level = 0; level < plan.levels; ++level) {
-      // A level's radii are from 1/4 to 1/2 of its cells, and walkers reach a quarter of the tier's.
+      // A level's radii are from 1/4 to 1/2 of its cells, and query spheres reach a quarter of the grid
+      // level's.
       listed += (plan.level_first[level + 1] - plan.level_first[level]) *
-                cellsNear(0.36 * std::ldexp(1.0, level - tier) + 0.25);
+                cellsNear(0.36 * std::ldexp(1.0, level - grid_level) + 0.25);
     }
     if (listed <= kListed * plan.view.count) break;
   }
-  plan.view.finest = plan.lowest_level + tier;
-  plan.view.tiers = plan.levels - tier + 1;
+  plan.view.finest = plan.lowest_level + grid_level;
+  plan.view.grid_levels = plan.levels - grid_level + 1;
 }
 
 }  // namespace
@@ -152,7 +152,7 @@ GridPlan planGrid(const Sphere* spheres, std::size_t count) {
   const Measures measures = sumOf(spheres, count, Measures{});
   measure(measures, spheres, count, plan);
   countLevels(measures, plan);
-  chooseTiers(plan);
+  chooseGridLevels(plan);
   return plan;
 }
 

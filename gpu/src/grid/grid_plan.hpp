@@ -7,10 +7,11 @@
 
 namespace innersphere {
 
-/// For 1 to 2^29 spheres, coordinates and radii up to 1e30. Depends on the spheres only, not on their order.
+/// Plans the grid of 1 to 2^29 spheres with coordinates and radii up to 1e30. The plan depends on the
+/// spheres, not on their order.
 core::GridPlan planGrid(const Sphere* spheres, std::size_t count);
 
-/// A float that is not smaller.
+/// Returns a float that is not smaller.
 float roundUp(double x);
 
 }  // namespace innersphere

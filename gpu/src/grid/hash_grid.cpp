@@ -11,12 +11,10 @@
 
 namespace innersphere {
 
-using core::Vec3f;
-
 namespace {
 
 double distance(const Sphere& s, const Vec3f& p) {
-  const core::Vec3r d = core::Vec3r{s.x, s.y, s.z} - core::Vec3r{p.x, p.y, p.z};
+  const Vec3d d = Vec3d{s.x, s.y, s.z} - Vec3d{p.x, p.y, p.z};
   return std::sqrt(dot(d, d));
 }
 

@@ -54,7 +54,7 @@ class HashGrid {
   const ClusterTree& clusterTree() const { return cluster_tree_; }
   const Occupancy& occupancy() const { return occupancy_; }
 
-  /// Of GridView::listed.
+  /// The spheres of GridView::listed, as columns.
   SphereColumns listedSpheres() const { return listed_spheres_.columns(); }
 
  private:

@@ -13,12 +13,12 @@ namespace innersphere {
 /// them, with one lookup.
 class Occupancy {
  public:
-  /// Of `grid`, only the clusters and bounds are used.
+  /// Marks the cells near the spheres of a grid, of which only clusters and bounds are used.
   void build(const core::GridView& grid);
 
   /// False if the ball, which meets the bounds of the grid, meets none of its spheres. `p` is relative to the
   /// centre of the grid.
-  bool mayMeet(const core::Vec3f& p, float radius) const {
+  bool mayMeet(const Vec3f& p, float radius) const {
     if (!(radius <= reach_)) return true;
     const auto cell = [&](float x, float lowest) {
       return static_cast<std::uint32_t>((x - lowest) * inverse_cell_);
@@ -34,7 +34,7 @@ class Occupancy {
 
   void add(const core::GridView& grid, const Sphere& ball);
 
-  core::Vec3f lowest_{0, 0, 0};  ///< corner of the first cell
+  Vec3f lowest_{0, 0, 0};  ///< corner of the first cell
   float inverse_cell_ = 0;
   float reach_ = 0;  ///< a cell is set if a ball of this radius with its centre there can meet a sphere
   std::array<std::uint32_t, kSide * kSide> rows_{};  ///< along x; by z, then y

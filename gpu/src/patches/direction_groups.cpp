@@ -8,12 +8,9 @@
 
 namespace innersphere {
 
-using core::Vec3f;
-using core::Vec3r;
-
 namespace {
 
-Vec3f unit(const Vec3r& v) {
+Vec3f unit(const Vec3d& v) {
   const double inverse = 1 / std::sqrt(dot(v, v));
   return {static_cast<float>(inverse * v.x), static_cast<float>(inverse * v.y),
           static_cast<float>(inverse * v.z)};
@@ -61,7 +58,7 @@ void DirectionGroups::sumBins(double max_angle) {
   sums_.assign(static_cast<std::size_t>(side * side), {0, 0, 0});
   for (std::size_t k = 0; k < count; ++k) sums_[bins[k]] = sums_[bins[k]] + vectors_[k];
   bins_.clear();
-  for (const Vec3r& sum : sums_) {
+  for (const Vec3d& sum : sums_) {
     const double length2 = dot(sum, sum);
     if (length2 > 0) bins_.push_back({sum, length2});
   }
@@ -71,7 +68,7 @@ void DirectionGroups::makeDirections(double max_angle) {
   // Equal ones in the order of their sums, so that the order is always the same.
   std::sort(bins_.begin(), bins_.end(), [](const Bin& a, const Bin& b) {
     if (a.length2 != b.length2) return a.length2 > b.length2;
-    const Vec3r &s = a.sum, &t = b.sum;
+    const Vec3d &s = a.sum, &t = b.sum;
     return s.x != t.x ? s.x > t.x : s.y != t.y ? s.y > t.y : s.z > t.z;
   });
   const auto least = static_cast<float>(std::cos(max_angle));

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/vec3.hpp"
+#include "innersphere/vec3.hpp"
 
 namespace innersphere {
 
@@ -15,8 +15,8 @@ class DirectionGroups {
   /// Makes room for some vectors.
   void clear(std::size_t most);
 
-  /// Of a length that is not zero.
-  void add(const core::Vec3r& vector, double length) {
+  /// Adds a vector whose length is not zero.
+  void add(const Vec3d& vector, double length) {
     const double inverse = 1 / length;
     vectors_[count_] = vector;
     x_[count_] = static_cast<float>(inverse * vector.x);
@@ -30,12 +30,12 @@ class DirectionGroups {
   /// bins.
   std::uint32_t group(double max_angle);
 
-  /// Of vector number k, after group().
+  /// The group of vector number k, after group().
   std::uint32_t groupOf(std::size_t k) const { return groups_[k]; }
 
  private:
   struct Bin {
-    core::Vec3r sum;
+    Vec3d sum;
     double length2;
   };
 
@@ -43,13 +43,13 @@ class DirectionGroups {
   void makeDirections(double max_angle);
 
   std::size_t count_ = 0;
-  std::vector<core::Vec3r> vectors_;
+  std::vector<Vec3d> vectors_;
   std::vector<float> x_, y_, z_;  ///< of length one; columns of whole groups of kLanes
   std::vector<std::uint32_t> bin_, groups_;
-  std::vector<core::Vec3r> sums_;  ///< of all bins
-  std::vector<Bin> bins_;          ///< those with something in them
-  std::vector<core::Vec3r> group_sums_;
-  std::vector<core::Vec3f> directions_;  ///< of the groups
+  std::vector<Vec3d> sums_;  ///< of all bins
+  std::vector<Bin> bins_;    ///< those with something in them
+  std::vector<Vec3d> group_sums_;
+  std::vector<Vec3f> directions_;  ///< of the groups
 };
 
 }  // namespace innersphere

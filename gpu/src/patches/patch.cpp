@@ -6,20 +6,18 @@
 #include <cmath>
 #include <limits>
 
-#include "core/vec3.hpp"
 #include "innersphere/error.hpp"
+#include "innersphere/vec3.hpp"
 #include "patches/direction_groups.hpp"
 
 namespace innersphere {
 
-using core::Vec3f;
-using core::Vec3r;
-
 namespace {
 
-/// A patch smaller than this share of the largest one is merged into a neighbour.
-constexpr double kSmallestShare = 0.05;
-/// A gap is a split if it is wider than this share of the extent, and too wide to be chance (see widestGap).
+/// A patch smaller than this fraction of the largest one is merged into a neighbour.
+constexpr double kSmallestPart = 0.05;
+/// A gap is a split if it is wider than this fraction of the extent, and too wide to be chance (see
+/// widestGap).
 constexpr float kSplitGap = 0.3f;
 
 struct Item {
@@ -28,24 +26,24 @@ struct Item {
   double weight;  ///< length of the area vector
 };
 
-Vec3r toVec(const std::array<float, 3>& v) {
+Vec3d toVec(const std::array<float, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
 /// Sums over the items of a patch; addition merges two patches.
 struct Group {
-  Vec3r area{0, 0, 0};
+  Vec3d area{0, 0, 0};
   double weight = 0;
   double volume = 0;
-  Vec3r moment{0, 0, 0};
+  Vec3d moment{0, 0, 0};
   double second[6] = {};  ///< xx, yy, zz, xy, xz, yz
 
   // What follows from them:
-  Vec3r normal{0, 0, 0}, centroid{0, 0, 0};
+  Vec3d normal{0, 0, 0}, centroid{0, 0, 0};
   double size = 0;
 
   void add(const Item& item) {
-    const Vec3r p{item.place.x, item.place.y, item.place.z}, weighted = item.weight * p;
+    const Vec3d p{item.place.x, item.place.y, item.place.z}, weighted = item.weight * p;
     area = area + toVec(item.contact->area);
     weight += item.weight;
     volume += item.contact->volume;
@@ -166,11 +164,11 @@ void mergeSmall(std::vector<Group>& groups, std::size_t max_groups, double exten
   while (groups.size() > 1) {
     const auto small = std::max_element(groups.begin(), groups.end(), larger);
     const auto large = std::min_element(groups.begin(), groups.end(), larger);
-    if (groups.size() <= max_groups && !(small->size < kSmallestShare * large->size)) break;
+    if (groups.size() <= max_groups && !(small->size < kSmallestPart * large->size)) break;
     auto best = groups.end();
     double best_cost = std::numeric_limits<double>::infinity();
     for (auto group = groups.begin(); group != groups.end(); ++group) {
-      const Vec3r apart = group->centroid - small->centroid;
+      const Vec3d apart = group->centroid - small->centroid;
       const double cost = 1 - dot(group->normal, small->normal) + inverse_extent2 * dot(apart, apart);
       if (group != small && (cost < best_cost || best == groups.end())) best = group, best_cost = cost;
     }
@@ -184,8 +182,8 @@ void mergeSmall(std::vector<Group>& groups, std::size_t max_groups, double exten
     std::rotate(std::upper_bound(groups.begin(), g, *g, larger), g, g + 1);
 }
 
-Patch toPatch(const Group& group, const Vec3r& origin) {
-  const Vec3r &n = group.normal, &c = group.centroid;
+Patch toPatch(const Group& group, const Vec3d& origin) {
+  const Vec3d& c = group.centroid;
   const double inverse = 1 / group.weight;
   const double* const second = group.second;
   const double xx = inverse * second[0] - c.x * c.x, yy = inverse * second[1] - c.y * c.y,
@@ -194,8 +192,8 @@ Patch toPatch(const Group& group, const Vec3r& origin) {
   Patch patch;
   patch.volume = group.volume;
   patch.area = group.size;
-  patch.normal = {n.x, n.y, n.z};
-  patch.centroid = {c.x + origin.x, c.y + origin.y, c.z + origin.z};
+  patch.normal = group.normal;
+  patch.centroid = c + origin;
   patch.covariance = {xx, xy, xz, xy, yy, yz, xz, yz, zz};
   return patch;
 }
@@ -221,6 +219,62 @@ void orderByDirection(Scratch& scratch, std::uint32_t directions) {
     scratch.order[first[scratch.directions.groupOf(k)]++] = static_cast<std::uint32_t>(k);
 }
 
+/// Lists the contacts as items, those without a direction apart. Returns the squared extent of their places.
+double gatherItems(const SphereContact* contacts, std::size_t count, const Vec3d& origin, Scratch& scratch) {
+  scratch.items.reserve(count);
+  scratch.items.clear();
+  scratch.undirected.clear();
+  scratch.directions.clear(count);
+  Vec3f lo{0, 0, 0}, hi{0, 0, 0};
+  for (const SphereContact* contact = contacts; contact != contacts + count; ++contact) {
+    const Vec3d area = toVec(contact->area), place = toVec(contact->centroid) - origin;
+    const Vec3f p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
+    const double weight = norm(area);
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+    if (weight > 0) {
+      scratch.items.push_back({contact, p, weight});
+      scratch.directions.add(area, weight);
+    } else {
+      scratch.undirected.push_back({contact, p, 0});
+    }
+  }
+  const Vec3f extent = hi - lo;
+  return dot(extent, extent);
+}
+
+/// Makes a group of each run of items with one direction and no wide gap.
+void makeGroups(const PatchOptions& options, Scratch& scratch) {
+  const std::uint32_t directions = scratch.directions.group(options.max_angle);
+  orderByDirection(scratch, directions);
+  scratch.parts.clear();
+  std::uint32_t* const order = scratch.order.data();
+  for (std::uint32_t g = 0, begin = 0; g < directions; begin = scratch.first[g++]) {
+    if (begin < scratch.first[g])
+      splitPlace(scratch.items, {order + begin, order + scratch.first[g]}, scratch.parts);
+  }
+  scratch.groups.clear();
+  for (const Run& part : scratch.parts) {
+    Group& group = scratch.groups.emplace_back();
+    for (const std::uint32_t* k = part.begin; k != part.end; ++k) group.add(scratch.items[*k]);
+    group.update();
+  }
+}
+
+/// Spheres that are pushed from all sides equally have no direction; their volume goes to the nearest patch.
+void addUndirected(const std::vector<Item>& undirected, std::vector<Group>& groups) {
+  for (const Item& item : undirected) {
+    Group* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (Group& group : groups) {
+      const Vec3d way = group.centroid - Vec3d{item.place.x, item.place.y, item.place.z};
+      const double distance2 = dot(way, way);
+      if (distance2 < least || !nearest) nearest = &group, least = distance2;
+    }
+    nearest->volume += item.contact->volume;
+  }
+}
+
 }  // namespace
 
 void buildPatches(const SphereContact* contacts, std::size_t count, const PatchOptions& options,
@@ -230,59 +284,14 @@ void buildPatches(const SphereContact* contacts, std::size_t count, const PatchO
   if (!(options.max_angle > 0)) throw Error(ErrorCode::bad_argument, "max_angle is not positive");
   patches.clear();
   if (count == 0) return;
-
   static thread_local Scratch scratch;
-  std::vector<Item>&items = scratch.items, &undirected = scratch.undirected;
-  items.reserve(count);
-  items.clear();
-  undirected.clear();
-  scratch.directions.clear(count);
-  const Vec3r origin = toVec(contacts[0].centroid);
-  Vec3f lo{0, 0, 0}, hi{0, 0, 0};
-  for (const SphereContact* contact = contacts; contact != contacts + count; ++contact) {
-    const Vec3r area = toVec(contact->area), place = toVec(contact->centroid) - origin;
-    const Vec3f p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
-    const double weight = std::sqrt(dot(area, area));
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-    if (weight > 0) {
-      items.push_back({contact, p, weight});
-      scratch.directions.add(area, weight);
-    } else {
-      undirected.push_back({contact, p, 0});
-    }
-  }
-  if (items.empty()) return;
-
-  const std::uint32_t directions = scratch.directions.group(options.max_angle);
-  orderByDirection(scratch, directions);
-  scratch.parts.clear();
-  std::uint32_t* const order = scratch.order.data();
-  for (std::uint32_t g = 0, begin = 0; g < directions; begin = scratch.first[g++]) {
-    if (begin < scratch.first[g]) splitPlace(items, {order + begin, order + scratch.first[g]}, scratch.parts);
-  }
-  std::vector<Group>& groups = scratch.groups;
-  groups.clear();
-  for (const Run& part : scratch.parts) {
-    Group& group = groups.emplace_back();
-    for (const std::uint32_t* k = part.begin; k != part.end; ++k) group.add(items[*k]);
-    group.update();
-  }
-  const Vec3f extent = hi - lo;
-  mergeSmall(groups, options.max_patches, dot(extent, extent));
-
-  // Spheres that are pushed from all sides equally have no direction; their volume goes to the nearest patch.
-  for (const Item& item : undirected) {
-    Group* nearest = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    for (Group& group : groups) {
-      const Vec3r way = group.centroid - Vec3r{item.place.x, item.place.y, item.place.z};
-      const double distance2 = dot(way, way);
-      if (distance2 < least || !nearest) nearest = &group, least = distance2;
-    }
-    nearest->volume += item.contact->volume;
-  }
-  for (const Group& group : groups) patches.push_back(toPatch(group, origin));
+  const Vec3d origin = toVec(contacts[0].centroid);
+  const double extent2 = gatherItems(contacts, count, origin, scratch);
+  if (scratch.items.empty()) return;
+  makeGroups(options, scratch);
+  mergeSmall(scratch.groups, options.max_patches, extent2);
+  addUndirected(scratch.undirected, scratch.groups);
+  for (const Group& group : scratch.groups) patches.push_back(toPatch(group, origin));
 }
 
 }  // namespace innersphere

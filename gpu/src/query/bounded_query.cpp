@@ -41,7 +41,7 @@ std::size_t stepsOf(const PairQuery& query) {
   return steps;
 }
 
-/// What a packing says of the error of overlaps that take up this share of its solid.
+/// The error that a packing gives for overlaps of this volume.
 double errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator, double volume) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const OverlapErrors& errors = packing.overlap_errors;
@@ -50,9 +50,9 @@ double errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator
     if (candidate.count <= prefix) best = &candidate;
   }
   if (!best || !(packing.solid.volume > 0)) return kUnknown;
-  const double share = volume / packing.solid.volume;
+  const double fraction = volume / packing.solid.volume;
   std::size_t bin = 0;
-  while (bin + 1 < errors.poses.size() && share >= kOverlapBins[bin + 1]) ++bin;
+  while (bin + 1 < errors.poses.size() && fraction >= kOverlapBins[bin + 1]) ++bin;
   if (errors.poses[bin] == 0) return kUnknown;
   return (estimator == Estimator::raw ? best->raw : best->volume_true)[bin];
 }
@@ -91,13 +91,13 @@ std::size_t BoundedQuery::longestStep(const PairQuery& query, const QueryBudget&
     const PairQuery bounded = at(next, query);
     const std::uint64_t spheres = std::uint64_t{bounded.prefix_a} + bounded.prefix_b;
     if (budget.spheres > 0 && spheres > budget.spheres) break;
-    if (budget.seconds > 0 && kReserve * foretold(next) > budget.seconds) break;
+    if (budget.seconds > 0 && kReserve * predicted(next) > budget.seconds) break;
     step = next;
   }
   return step;
 }
 
-double BoundedQuery::foretold(std::size_t step) const {
+double BoundedQuery::predicted(std::size_t step) const {
   double slowest = 0;
   for (const Run& run : recent_) {
     double seconds = run.seconds;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "batch/prepare.hpp"
-#include "cpu/cpu_queries.hpp"
+#include "cpu/cpu_backend.hpp"
 #include "cuda/cuda_backend.hpp"
 #include "innersphere/error.hpp"
 
@@ -14,7 +14,8 @@ namespace innersphere {
 namespace {
 
 /// Clusters of spheres in a batch from which on a launch on the device pays: the host waits 15 us for one, in
-/// which one core walks those of two packings of 400 spheres that overlap by a half, or of 3,200 that touch.
+/// which one core searches those of two packings of 400 spheres that overlap by a half, or of 3,200 that
+/// touch.
 constexpr std::size_t kDeviceClusters = 60;
 
 constexpr std::size_t kGrain = 64;  ///< queries of a batch that one thread prepares
@@ -84,7 +85,7 @@ struct QueryContext::Impl {
 
   QueryContextOptions options;
   Workers workers;
-  CpuQueries cpu;
+  CpuBackend cpu;
   std::unique_ptr<QueryBackend> cuda;
   bool looked_for_device = false;
   Backend last = Backend::cpu;
@@ -152,7 +153,7 @@ Overlap QueryContext::overlap(const PairQuery& query, const QueryOptions& option
 
 void QueryContext::startOverlap(const PairQuery& query, const QueryOptions& options) {
   QueryOptions sums_only = options;
-  if (wantsHits(options.want)) sums_only.want = Want::wrench;
+  if (wantsPairs(options.want)) sums_only.want = Want::wrench;
   start(&query, 1, sums_only);
 }
 

@@ -8,15 +8,15 @@
 
 namespace innersphere {
 
-/// The worst violations found. Positive numbers are violations; a valid packing has both at or below zero.
+/// The worst violations found. Positive lengths are violations; a valid packing has both at or below zero.
 struct CheckReport {
-  double worst_overlap = 0;   ///< r_i + r_j - |c_i - c_j| [m], the largest over all pairs
-  std::size_t overlap_i = 0;  ///< the pair it belongs to
-  std::size_t overlap_j = 0;
-  double worst_protrusion = 0;  ///< how far a sphere reaches out of the solid [m]; only with a solid
-  std::size_t protruding = 0;   ///< the sphere it belongs to
-  bool sorted = true;           ///< radii fall
-  double density = 0;           ///< volume of the spheres over volume of the solid; 0 without a known volume
+  double worst_overlap = 0;     ///< The largest r_i + r_j - |c_i - c_j| over all pairs of spheres [m].
+  std::size_t overlap_i = 0;    ///< The first sphere of that pair.
+  std::size_t overlap_j = 0;    ///< The second sphere of that pair.
+  double worst_protrusion = 0;  ///< How far a sphere reaches out of the solid at most [m]. 0 without a solid.
+  std::size_t protruding = 0;   ///< The sphere that reaches out farthest.
+  bool sorted = true;           ///< Whether no sphere is larger than the one before it.
+  double density = 0;           ///< The volume of the spheres over that of the solid. 0 if that is unknown.
 
   bool valid() const { return worst_overlap <= 0 && worst_protrusion <= 0 && sorted; }
 };

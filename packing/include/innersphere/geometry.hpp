@@ -6,22 +6,21 @@
 #include <cstdint>
 #include <vector>
 
-namespace innersphere {
+#include "innersphere/vec3.hpp"
 
-/// A point or vector [m]: x, y, z.
-using Vec3d = std::array<double, 3>;
+namespace innersphere {
 
 /// A 3x3 matrix, row-major: element (i, j) is m[3 * i + j].
 using Mat3d = std::array<double, 9>;
 
-/// An axis-aligned box [m]. Empty when min > max on any axis.
+/// An axis-aligned box [m]. It is empty when min > max on any axis.
 struct Bounds {
   Vec3d min{};
   Vec3d max{};
 };
 
-/// A ball in single precision: centre and radius [m], in the frame of its packing. Sixteen bytes, so that a
-/// GPU thread reads it with one load.
+/// A ball in single precision: centre and radius [m], in the frame of its packing. It takes sixteen bytes, so
+/// that a GPU thread reads it with one load.
 struct alignas(16) Sphere {
   float x = 0;
   float y = 0;
@@ -32,12 +31,13 @@ struct alignas(16) Sphere {
 /// What a rigid body needs to know of a homogeneous solid, for unit density: a body of density rho has mass
 /// rho * volume and inertia rho * inertia.
 struct MassProperties {
-  double volume = 0;       ///< [m^3]
-  Vec3d centre_of_mass{};  ///< [m], in the frame of the solid, or of the packing that holds this
-  Mat3d inertia{};         ///< [m^5] about the centre of mass, along the axes of the solid
+  double volume = 0;       ///< The volume [m^3].
+  Vec3d centre_of_mass{};  ///< The centre of mass [m], in the frame of the solid or of the packing that holds
+                           ///< this.
+  Mat3d inertia{};         ///< The inertia [m^5] about the centre of mass, along the axes of the solid.
 };
 
-/// Vertices [m] and triangles, in double.
+/// Triangles in double precision: vertices [m], and three indices of vertices for each triangle.
 struct Mesh {
   std::vector<Vec3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -46,8 +46,8 @@ struct Mesh {
 /// A closed triangle surface, wound counter-clockwise seen from outside. It serves drawing, ray tests and
 /// convex sweeps; collisions are decided by the spheres.
 struct Surface {
-  std::vector<std::array<float, 3>> vertices;           ///< [m]
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into vertices
+  std::vector<std::array<float, 3>> vertices;           ///< The vertices [m].
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into vertices.
 };
 
 }  // namespace innersphere

@@ -11,31 +11,31 @@
 namespace innersphere {
 
 struct MeshOptions {
-  /// readMesh() multiplies all coordinates with it: 0.001 for a file in millimetres. Over 0. makeSolid()
-  /// ignores it.
+  /// The factor by which readMesh() multiplies all coordinates: 0.001 for a file in millimetres. It must be
+  /// positive. makeSolid() ignores it.
   double scale = 1;
-  /// makeSolid() accepts a mesh that does not bound a volume: its holes are closed with flat fans, and inside
-  /// is where the winding number exceeds 1/2. Distances near a hole are to its fan, so the fill is only as
-  /// good as that guess.
+  /// Whether makeSolid() accepts a mesh that does not bound a volume. Its holes are then closed with flat
+  /// fans, and a point is inside where the winding number exceeds 1/2. Distances near a hole are to its fan,
+  /// so the fill is only as good as that guess.
   bool repair = false;
 };
 
 /// What was found in a mesh.
 struct MeshReport {
-  std::size_t vertices = 0;            ///< after welding equal positions
-  std::size_t triangles = 0;           ///< after removing degenerate ones
-  std::size_t degenerate = 0;          ///< removed: two equal corners
-  std::size_t open_edges = 0;          ///< used by one triangle only
-  std::size_t open_loops = 0;          ///< connected chains of open edges
-  Vec3d open_at{};                     ///< a corner of the longest of them [m]
-  std::size_t non_manifold_edges = 0;  ///< used by more than two triangles
-  std::size_t flipped_edges = 0;       ///< whose two triangles wind in opposite senses
-  std::size_t cuts = 0;                ///< pairs of triangles that pass through each other; touching is none
-  Vec3d cut_at{};                      ///< a corner of one of them [m]
-  std::size_t components = 0;          ///< connected over edges
-  bool inside_out = false;             ///< negative volume: all triangles were flipped
-  Bounds bounds;                       ///< [m]
-  std::vector<std::string> notes;      ///< one sentence for each thing that was mended or looks suspicious
+  std::size_t vertices = 0;    ///< The number of vertices after equal positions were welded.
+  std::size_t triangles = 0;   ///< The number of triangles without the degenerate ones.
+  std::size_t degenerate = 0;  ///< The number of triangles with two equal corners, which were removed.
+  std::size_t open_edges = 0;  ///< The number of edges that only one triangle uses.
+  std::size_t open_loops = 0;  ///< The number of connected chains of open edges.
+  Vec3d open_at{};             ///< A corner of the longest chain of open edges [m].
+  std::size_t non_manifold_edges = 0;  ///< The number of edges that more than two triangles use.
+  std::size_t flipped_edges = 0;       ///< The number of edges whose two triangles wind in opposite senses.
+  std::size_t cuts = 0;                ///< The number of pairs of triangles that pass through each other.
+  Vec3d cut_at{};                      ///< A corner of such a triangle [m].
+  std::size_t components = 0;          ///< The number of components that are connected over edges.
+  bool inside_out = false;         ///< Whether the volume was negative, so that all triangles were flipped.
+  Bounds bounds;                   ///< The box around all vertices [m].
+  std::vector<std::string> notes;  ///< A sentence for each thing that was mended or looks suspicious.
 };
 
 /// Reads a mesh through assimp (OBJ, STL, PLY, OFF, glTF, ...), with node transforms applied in double and

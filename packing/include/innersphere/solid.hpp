@@ -11,8 +11,8 @@ namespace innersphere {
 
 /// The point of a solid's surface that is nearest to a query point.
 struct ClosestPoint {
-  double distance = 0;  ///< [m], unsigned
-  Vec3d point{};        ///< [m]
+  double distance = 0;  ///< The unsigned distance [m].
+  Vec3d point{};        ///< The nearest point [m].
 };
 
 /// A bounded solid. Implementations are immutable and safe to query from several threads at once. Only
@@ -21,27 +21,29 @@ class Solid {
  public:
   virtual ~Solid() = default;
 
-  /// Nearest point of the surface. A caller that does not care for surface farther than `cutoff` [m] says so
-  /// and gets distance = infinity there, which is cheaper.
+  /// Returns the nearest point of the surface. Beyond `cutoff` [m] the distance is infinity; a small cutoff
+  /// is cheaper.
   virtual ClosestPoint closestPoint(const Vec3d& p,
                                     double cutoff = std::numeric_limits<double>::infinity()) const = 0;
 
-  /// True strictly inside.
+  /// Returns true strictly inside.
   virtual bool contains(const Vec3d& p) const = 0;
 
-  /// A box around the solid; tight boxes make packing faster.
+  /// Returns a box around the solid. Tight boxes make packing faster.
   virtual Bounds bounds() const = 0;
 
-  /// Exact where the representation allows it, in double.
+  /// Returns the mass properties, exact where the representation allows it.
   virtual MassProperties massProperties() const = 0;
 
-  /// A triangle surface for drawing, ray tests and measuring gaps, wound counter-clockwise seen from outside.
+  /// Returns a triangle surface for drawing, ray tests and measuring gaps, wound counter-clockwise seen from
+  /// outside.
   virtual Mesh surface() const = 0;
 
-  /// Name for messages and provenance.
+  /// Returns a name for messages and provenance.
   virtual std::string name() const = 0;
 
-  /// Hash of the geometry, hexadecimal: the same for the same solid on every machine. Empty if unknown.
+  /// Returns a hash of the geometry, hexadecimal: the same for the same solid on every machine. Empty if
+  /// unknown.
   virtual std::string hash() const { return {}; }
 };
 

@@ -13,11 +13,12 @@ namespace innersphere {
 // Solids with an exact distance. Centred at the origin; lengths in metres; Error bad_argument where a length
 // is not > 0.
 std::unique_ptr<Solid> makeBall(double radius);
-std::unique_ptr<Solid> makeBox(const Vec3d& size);                         ///< full edge lengths
-std::unique_ptr<Solid> makeTorus(double ring_radius, double tube_radius);  ///< about the z axis
-std::unique_ptr<Solid> makeCylinder(double radius, double height);         ///< about the z axis
+std::unique_ptr<Solid> makeBox(const Vec3d& size);  ///< The edges have these full lengths.
+std::unique_ptr<Solid> makeTorus(double ring_radius,
+                                 double tube_radius);               ///< The ring lies about the z axis.
+std::unique_ptr<Solid> makeCylinder(double radius, double height);  ///< Its axis is the z axis.
 
-/// A user's own solid from a signed distance, negative inside and exact there; outside it may be too small.
+/// Makes a solid from a signed distance, which is negative and exact inside. Outside it may be too small.
 /// Mass properties are found by sampling the box `bounds`, which has to hold the solid, at `resolution` cells
 /// (1 to 1024) along its longest side, to a relative error of about 1 / resolution^2 for smooth shapes; the
 /// surface at half the resolution, with rounded edges. Throws Error: bad_argument, not_a_solid (the distance
@@ -26,14 +27,14 @@ std::unique_ptr<Solid> makeDistanceSolid(const std::string& name,
                                          std::function<double(const Vec3d&)> signed_distance,
                                          const Bounds& bounds, int resolution = 128);
 
-/// What is in `a` and not in `b`. Distances from the inside are exact: the nearest point of either surface is
-/// on the boundary of the difference. Mass properties and surface are sampled as above, at 128. Throws Error:
-/// bad_argument (a null solid), not_a_solid (nothing is left).
+/// Makes the solid of all points in `a` and not in `b`. Distances from the inside are exact: the nearest
+/// point of either surface is on the boundary of the difference. Mass properties and surface are sampled as
+/// above, at 128. Throws Error: bad_argument (a null solid), not_a_solid (nothing is left).
 std::unique_ptr<Solid> makeDifference(std::shared_ptr<const Solid> a, std::shared_ptr<const Solid> b);
 
-/// A named solid of the project with sizes that suit a scene about 1 m wide: ball, box, cylinder, torus, link
-/// (of a chain), bowl, gear, lbracket, knot, nut, bolt, chazelle, tray. Throws Error bad_argument for an
-/// unknown name; the message lists the known ones.
+/// Makes a named solid of the project with sizes that suit a scene about 1 m wide: ball, box, cylinder,
+/// torus, link (of a chain), bowl, gear, lbracket, knot, nut, bolt, chazelle, tray. Throws Error bad_argument
+/// for an unknown name; the message lists the known ones.
 ///
 /// Nut and bolt mate. Both are about the z axis with a right-handed thread of pitch 0.125; the bolt's thread
 /// runs from its head at z = 0 up to 0.75, the nut is 0.375 high and stands on z = 0. The nut fits, with 0.01

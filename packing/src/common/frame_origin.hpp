@@ -1,7 +1,7 @@
 // Where a packing has its origin.
 #pragma once
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 
 namespace innersphere {
 

@@ -57,7 +57,12 @@ class Entry {
     return all;
   }
 
-  /// As many as there are, in groups of `group`: from an array of numbers or a byte string.
+  Vec3d vector() const {
+    const std::array<double, 3> v = numbers<3>();
+    return {v[0], v[1], v[2]};
+  }
+
+  /// All numbers of an array or of a byte string; their count must be a multiple of `group`.
   std::vector<float> floats(std::size_t group) const {
     return list<float>(
         group, [&](const json& x) { return static_cast<float>(Entry(x, path_).number()); },
@@ -158,7 +163,7 @@ Packing packingOf(const json& value) {
   }
   packing.surface = surfaceOf(document["surface"]);
   // Entries that came later than the first files.
-  if (document.has("origin")) packing.origin = document["origin"].numbers<3>();
+  if (document.has("origin")) packing.origin = document["origin"].vector();
   if (document.has("overlap_errors")) packing.overlap_errors = overlapErrorsOf(document["overlap_errors"]);
   if (document.has("mass_weights")) packing.mass_weights = document["mass_weights"].floats(1);
   if (document.has("warnings")) {
@@ -166,8 +171,7 @@ Packing packingOf(const json& value) {
   }
 
   const Entry solid = document["solid"];
-  packing.solid = {solid["volume"].number(), solid["centre_of_mass"].numbers<3>(),
-                   solid["inertia"].numbers<9>()};
+  packing.solid = {solid["volume"].number(), solid["centre_of_mass"].vector(), solid["inertia"].numbers<9>()};
   const Entry certificate = document["certificate"];
   packing.certificate = {certificate["delta"].number(), certificate["largest_missing_radius"].number()};
   const Entry quality = document["quality"];

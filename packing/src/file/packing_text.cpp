@@ -8,8 +8,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "common/bounds.hpp"
 #include "common/frame_origin.hpp"
-#include "common/vec3.hpp"
 #include "innersphere/error.hpp"
 
 namespace innersphere {

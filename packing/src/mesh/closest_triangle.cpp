@@ -46,7 +46,7 @@ bool visitTriangle(RTCPointQueryFunctionArguments* args) {
 
 }  // namespace
 
-TriangleTree::TriangleTree(const Mesh& mesh) : device_(rtcNewDevice(nullptr)) {
+ClosestTriangle::ClosestTriangle(const Mesh& mesh) : device_(rtcNewDevice(nullptr)) {
   Bounds box = emptyBounds();
   triangles_.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
@@ -59,7 +59,7 @@ TriangleTree::TriangleTree(const Mesh& mesh) : device_(rtcNewDevice(nullptr)) {
   if (!device_) throw std::runtime_error("Embree could not be started");
   scene_.reset(rtcNewScene(device_.get()));
   struct Source {
-    const TriangleTree* tree;
+    const ClosestTriangle* tree;
     const Mesh* mesh;
   } source{this, &mesh};
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
@@ -89,13 +89,13 @@ TriangleTree::TriangleTree(const Mesh& mesh) : device_(rtcNewDevice(nullptr)) {
   }
 }
 
-Bounds TriangleTree::unitBox(const Mesh& mesh, std::size_t triangle) const {
+Bounds ClosestTriangle::unitBox(const Mesh& mesh, std::size_t triangle) const {
   Bounds box = emptyBounds();
   for (std::uint32_t v : mesh.triangles[triangle]) extend(box, to_unit_ * (mesh.vertices[v] - centre_));
   return box;
 }
 
-ClosestPoint TriangleTree::closest(const Vec3d& p, double cutoff) const {
+ClosestPoint ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
   const Vec3d q = to_unit_ * (p - centre_);
   const double reach = std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])});
   Query query{&triangles_, p, to_unit_, kFloatSlack * (1 + reach)};

@@ -15,9 +15,9 @@ namespace innersphere {
 /// diagonal with boxes rounded outwards, and serves only to leave out triangles that are certainly too far;
 /// distances and the choice among the rest are in double and equal brute force bit for bit (the lowest index
 /// wins a tie).
-class TriangleTree {
+class ClosestTriangle {
  public:
-  explicit TriangleTree(const Mesh& mesh);
+  explicit ClosestTriangle(const Mesh& mesh);
   ClosestPoint closest(const Vec3d& p, double cutoff) const;
 
  private:

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 
 namespace innersphere {
 

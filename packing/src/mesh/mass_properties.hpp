@@ -20,8 +20,8 @@ struct Moments {
   MassProperties massProperties() const;
 };
 
-/// By the divergence theorem, exact but for rounding, about the middle of the mesh so that no digits are lost
-/// far from the origin. Of a mesh that is not closed the result means nothing.
+/// The integrals over a mesh by the divergence theorem, exact but for rounding, about the middle of the mesh
+/// so that no digits are lost far from the origin. Of a mesh that is not closed the result means nothing.
 Moments momentsOf(const Mesh& mesh);
 
 /// What a function is at a point, and how far around it keeps that value.

@@ -1,6 +1,6 @@
 #include "innersphere/mesh.hpp"
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 #include "innersphere/error.hpp"
 #include "mesh/mesh_clean.hpp"
 #include "mesh/mesh_cuts.hpp"

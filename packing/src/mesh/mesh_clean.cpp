@@ -4,7 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 
 namespace innersphere {
 namespace {

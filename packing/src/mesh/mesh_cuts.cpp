@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 
 namespace innersphere {
 namespace {

@@ -4,7 +4,7 @@
 #include <assimp/Importer.hpp>
 #include <filesystem>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/mesh.hpp"
 #include "mesh/mesh_clean.hpp"

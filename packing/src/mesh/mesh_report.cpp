@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 #include "innersphere/error.hpp"
 
 namespace innersphere {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 #include "mesh/mass_properties.hpp"
 #include "mesh/mesh_clean.hpp"
 #include "mesh/winding_tree.hpp"

@@ -1,7 +1,7 @@
 #include "mesh/mesh_solid.hpp"
 
+#include "common/bounds.hpp"
 #include "common/hash.hpp"
-#include "common/vec3.hpp"
 #include "mesh/mass_properties.hpp"
 
 namespace innersphere {

@@ -27,7 +27,7 @@ class MeshSolid : public Solid {
   Mesh mesh_;
   std::string name_;
   Bounds bounds_;
-  TriangleTree tree_;
+  ClosestTriangle tree_;
   WindingTree winding_;
   MassProperties mass_;
 };

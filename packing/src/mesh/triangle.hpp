@@ -1,7 +1,7 @@
 // The nearest point of one triangle, in double.
 #pragma once
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 
 namespace innersphere {
 

@@ -8,7 +8,7 @@ namespace innersphere {
 
 bool CellSearch::climb(Point x) {
   const Point start = x;
-  Probe best = probe(x, 0, brick_balls_, 0, 0);
+  Probe best = probe(x, 0, block_balls_, 0, 0);
   double half = 0.5 * best.value;
   while (half > 1e-4 * best.value) {
     // The linear programme is trusted within a cube. As long as that keeps to the ball about x, all of it
@@ -16,15 +16,15 @@ bool CellSearch::climb(Point x) {
     half = std::min({half, 0.55 * best.value, (kWander * wanted_ - (x - start).norm()) / 1.75});
     const double before = best.value;
     const Point centre = x;
-    MaxMin program(half);
+    DualSimplex program(half);
     program.add(best.value, best.gradient);
-    for (std::size_t i = 0; i < brick_balls_; ++i) {
+    for (std::size_t i = 0; i < block_balls_; ++i) {
       const double distance = balls_[i].distance(centre);
       if (distance < best.value + 3.5 * half) program.add(distance, direction(balls_[i].centre, centre));
     }
     for (int step = 0; step < 10 && program.optimum() > best.value * (1 + 1e-5); ++step) {
       const Point y = centre + program.argmax();
-      const Probe p = probe(y, 0, brick_balls_, best.value, 0);
+      const Probe p = probe(y, 0, block_balls_, best.value, 0);
       if (p.value > best.value) {
         best = p;
         x = y;

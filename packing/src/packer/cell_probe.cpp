@@ -32,7 +32,7 @@ CellSearch::Probe CellSearch::probe(const Point& x, std::size_t begin, std::size
                                     double negligible) {
   const Probe ball = nearestBall(x, begin, end);
   if (ball.value <= enough) return ball;
-  if (const Soundings::Sounding* known = soundings_.around(x)) {
+  if (const ClearanceCache::Entry* known = clearances_.around(x)) {
     if (known->distance < 0) {
       const Ball empty{known->at, -known->distance};
       return {empty.distance(x), direction(empty.centre, x), empty};
@@ -49,9 +49,9 @@ CellSearch::Probe CellSearch::probe(const Point& x, std::size_t begin, std::size
 }
 
 bool CellSearch::isInside(const Point& x, double distance) {
-  int side = soundings_.side(x, distance);
+  int side = clearances_.side(x, distance);
   if (side == 0) side = container_.contains(x) ? 1 : -1;
-  soundings_.add(x, side * distance);
+  clearances_.add(x, side * distance);
   return side > 0;
 }
 

@@ -44,7 +44,7 @@ float roundUp(double x) {
 
 CellSearch::Result CellSearch::search(std::span<const Cell> cells) {
   gather(cells);
-  for (const Cell& cell : cells) visit(cell, 0, brick_balls_);
+  for (const Cell& cell : cells) visit(cell, 0, block_balls_);
   return std::move(result_);
 }
 
@@ -62,7 +62,7 @@ void CellSearch::gather(std::span<const Cell> cells) {
     const double distance = ((centre - ball.centre).cwiseAbs() - half).cwiseMax(0.0).norm() - ball.radius;
     if (distance < reach) balls_.push_back(ball);
   });
-  brick_balls_ = balls_.size();
+  block_balls_ = balls_.size();
 }
 
 void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end) {
@@ -106,7 +106,7 @@ void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end) {
 CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
   const Point centre = cell.centre();
   const double half = cell.side() / 2;
-  MaxMin program(half);
+  DualSimplex program(half);
   std::vector<Probe> cuts;
   const auto prove = [&] {
     cell.upper = std::min(cell.upper, roundUp(provenBound(program, cuts, centre, half)));
@@ -127,7 +127,7 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
   return Verdict::undecided;
 }
 
-bool CellSearch::flatten(const MaxMin& program, double half, std::vector<Probe>& cuts) {
+bool CellSearch::flatten(const DualSimplex& program, double half, std::vector<Probe>& cuts) {
   bool flatter = false;
   program.forWeights([&](int k, double) {
     if (!cuts[k].at_wall) return;
@@ -139,7 +139,7 @@ bool CellSearch::flatten(const MaxMin& program, double half, std::vector<Probe>&
   return flatter;
 }
 
-double CellSearch::provenBound(const MaxMin& program, std::span<const Probe> cuts, const Point& centre,
+double CellSearch::provenBound(const DualSimplex& program, std::span<const Probe> cuts, const Point& centre,
                                double half) const {
   double corners[8] = {};
   program.forWeights([&](int k, double weight) {

@@ -1,4 +1,4 @@
-// Branch and bound in one brick of the octree.
+// Branch and bound in one block of the octree.
 #pragma once
 
 #include <span>
@@ -31,7 +31,7 @@ class CellSearch {
 
   struct Result {
     std::vector<Cell> cells;            ///< the live leaves, with their bounds
-    std::vector<Candidate> candidates;  ///< disjoint within this brick, larger than `wanted`
+    std::vector<Candidate> candidates;  ///< disjoint within this block, larger than `wanted`
   };
 
   /// `top`: no sphere larger than this fits. `wanted`: spheres larger than this are looked for. `bound`: a
@@ -43,7 +43,7 @@ class CellSearch {
         top_(top),
         bound_(bound),
         wanted_(wanted),
-        soundings_(container.margin()) {}
+        clearances_(container.margin()) {}
 
   Result search(std::span<const Cell> cells);
 
@@ -71,12 +71,12 @@ class CellSearch {
   Verdict bound(Cell& cell, std::size_t begin);
 
   /// The bound proven by the programme's dual variables. Cut k of the programme is cuts[k].
-  double provenBound(const MaxMin& program, std::span<const Probe> cuts, const Point& centre,
+  double provenBound(const DualSimplex& program, std::span<const Probe> cuts, const Point& centre,
                      double half) const;
 
   /// Puts larger balls behind the walls that hold the optimum down, for they curve less; false if there are
   /// none.
-  bool flatten(const MaxMin& program, double half, std::vector<Probe>& cuts);
+  bool flatten(const DualSimplex& program, double half, std::vector<Probe>& cuts);
 
   /// The largest empty ball, up to `radius`, that touches the surface at `wall` from outside; or just the
   /// point.
@@ -100,11 +100,11 @@ class CellSearch {
   const SphereGrid& placed_;
   const double top_, bound_, wanted_;
   Result result_;
-  Soundings soundings_;
-  // A stack: the balls that can matter in the brick, those of them that can matter in its cell being visited,
+  ClearanceCache clearances_;
+  // A stack: the balls that can matter in the block, those of them that can matter in its cell being visited,
   // and so on.
   std::vector<Ball> balls_;
-  std::size_t brick_balls_ = 0;
+  std::size_t block_balls_ = 0;
 };
 
 }  // namespace innersphere

@@ -35,7 +35,7 @@ class Sampler {
         spacing_(spacing),
         reach_(reach),
         counts_(counts),
-        soundings_(container.margin()) {}
+        clearances_(container.margin()) {}
 
   /// The cube of `lattice` points along an edge, the first of which is `at`.
   void descend(const std::array<std::uint32_t, 3>& at, std::uint32_t lattice, bool inside) {
@@ -84,13 +84,13 @@ class Sampler {
 
   void sampleBlock(const std::array<std::uint32_t, 3>& block, const Point& centre, double half, bool inside) {
     gather(centre, half);
-    soundings_ = Soundings(container_.margin());
+    clearances_ = ClearanceCache(container_.margin());
     for (std::uint32_t k = 0; k < kBlock * kBlock * kBlock; ++k) {
       const std::array<std::uint32_t, 3> at{block[0] + k % kBlock, block[1] + k / kBlock % kBlock,
                                             block[2] + k / (kBlock * kBlock)};
       const Point x = Point(at[0] + jitter(at, 0), at[1] + jitter(at, 1), at[2] + jitter(at, 2)) * spacing_;
       SphereGrid::Nearest hit = nearest(x);
-      if (hit.distance <= 0 || (!inside && !soundings_.contains(container_, x, half))) continue;
+      if (hit.distance <= 0 || (!inside && !clearances_.contains(container_, x, half))) continue;
       if (!(hit.distance < reach_)) hit = grid_.nearestOfAll(x, 2 * reach_);
       counts_[hit.index][(at[0] + at[1] + at[2]) % 2].fetch_add(1, std::memory_order_relaxed);
     }
@@ -102,7 +102,7 @@ class Sampler {
   const double reach_;
   Counts& counts_;
   std::vector<std::uint32_t> near_;
-  Soundings soundings_;
+  ClearanceCache clearances_;
 };
 
 void sample(const Container& container, const SphereGrid& grid, double spacing, double reach,
@@ -122,7 +122,7 @@ void sample(const Container& container, const SphereGrid& grid, double spacing, 
 
 }  // namespace
 
-Shares findShares(const Container& container, std::span<const Ball> balls, double volume) {
+CellVolumes findCellVolumes(const Container& container, std::span<const Ball> balls, double volume) {
   const auto count = static_cast<double>(balls.size());
   double filled = 0, smallest = 1;
   for (const Ball& ball : balls) {
@@ -141,15 +141,15 @@ Shares findShares(const Container& container, std::span<const Ball> balls, doubl
     difference += (a - b) * (a - b);
   }
   const double each = sum > 0 ? std::max(0.0, volume - filled) / sum : 0;
-  // All shares together are the solid, whatever the rounding.
+  // All cells together are the solid, whatever the rounding.
   const double scale = volume / (filled + each * sum);
-  Shares shares;
-  shares.sampling_error = std::sqrt(difference / count) * each / (volume / count);
+  CellVolumes cells;
+  cells.sampling_error = std::sqrt(difference / count) * each / (volume / count);
   for (std::size_t i = 0; i < balls.size(); ++i) {
-    const double share = kBallVolume * std::pow(balls[i].radius, 3) + each * (counts[i][0] + counts[i][1]);
-    shares.volumes.push_back(scale * share);
+    const double cell = kBallVolume * std::pow(balls[i].radius, 3) + each * (counts[i][0] + counts[i][1]);
+    cells.volumes.push_back(scale * cell);
   }
-  return shares;
+  return cells;
 }
 
 }  // namespace innersphere

@@ -22,45 +22,45 @@ std::uint64_t mortonCode(const Cell& cell, int level) {
   return code;
 }
 
-Ladder::Ladder(double first, double last, double ratio) {
+RadiusSchedule::RadiusSchedule(double first, double last, double ratio) {
   assert(first >= last && last > 0 && ratio > 1);
-  for (double radius = first; radius > last; radius /= ratio) rungs_.push_back(static_cast<float>(radius));
+  for (double radius = first; radius > last; radius /= ratio) radii_.push_back(static_cast<float>(radius));
   const float end = std::nextafter(static_cast<float>(last), 1.0f);
-  while (!rungs_.empty() && rungs_.back() <= end) rungs_.pop_back();
-  rungs_.push_back(end);
+  while (!radii_.empty() && radii_.back() <= end) radii_.pop_back();
+  radii_.push_back(end);
 }
 
-std::size_t Ladder::below(float radius) const {
-  const auto it = std::lower_bound(rungs_.begin(), rungs_.end(), radius, std::greater<>());
-  // `it` is the first rung that is not larger than the radius.
-  const auto rung = static_cast<std::size_t>(it - rungs_.begin());
-  if (rung < rungs_.size() && rungs_[rung] == radius) return rung;
-  return rung == 0 ? 0 : rung - 1;
+std::size_t RadiusSchedule::below(float radius) const {
+  const auto it = std::lower_bound(radii_.begin(), radii_.end(), radius, std::greater<>());
+  // `it` is the first step that is not larger than the radius.
+  const auto step = static_cast<std::size_t>(it - radii_.begin());
+  if (step < radii_.size() && radii_[step] == radius) return step;
+  return step == 0 ? 0 : step - 1;
 }
 
 void CellQueue::push(const Cell& cell) {
-  if (cell.upper <= ladder_[ladder_.size() - 1]) return;
-  buckets_[ladder_.below(cell.upper)].push_back(cell);
+  if (cell.upper <= schedule_[schedule_.size() - 1]) return;
+  buckets_[schedule_.below(cell.upper)].push_back(cell);
   ++live_;
 }
 
 std::size_t CellQueue::top() const {
-  std::size_t rung = 0;
-  while (rung < buckets_.size() && buckets_[rung].empty()) ++rung;
-  return rung;
+  std::size_t step = 0;
+  while (step < buckets_.size() && buckets_[step].empty()) ++step;
+  return step;
 }
 
 std::size_t CellQueue::countAbove(std::size_t until) const {
   std::size_t count = 0;
-  for (std::size_t rung = 0; rung < std::min(until, buckets_.size()); ++rung) count += buckets_[rung].size();
+  for (std::size_t step = 0; step < std::min(until, buckets_.size()); ++step) count += buckets_[step].size();
   return count;
 }
 
 std::vector<Cell> CellQueue::takeAbove(std::size_t until) {
   std::vector<Cell> taken;
-  for (std::size_t rung = 0; rung < std::min(until, buckets_.size()); ++rung) {
-    taken.insert(taken.end(), buckets_[rung].begin(), buckets_[rung].end());
-    std::vector<Cell>().swap(buckets_[rung]);
+  for (std::size_t step = 0; step < std::min(until, buckets_.size()); ++step) {
+    taken.insert(taken.end(), buckets_[step].begin(), buckets_[step].end());
+    std::vector<Cell>().swap(buckets_[step]);
   }
   live_ -= taken.size();
   return taken;

@@ -29,41 +29,42 @@ struct Cell {
 std::uint64_t mortonCode(const Cell& cell, int level);
 
 /// The rounds' fixed radii: a falling geometric sequence, in single precision so that bounds compare exactly.
-class Ladder {
+class RadiusSchedule {
  public:
-  Ladder(double first, double last, double ratio);
-  float operator[](std::size_t rung) const { return rungs_[std::min(rung, rungs_.size() - 1)]; }
-  std::size_t size() const { return rungs_.size(); }
+  RadiusSchedule(double first, double last, double ratio);
+  float operator[](std::size_t step) const { return radii_[std::min(step, radii_.size() - 1)]; }
+  std::size_t size() const { return radii_.size(); }
 
-  /// The rung with (*this)[rung + 1] < radius <= (*this)[rung].
+  /// The step with (*this)[step + 1] < radius <= (*this)[step].
   std::size_t below(float radius) const;
 
  private:
-  std::vector<float> rungs_;
+  std::vector<float> radii_;
 };
 
-/// All live cells, in one bucket for each rung of the ladder, so that the largest are found without sorting.
+/// All live cells, in one bucket for each step of the radius schedule, so that the largest are found without
+/// sorting.
 class CellQueue {
  public:
-  explicit CellQueue(const Ladder& ladder) : ladder_(ladder), buckets_(ladder.size()) {}
+  explicit CellQueue(const RadiusSchedule& schedule) : schedule_(schedule), buckets_(schedule.size()) {}
 
-  /// Cells that can only hold spheres smaller than the last rung are forgotten.
+  /// Cells that can only hold spheres smaller than the last step are forgotten.
   void push(const Cell& cell);
 
   bool empty() const { return live_ == 0; }
   std::size_t live() const { return live_; }
 
-  /// The first rung that has cells; the ladder's size if none has.
+  /// The first step that has cells; the radius schedule's size if none has.
   std::size_t top() const;
 
-  /// How many cells may hold a sphere larger than rung `until`.
+  /// How many cells may hold a sphere larger than step `until`.
   std::size_t countAbove(std::size_t until) const;
 
   /// Removes and returns them.
   std::vector<Cell> takeAbove(std::size_t until);
 
  private:
-  const Ladder& ladder_;
+  const RadiusSchedule& schedule_;
   std::vector<std::vector<Cell>> buckets_;
   std::size_t live_ = 0;
 };

@@ -10,10 +10,10 @@
 namespace innersphere {
 
 /// Points with a distance that the surface certainly keeps from them, and the side that they lie on. Asking a
-/// solid whether a point is inside is expensive; mostly it follows from a sounding nearby.
-class Soundings {
+/// solid whether a point is inside is expensive; mostly it follows from an entry nearby.
+class ClearanceCache {
  public:
-  struct Sounding {
+  struct Entry {
     Point at;
     double distance;  ///< positive inside, negative outside
 
@@ -22,45 +22,45 @@ class Soundings {
   };
 
   /// `margin` is more than the rounding error of any distance.
-  explicit Soundings(double margin) : margin_(margin) {}
+  explicit ClearanceCache(double margin) : margin_(margin) {}
 
   void add(const Point& at, double distance) {
-    if (soundings_.size() < kKept) {
-      soundings_.push_back({at, distance});
+    if (entries_.size() < kKept) {
+      entries_.push_back({at, distance});
     } else {
-      soundings_[oldest_++ % kKept] = {at, distance};
+      entries_[oldest_++ % kKept] = {at, distance};
     }
   }
 
-  /// The sounding with the largest clearance at x, or null if none reaches x.
-  const Sounding* around(const Point& x) const {
-    const Sounding* best = nullptr;
+  /// The entry with the largest clearance at x, or null if none reaches x.
+  const Entry* around(const Point& x) const {
+    const Entry* best = nullptr;
     double most = margin_;
-    for (const Sounding& sounding : soundings_) {
+    for (const Entry& entry : entries_) {
       // Most are too far away, which shows without a root.
-      if ((x - sounding.at).squaredNorm() >= sounding.distance * sounding.distance) continue;
-      const double clearance = sounding.clearance(x);
+      if ((x - entry.at).squaredNorm() >= entry.distance * entry.distance) continue;
+      const double clearance = entry.clearance(x);
       if (clearance > most) {
         most = clearance;
-        best = &sounding;
+        best = &entry;
       }
     }
     return best;
   }
 
   /// 1 inside, -1 outside, 0 unknown; `clear` is the distance of x from the surface. If that empty ball meets
-  /// the empty ball of a sounding, both are on the same side.
+  /// the empty ball of an entry, both are on the same side.
   int side(const Point& x, double clear) const {
-    for (const Sounding& sounding : soundings_) {
-      if (sounding.clearance(x) + clear > margin_) return sounding.distance > 0 ? 1 : -1;
+    for (const Entry& entry : entries_) {
+      if (entry.clearance(x) + clear > margin_) return entry.distance > 0 ? 1 : -1;
     }
     return 0;
   }
 
-  /// Whether x is inside the solid, asked of the solid only if the soundings do not tell. What is learnt is
+  /// Whether x is inside the solid, asked of the solid only if the entries do not tell. What is learnt is
   /// kept; `reach` bounds the distances that are of use.
   bool contains(const Container& container, const Point& x, double reach) {
-    if (const Sounding* known = around(x)) return known->distance > 0;
+    if (const Entry* known = around(x)) return known->distance > 0;
     const double distance = std::min(container.closest(x, reach).distance, reach);
     int found = side(x, distance);
     if (found == 0) found = container.contains(x) ? 1 : -1;
@@ -69,11 +69,11 @@ class Soundings {
   }
 
  private:
-  // The search moves through neighbouring cells, so the last soundings are the near ones.
+  // The search moves through neighbouring cells, so the last entries are the near ones.
   static constexpr std::size_t kKept = 64;
 
   double margin_;
-  std::vector<Sounding> soundings_;
+  std::vector<Entry> entries_;
   std::size_t oldest_ = 0;
 };
 

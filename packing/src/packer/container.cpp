@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/bounds.hpp"
 #include "common/frame_origin.hpp"
-#include "common/vec3.hpp"
 #include "innersphere/error.hpp"
 #include "mesh/mesh_report.hpp"
 

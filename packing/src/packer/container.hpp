@@ -22,7 +22,7 @@ class Container {
   const Solid& solid() const { return solid_; }
   double side() const { return side_; }  ///< metres per unit
 
-  /// Of the packing's frame (see Packing::origin).
+  /// The origin of the packing's frame (see Packing::origin).
   const Vec3d& origin() const { return origin_; }
 
   Nearest closest(const Point& x, double cutoff) const;

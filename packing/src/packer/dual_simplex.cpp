@@ -19,7 +19,7 @@ double rounded(double x, double unit) {
 
 }  // namespace
 
-void MaxMin::add(double value, const Point& gradient) {
+void DualSimplex::add(double value, const Point& gradient) {
   if (rows_.empty()) {
     rows_.reserve(kFaces + 24);
     for (int k = 0; k < 3; ++k) {
@@ -54,7 +54,7 @@ void MaxMin::add(double value, const Point& gradient) {
   }
 }
 
-void MaxMin::start() {
+void DualSimplex::start() {
   const Row& first = rows_[kFaces];
   Eigen::Matrix4d normals;
   Eigen::Vector4d bounds;
@@ -68,7 +68,7 @@ void MaxMin::start() {
   optimum_ = inverse_ * bounds;
 }
 
-void MaxMin::enter(int row) {
+void DualSimplex::enter(int row) {
   // The new normal as a combination of the basis; the first dual variable that it drives to zero leaves.
   const Eigen::RowVector4d mix = rows_[row].normal.transpose() * inverse_;
   int leaving = -1;

@@ -12,9 +12,9 @@ namespace innersphere {
 ///   max over |y_j| <= half of min over k of (value_k + gradient_k . y).
 /// Functions are rounded and added one by one; after each the optimum is restored by the dual simplex method,
 /// with a basis of four of the functions and faces of the cube.
-class MaxMin {
+class DualSimplex {
  public:
-  explicit MaxMin(double half) : half_(half) {}
+  explicit DualSimplex(double half) : half_(half) {}
 
   void add(double value, const Point& gradient);
 

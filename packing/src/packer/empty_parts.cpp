@@ -4,7 +4,7 @@
 #include <numeric>
 #include <optional>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 #include "mesh/mass_properties.hpp"
 #include "mesh/mesh_report.hpp"
 #include "mesh/winding_tree.hpp"

@@ -1,4 +1,4 @@
-// The packing in rounds.
+// The greedy packing in rounds.
 #pragma once
 
 #include <tbb/task_arena.h>
@@ -12,10 +12,10 @@ namespace innersphere {
 
 /// Inserts spheres greedily, in rounds. A round starts from the certainty that no sphere larger than `top`
 /// fits. It inserts spheres larger than top / (1 + delta), until no sphere larger than `bound` fits, a little
-/// above that; this is the next round's top. All bricks of the octree that may hold such a sphere are
+/// above that; this is the next round's top. All blocks of the octree that may hold such a sphere are
 /// searched in parallel. Of candidates that overlap, the larger one wins, or the one that comes first along
 /// the Z-order curve, so the result does not depend on threads.
-class Rounds {
+class GreedyRounds {
  public:
   /// What has been placed, in the order of placing.
   struct Placed {
@@ -25,16 +25,33 @@ class Rounds {
     float largest_missing = 0;  ///< nothing larger is possible now
   };
 
-  Rounds(const Container& container, double delta, double min_radius)
+  GreedyRounds(const Container& container, double delta, double min_radius)
       : container_(container), delta_(delta), min_radius_(min_radius) {}
 
-  /// `stop` is asked after every sphere; `pause`, with the bound, between the parallel parts, and it may
-  /// throw. Both are called from this thread and end the packing by returning true. The searches run in
-  /// `arena`.
-  Placed run(tbb::task_arena& arena, const std::function<bool(const Placed&)>& stop,
-             const std::function<bool(const Placed&, double)>& pause);
+  using Stop = std::function<bool(const Placed&)>;
+  using Pause = std::function<bool(const Placed&, double)>;
+
+  /// Packs. `stop` is called after every sphere; `pause` is called with the bound between the parallel
+  /// searches, and it may throw. Both are called from this thread and end the packing by returning true. The
+  /// searches run in `arena`.
+  Placed run(tbb::task_arena& arena, const Stop& stop, const Pause& pause) const;
+
+  /// A cell to be searched, and the block of the octree that it is in.
+  struct Active {
+    std::uint64_t block;
+    Cell cell;
+  };
 
  private:
+  struct Round;
+
+  /// Searches all active cells, which it sorts into blocks, in parallel.
+  std::vector<CellSearch::Result> search(std::vector<Active>& active, const Round& round,
+                                         const SphereGrid& grid) const;
+  /// Inserts the candidates that do not overlap what was placed before them. True if `stop` says so.
+  bool insert(const std::vector<CellSearch::Candidate>& candidates, float top, const Stop& stop,
+              Placed& placed) const;
+
   const Container& container_;
   double delta_;
   double min_radius_;

@@ -11,7 +11,7 @@ namespace {
 using Moments = Eigen::Matrix<double, 10, 1>;
 using Matrix10 = Eigen::Matrix<double, 10, 10>;
 
-// The least mass of a sphere, relative to its share.
+// The least mass of a sphere, relative to the mass of its cell.
 constexpr double kLeast = 0.01;
 
 // Relative error of the moments at which the search ends, and the one that is good enough.
@@ -49,11 +49,11 @@ struct Frame {
 
 }  // namespace
 
-// Least change means masses share_i (1 + a_i . y), a_i the sphere's moments, where that is over the least
+// Least change means masses cell_i (1 + a_i . y), a_i the sphere's moments, where that is over the least
 // mass. The ten numbers y follow from the ten equations by Newton's method, exact in one step as long as no
 // sphere is held at the least mass.
-std::vector<float> findMassWeights(const std::vector<Sphere>& spheres, const std::vector<double>& shares,
-                                   const MassProperties& solid) {
+std::vector<float> findMassWeights(const std::vector<Sphere>& spheres,
+                                   const std::vector<double>& cell_volumes, const MassProperties& solid) {
   const Frame frame(solid);
   if (!(frame.unit > 0) || !std::isfinite(frame.unit)) return {};
   const Moments wanted = frame.of(solid);
@@ -66,9 +66,9 @@ std::vector<float> findMassWeights(const std::vector<Sphere>& spheres, const std
     Moments rest = wanted;
     if (slope) slope->setZero();
     for (std::size_t i = 0; i < spheres.size(); ++i) {
-      const double share = shares[i] / solid.volume, change = 1 + moments[i].dot(at);
-      rest -= share * std::max(kLeast, change) * moments[i];
-      if (slope && change > kLeast) *slope += share * moments[i] * moments[i].transpose();
+      const double cell = cell_volumes[i] / solid.volume, change = 1 + moments[i].dot(at);
+      rest -= cell * std::max(kLeast, change) * moments[i];
+      if (slope && change > kLeast) *slope += cell * moments[i] * moments[i].transpose();
     }
     return rest;
   };
@@ -90,7 +90,7 @@ std::vector<float> findMassWeights(const std::vector<Sphere>& spheres, const std
   weights.reserve(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double ball = 4.0 / 3.0 * std::numbers::pi * std::pow(double{spheres[i].radius}, 3);
-    weights.push_back(static_cast<float>(shares[i] * std::max(kLeast, 1 + moments[i].dot(y)) / ball));
+    weights.push_back(static_cast<float>(cell_volumes[i] * std::max(kLeast, 1 + moments[i].dot(y)) / ball));
   }
   return weights;
 }

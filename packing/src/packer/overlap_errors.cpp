@@ -87,7 +87,7 @@ class Prefix {
       // Rounding may have made a volume-true radius the smaller one.
       const double radius = std::max<double>(radii.radii[i] / side, balls_[i].radius);
       grid_.insert({balls_[i].centre, radius});
-      bulge_ = std::max(bulge_, radius - balls_[i].radius);
+      overshoot_ = std::max(overshoot_, radius - balls_[i].radius);
     }
   }
 
@@ -100,8 +100,8 @@ class Prefix {
     for (std::size_t i = 0; i < balls_.size(); ++i) {
       const Point x = pose.apply(balls_[i].centre);
       const double large = grid_.balls()[i].radius;
-      if ((x.array() < -large - bulge_).any() || (x.array() > 1 + large + bulge_).any()) continue;
-      if (voxels.outsideBy(x) > large + bulge_) continue;
+      if ((x.array() < -large - overshoot_).any() || (x.array() > 1 + large + overshoot_).any()) continue;
+      if (voxels.outsideBy(x) > large + overshoot_) continue;
       grid_.visitNear(x, x, large, [&](std::uint32_t j) {
         const double d = (x - balls_[j].centre).norm();
         const double other = grid_.balls()[j].radius;
@@ -115,8 +115,8 @@ class Prefix {
 
  private:
   std::span<const Ball> balls_;
-  SphereGrid grid_;   // with volume-true radii
-  double bulge_ = 0;  // how far these reach out of the solid, at most
+  SphereGrid grid_;       // with volume-true radii
+  double overshoot_ = 0;  // how far these reach out of the solid, at most
 };
 
 std::size_t binOf(double fraction) {

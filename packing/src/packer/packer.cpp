@@ -8,7 +8,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "common/vec3.hpp"
 #include "innersphere/error.hpp"
 #include "packer/cell_volumes.hpp"
 #include "packer/container.hpp"
@@ -66,8 +65,8 @@ double volumeOf(const Ball& ball) {
 }
 
 /// The solid and the limits in the packer's coordinates.
-struct Task {
-  Task(const Solid& solid, const PackOptions& wishes, const MassProperties& mass, const Mesh& surface)
+struct Problem {
+  Problem(const Solid& solid, const PackOptions& wishes, const MassProperties& mass, const Mesh& surface)
       : container(solid), options(wishes), samples(surface, container) {
     const double side = container.side();
     volume = mass.volume / (side * side * side);
@@ -102,24 +101,24 @@ class Reporter {
   const std::string name_;
 };
 
-Rounds::Placed place(const Task& task, tbb::task_arena& arena, const Reporter& report) {
-  const PackOptions& options = task.options;
+GreedyRounds::Placed place(const Problem& problem, tbb::task_arena& arena, const Reporter& report) {
+  const PackOptions& options = problem.options;
   double filled = 0;
   std::size_t uncovered = 0;
-  const auto stop = [&](const Rounds::Placed& now) {
+  const auto stop = [&](const GreedyRounds::Placed& now) {
     filled += volumeOf(now.rounded.back());
-    return now.top.size() == options.spheres || filled >= task.enough;
+    return now.top.size() == options.spheres || filled >= problem.enough;
   };
-  const auto pause = [&](const Rounds::Placed& now, double bound) {
+  const auto pause = [&](const GreedyRounds::Placed& now, double bound) {
     // The number of spheres that fit grows with this power of their radius.
-    const double by_radius = std::pow(task.smallest / bound, 2.5);
+    const double by_radius = std::pow(problem.smallest / bound, 2.5);
     const double by_count =
         options.spheres > 0 ? static_cast<double>(now.top.size()) / static_cast<double>(options.spheres) : 0;
-    const double by_density = options.density > 0 ? std::pow(filled / task.enough, 10) : 0;
+    const double by_density = options.density > 0 ? std::pow(filled / problem.enough, 10) : 0;
     report("packing", std::max({by_radius, by_count, by_density}));
-    return options.gap > 0 && task.samples.covered(now.grid, task.gap, uncovered);
+    return options.gap > 0 && problem.samples.covered(now.grid, problem.gap, uncovered);
   };
-  return Rounds(task.container, options.delta, task.smallest).run(arena, stop, pause);
+  return GreedyRounds(problem.container, options.delta, problem.smallest).run(arena, stop, pause);
 }
 
 /// The spheres by falling radius, as many as the limits ask for, and what is certain about them.
@@ -130,7 +129,7 @@ struct Chosen {
   double largest_missing = 0;
 };
 
-Chosen choose(const Task& task, const Rounds::Placed& placed) {
+Chosen choose(const Problem& problem, const GreedyRounds::Placed& placed) {
   std::vector<std::size_t> order(placed.top.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::vector<Ball>& balls = placed.rounded;
@@ -142,19 +141,62 @@ Chosen choose(const Task& task, const Rounds::Placed& placed) {
 
   Chosen chosen;
   for (std::size_t i : order) chosen.balls.push_back(balls[i]);
-  if (task.options.gap > 0) {
+  if (problem.options.gap > 0) {
     const SphereGrid grid(chosen.balls);
-    if (const auto count = task.samples.prefixWithin(grid, task.gap)) chosen.balls.resize(*count);
+    if (const auto count = problem.samples.prefixWithin(grid, problem.gap)) chosen.balls.resize(*count);
   }
   std::size_t count = 0;
-  while (count < chosen.balls.size() && chosen.filled < task.enough) {
+  while (count < chosen.balls.size() && chosen.filled < problem.enough) {
     chosen.delta = std::max(chosen.delta, top[count] / chosen.balls[count].radius - 1);
     chosen.filled += volumeOf(chosen.balls[count++]);
   }
   chosen.balls.resize(count);
-  const double room = std::max(0.0, task.volume - chosen.filled);
+  const double room = std::max(0.0, problem.volume - chosen.filled);
   chosen.largest_missing = std::min(top[count], std::cbrt(room / kBallVolume));
   return chosen;
+}
+
+Quality qualityOf(const Problem& problem, const Chosen& chosen, tbb::task_arena& arena) {
+  Quality quality;
+  arena.execute([&] { quality = problem.samples.measure(SphereGrid(chosen.balls)); });
+  const double side = problem.container.side();
+  quality.density = chosen.filled / problem.volume;
+  quality.gap_mean *= side;
+  quality.gap_p95 *= side;
+  quality.gap_max *= side;
+  return quality;
+}
+
+/// Adds the volume-true radii of all prefixes. Returns the volumes of the cells of all spheres [m^3].
+std::vector<double> addVolumeTrueRadii(const Problem& problem, const Chosen& chosen, tbb::task_arena& arena,
+                                       const Reporter& report, Packing& packing) {
+  const std::size_t count = chosen.balls.size();
+  CellVolumes cells;
+  for (std::size_t prefix = std::min(kFirstPrefix, count);; prefix = std::min(2 * prefix, count)) {
+    report("cell volumes", static_cast<double>(prefix) / static_cast<double>(2 * count));
+    const auto balls = std::span(chosen.balls).first(prefix);
+    arena.execute([&] {
+      cells = findCellVolumes(problem.container, balls, problem.volume);
+      packing.volume_true.push_back(volumeTrueRadii(problem.container, balls, cells));
+    });
+    if (prefix == count) break;
+  }
+  const double side = problem.container.side();
+  for (double& volume : cells.volumes) volume *= side * side * side;
+  return std::move(cells.volumes);
+}
+
+/// Adds the mass weights, and what a user should know.
+void addMassWeights(const std::vector<double>& cell_volumes, const Mesh& surface, Packing& packing) {
+  packing.mass_weights = findMassWeights(packing.spheres, cell_volumes, packing.solid);
+  const Mat3d& inertia = packing.solid.inertia;
+  if (packing.mass_weights.empty() && inertia[0] + inertia[4] + inertia[8] > 0) {
+    packing.warnings.push_back(
+        "no masses of the spheres give the inertia of the solid; use that of the solid");
+  }
+  for (std::string& sentence : nameEmptyParts(surface, packing)) {
+    packing.warnings.push_back(std::move(sentence));
+  }
 }
 
 }  // namespace
@@ -166,57 +208,35 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   require(packing.solid.volume > 0, "the solid's mass properties must have a volume greater than 0");
   packing.provenance = {solid.name(), solid.hash(), commandLine(options), INNERSPHERE_VERSION};
   const Mesh surface = solid.surface();
-  const Task task(solid, options, packing.solid, surface);
-  require(options.gap == 0 || !task.samples.empty(),
+  const Problem problem(solid, options, packing.solid, surface);
+  require(options.gap == 0 || !problem.samples.empty(),
           "a gap can only be asked for if the solid has a surface");
 
   const Reporter report(progress, solid.name());
   tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
-  const Chosen chosen = choose(task, place(task, arena, report));
+  const Chosen chosen = choose(problem, place(problem, arena, report));
   if (chosen.balls.empty()) {
     throw Error(ErrorCode::no_sphere_fits, "no sphere of the smallest allowed radius fits into '" +
                                                solid.name() + "'; ask for a smaller min_radius");
   }
-  const double side = task.container.side();
-  packing.origin = task.container.origin();
-  packing.surface = task.container.toSurface(surface);
-  for (const Ball& ball : chosen.balls) packing.spheres.push_back(task.container.toSphere(ball));
-  packing.certificate = {chosen.delta, side * chosen.largest_missing};
+  packing.origin = problem.container.origin();
+  packing.surface = problem.container.toSurface(surface);
+  for (const Ball& ball : chosen.balls) packing.spheres.push_back(problem.container.toSphere(ball));
+  packing.certificate = {chosen.delta, problem.container.side() * chosen.largest_missing};
 
   report("quality", 0);
-  arena.execute([&] { packing.quality = task.samples.measure(SphereGrid(chosen.balls)); });
-  packing.quality.density = chosen.filled / task.volume;
-  packing.quality.gap_mean *= side;
-  packing.quality.gap_p95 *= side;
-  packing.quality.gap_max *= side;
-
-  const std::size_t count = chosen.balls.size();
-  Shares shares;
-  for (std::size_t prefix = std::min(kFirstPrefix, count);; prefix = std::min(2 * prefix, count)) {
-    report("shares", static_cast<double>(prefix) / static_cast<double>(2 * count));
-    const auto balls = std::span(chosen.balls).first(prefix);
-    arena.execute([&] {
-      shares = findShares(task.container, balls, task.volume);
-      packing.volume_true.push_back(volumeTrueRadii(task.container, balls, shares));
-    });
-    if (prefix == count) break;
-  }
+  packing.quality = qualityOf(problem, chosen, arena);
+  const std::vector<double> cell_volumes = addVolumeTrueRadii(problem, chosen, arena, report, packing);
   report("measuring", 0);
-  arena.execute([&] {
-    packing.overlap_errors = findOverlapErrors(task.container, chosen.balls, packing.volume_true, task.volume,
-                                               task.container.fromWorld(packing.solid.centre_of_mass));
-  });
+  if (options.overlap_errors) {
+    const Point centre = problem.container.fromWorld(packing.solid.centre_of_mass);
+    arena.execute([&] {
+      packing.overlap_errors =
+          findOverlapErrors(problem.container, chosen.balls, packing.volume_true, problem.volume, centre);
+    });
+  }
   packing.solid.centre_of_mass = packing.solid.centre_of_mass - packing.origin;
-  for (double& share : shares.volumes) share *= side * side * side;
-  packing.mass_weights = findMassWeights(packing.spheres, shares.volumes, packing.solid);
-  const Mat3d& inertia = packing.solid.inertia;
-  if (packing.mass_weights.empty() && inertia[0] + inertia[4] + inertia[8] > 0) {
-    packing.warnings.push_back(
-        "no masses of the spheres give the inertia of the solid; use that of the solid");
-  }
-  for (std::string& sentence : nameEmptyParts(surface, packing)) {
-    packing.warnings.push_back(std::move(sentence));
-  }
+  addMassWeights(cell_volumes, surface, packing);
   report("measuring", 1);
   return packing;
 }

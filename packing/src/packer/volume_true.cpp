@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBallVolume = 4.0 / 3.0 * std::numbers::pi;
 
-// Balls with the volumes of their shares fill a solid right in the mean, but not at its surface: a share
+// Balls with the volumes of their cells fill a solid right in the mean, but not at its surface: a cell
 // reaches to the surface, and the ball in its place does not. Down to about one smallest radius s below the
 // surface too little is filled, from 1.5 s to 4 s too much. So shallow overlaps come out too small. The same
 // profile is found on all solids and for all numbers of spheres, in units of s. Radii with their centres near
@@ -24,10 +24,10 @@ constexpr double kFar = 4;
 }  // namespace
 
 VolumeTrueRadii volumeTrueRadii(const Container& container, std::span<const Ball> balls,
-                                const Shares& shares) {
+                                const CellVolumes& cells) {
   double smallest = 1, volume = 0;
   for (const Ball& ball : balls) smallest = std::min(smallest, ball.radius);
-  for (double share : shares.volumes) volume += share;
+  for (double cell : cells.volumes) volume += cell;
   // How far the centres are deeper than that of a smallest sphere that touches the surface, in units of s.
   std::vector<double> depth(balls.size());
   const double cutoff = 5 * kFar * smallest;
@@ -42,7 +42,7 @@ VolumeTrueRadii volumeTrueRadii(const Container& container, std::span<const Ball
     for (std::size_t i = 0; i < balls.size(); ++i) {
       const double factor = 1 + kGrowth * std::exp(-depth[i] / kNear) - loss * std::exp(-depth[i] / kFar);
       // No sphere stands for less than itself.
-      radii[i] = std::max(balls[i].radius, factor * std::cbrt(shares.volumes[i] / kBallVolume));
+      radii[i] = std::max(balls[i].radius, factor * std::cbrt(cells.volumes[i] / kBallVolume));
       sum += kBallVolume * std::pow(radii[i], 3);
     }
     return sum;
@@ -57,7 +57,7 @@ VolumeTrueRadii volumeTrueRadii(const Container& container, std::span<const Ball
 
   VolumeTrueRadii result;
   result.count = static_cast<std::uint32_t>(balls.size());
-  result.sampling_error = shares.sampling_error;
+  result.sampling_error = cells.sampling_error;
   for (double r : radii) result.radii.push_back(static_cast<float>(rest * r * container.side()));
   return result;
 }

@@ -10,9 +10,9 @@
 
 namespace innersphere {
 
-/// Radii [m] of balls with the volumes of their shares, then adjusted near the surface (see VolumeTrueRadii).
+/// Radii [m] of balls with the volumes of their cells, then adjusted near the surface (see VolumeTrueRadii).
 /// Runs in the current TBB arena.
 VolumeTrueRadii volumeTrueRadii(const Container& container, std::span<const Ball> balls,
-                                const Shares& shares);
+                                const CellVolumes& cells);
 
 }  // namespace innersphere

@@ -50,12 +50,12 @@ Voxels::Voxels(const Container& container, double volume, double wanted) {
     block.centre = origin_ + (Point(first[0], first[1], first[2]) + Point::Constant(kBlock / 2.0)) * spacing_;
     const double cutoff = 4 * reach_;
     const double distance = std::min(container.closest(block.centre, cutoff).distance, cutoff);
-    Soundings soundings(container.margin());
-    block.distance = soundings.contains(container, block.centre, cutoff) ? distance : -distance;
+    ClearanceCache clearances(container.margin());
+    block.distance = clearances.contains(container, block.centre, cutoff) ? distance : -distance;
     if (block.distance <= -reach_) return;
     for (std::uint32_t i = 0; i < kCells; ++i) {
       const Index at = cell(b, i);
-      found[bit(at)] = block.distance >= reach_ || soundings.contains(container, place(at), cutoff);
+      found[bit(at)] = block.distance >= reach_ || clearances.contains(container, place(at), cutoff);
     }
   });
 

@@ -2,8 +2,8 @@
 
 #include <numbers>
 
+#include "common/bounds.hpp"
 #include "common/hash.hpp"
-#include "common/vec3.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/solids.hpp"
 #include "solids/generators.hpp"

@@ -1,8 +1,8 @@
 // Solids made of other things than triangles: a user's distance function, and the difference of two solids.
 #include <utility>
 
+#include "common/bounds.hpp"
 #include "common/hash.hpp"
-#include "common/vec3.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/solids.hpp"
 #include "solids/sampled_solid.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 #include "solids/generators.hpp"
 
 namespace innersphere {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/vec3.hpp"
+#include "common/bounds.hpp"
 #include "mesh/mass_properties.hpp"
 
 namespace innersphere {

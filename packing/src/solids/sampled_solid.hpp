@@ -11,8 +11,8 @@ namespace innersphere {
 /// right.
 using SignedDistance = std::function<double(const Vec3d& p, double cutoff)>;
 
-/// By summing cells of 1 / resolution of the longest side; the relative error of the volume is about
-/// 1 / resolution^2 for smooth solids of compact shape.
+/// Measures a solid by summing cells of 1 / resolution of the longest side; the relative error of the volume
+/// is about 1 / resolution^2 for smooth solids of compact shape.
 MassProperties sampledMass(const SignedDistance& field, const Bounds& bounds, int resolution);
 
 /// Surface nets (Gibson 1998): closed, a vertex in each of the cells that the surface passes through. Edges

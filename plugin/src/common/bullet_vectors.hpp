@@ -16,6 +16,11 @@ btVector3 toBullet(const std::array<T, 3>& v) {
   return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
 }
 
+template <typename T>
+btVector3 toBullet(const Vec3<T>& v) {
+  return btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z));
+}
+
 inline btVector3 centre(const Sphere& s) {
   return btVector3(s.x, s.y, s.z);
 }

@@ -23,7 +23,7 @@ class Recorder : public CandidateSink {
   bool take(Candidates& candidates) override {
     if (candidates.count == 0) return true;
     for (std::size_t k = 0; k < candidates.count; ++k)
-      pairs.push_back({candidates.walker[k], candidates.partner[k]});
+      pairs.push_back({candidates.query_sphere[k], candidates.partner[k]});
     tallies.emplace_back();
     kernels_.sumAll(setup_, true, candidates, tallies.back());
     recordContacts(tallies.back(), candidates.count);
@@ -40,18 +40,19 @@ class Recorder : public CandidateSink {
 
  private:
   void recordContacts(const Tally& tally, std::size_t count) {
-    std::vector<HitValues> hits(tally.pairs);
-    kernels_.writeValues(tally, count, hits.data());
-    for (const HitValues& hit : hits) values.insert(values.end(), std::begin(hit.of), std::end(hit.of));
+    std::vector<ContactValues> found_pairs(tally.pairs);
+    kernels_.writeValues(tally, count, found_pairs.data());
+    for (const ContactValues& found : found_pairs)
+      values.insert(values.end(), std::begin(found.of), std::end(found.of));
     std::vector<std::uint32_t> order;
     for (int turn = 0; turn < 3; ++turn) {
-      for (std::uint32_t k = 0; k < hits.size(); ++k) order.push_back(k);
+      for (std::uint32_t k = 0; k < found_pairs.size(); ++k) order.push_back(k);
     }
     std::vector<std::size_t> heads;
-    for (std::size_t k = 0; k + 3 < hits.size(); k += 3) heads.push_back(k);
+    for (std::size_t k = 0; k + 3 < found_pairs.size(); k += 3) heads.push_back(k);
     heads.push_back(order.size());
     std::vector<SphereContact> sums(heads.size() - 1);
-    kernels_.sumContacts(hits.data(), order.data(), heads.data(), 0, sums.size(), sums.data());
+    kernels_.sumContacts(found_pairs.data(), order.data(), heads.data(), 0, sums.size(), sums.data());
     for (const SphereContact& sum : sums) {
       contacts.push_back(sum.volume);
       contacts.insert(contacts.end(), sum.centroid.begin(), sum.centroid.end());
@@ -66,12 +67,13 @@ class Recorder : public CandidateSink {
 Recorder record(const CpuKernels& kernels, const PreparedQuery& query) {
   Recorder recorder(kernels, query.setup);
   Candidates candidates;
-  const core::Walker walker = core::walkerOf(query.setup, true);
+  const core::Traversal traversal = core::traversalOf(query.setup, true);
   for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
-    recorder.balls.push_back(
-        kernels.ballsMeeting(walker, query.grid_b->onCpu().occupancy(), &walker.own.clusters[c].ball, 1));
+    recorder.balls.push_back(kernels.ballsMeeting(traversal, query.grid_b->onCpu().occupancy(),
+                                                  &traversal.own.clusters[c].ball, 1));
   for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
-    EXPECT_TRUE(kernels.walk(walker, query.grid_b->onCpu().listedSpheres(), &c, 1, candidates, recorder));
+    EXPECT_TRUE(
+        kernels.traverse(traversal, query.grid_b->onCpu().listedSpheres(), &c, 1, candidates, recorder));
   recorder.take(candidates);
   return recorder;
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cases.hpp"
-#include "core/tier_cells.hpp"
+#include "core/grid_level.hpp"
 #include "cuda/device_grid.hpp"
 #include "device.hpp"
 #include "grid/hash_grid.hpp"
@@ -85,7 +85,7 @@ void expectEntries(const HashGrid& of_cpu, const device::Grid& header) {
   const core::GridView& grid = of_cpu.view();
   const std::uint32_t all = core::padded(grid.count);
   const auto entries = fetch(header.entries, (grid.listed_count + all) / 2);
-  const core::Vec3f& half = grid.half;
+  const Vec3f& half = grid.half;
   for (std::size_t slot = 0; slot < of_cpu.tableSize(); ++slot) {
     const core::Cell& cell = grid.cells[slot];
     if (cell.count == 0) continue;
@@ -112,7 +112,7 @@ void expectSame(const HashGrid& of_cpu, const CudaGrid& of_device) {
   ASSERT_EQ(x.listed_count, y.listed_count);
   ASSERT_EQ(x.hash_shift, y.hash_shift);
   EXPECT_EQ(x.finest, y.finest);
-  EXPECT_EQ(x.tiers, y.tiers);
+  EXPECT_EQ(x.grid_levels, y.grid_levels);
   EXPECT_EQ(std::memcmp(&x.centre, &y.centre, sizeof x.centre), 0);
   EXPECT_EQ(std::memcmp(&x.half, &y.half, sizeof x.half), 0);
   EXPECT_EQ(x.radius, y.radius);

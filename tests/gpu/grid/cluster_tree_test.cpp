@@ -14,7 +14,7 @@ bool meet(const Sphere& a, const Sphere& b) {
   return std::hypot(double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z) <= double{a.radius} + b.radius;
 }
 
-/// Clusters along a walk through space, as a curve would bring them.
+/// Clusters along a traversal through space, as a curve would bring them.
 std::vector<core::Cluster> clustersAlongAWalk(std::size_t count) {
   Random random(count);
   std::vector<core::Cluster> clusters(count);

@@ -39,7 +39,7 @@ void expectSame(const HashGrid& a, const HashGrid& b) {
   ASSERT_EQ(a.tableSize(), b.tableSize());
   EXPECT_EQ(x.hash_shift, y.hash_shift);
   EXPECT_EQ(x.finest, y.finest);
-  EXPECT_EQ(x.tiers, y.tiers);
+  EXPECT_EQ(x.grid_levels, y.grid_levels);
   EXPECT_EQ(x.radius, y.radius);
   EXPECT_EQ(x.reach, y.reach);
   expectSame(x.spheres, y.spheres, x.count);
@@ -106,24 +106,25 @@ TEST(GridConstruction, CellsAreWhereTheirKeysSay) {
 }
 
 /// By brute force in double precision: which cells list a sphere.
-TEST(GridConstruction, ACellListsWhatItsWalkersCanMeet) {
+TEST(GridConstruction, ACellListsWhatItsQuerySpheresCanMeet) {
   const Spheres spheres = jitteredLattice(6, 30, 7);
   const HashGrid grid(spheres);
   const core::GridView& view = grid.view();
   std::size_t checked = 0;
-  for (int tier = 0; tier < view.tiers; ++tier) {
-    const double edge = std::ldexp(1.0, view.finest + tier);
+  for (int grid_level = 0; grid_level < view.grid_levels; ++grid_level) {
+    const double edge = std::ldexp(1.0, view.finest + grid_level);
     core::CellBox all;
     constexpr float kMax = 3e38f;
-    ASSERT_TRUE(core::cellBox(view, tier, {-kMax, -kMax, -kMax}, {kMax, kMax, kMax}, all));
+    ASSERT_TRUE(core::cellBox(view, grid_level, {-kMax, -kMax, -kMax}, {kMax, kMax, kMax}, all));
     for (std::uint32_t z = 0; z <= all.hi[2]; ++z) {
       for (std::uint32_t y = 0; y <= all.hi[1]; ++y) {
         for (std::uint32_t x = 0; x <= all.hi[0]; ++x) {
-          const core::Cell cell = core::findCell(view, core::cellKey(tier, x, y, z));
+          const core::Cell cell = core::findCell(view, core::cellKey(grid_level, x, y, z));
           const std::uint32_t* const begin = view.listed + cell.first;
           for (std::uint32_t place = 0; place < view.count; ++place) {
             const Sphere& s = view.centred[place];
-            const bool looked_for = tier == 0 || core::levelOf(s.radius) >= view.finest + tier - 1;
+            const bool looked_for =
+                grid_level == 0 || core::levelOf(s.radius) >= view.finest + grid_level - 1;
             const double p[3] = {s.x, s.y, s.z}, half[3] = {view.half.x, view.half.y, view.half.z};
             const std::uint32_t at[3] = {x, y, z};
             double gap2 = 0;

@@ -26,45 +26,46 @@ int levelIn(const HashGrid& grid, std::uint32_t place) {
   return std::max(core::levelOf(grid.view().spheres[place].radius), grid.lowestLevel());
 }
 
-/// Spheres come by level, and each level looks in a tier that has cells of its own size or of finer ones.
+/// Spheres come by level, and each level looks in a grid level that has cells of its own size or of finer
+/// ones.
 void expectSoundLevels(const HashGrid& grid) {
   const GridView& view = grid.view();
   for (std::uint32_t k = 1; k < view.count; ++k) EXPECT_LE(levelIn(grid, k - 1), levelIn(grid, k));
-  EXPECT_EQ(core::tierOf(view, levelIn(grid, view.count - 1)), view.tiers - 1);
-  for (int tier = 0; tier < view.tiers; ++tier)
-    EXPECT_EQ(4 * core::reachOf(view, tier), std::ldexp(1.0f, view.finest + tier));
+  EXPECT_EQ(core::gridLevelOf(view, levelIn(grid, view.count - 1)), view.grid_levels - 1);
+  for (int grid_level = 0; grid_level < view.grid_levels; ++grid_level)
+    EXPECT_EQ(4 * core::reachOf(view, grid_level), std::ldexp(1.0f, view.finest + grid_level));
 }
 
 /// What the cell of a point lists.
-std::set<std::uint32_t> listedAt(const GridView& view, int tier, const core::Vec3f& p) {
+std::set<std::uint32_t> listedAt(const GridView& view, int grid_level, const Vec3f& p) {
   core::CellBox box;
   std::set<std::uint32_t> places;
-  if (!core::cellBox(view, tier, p, p, box)) return places;
-  const core::Cell cell = core::findCell(view, core::cellKey(tier, box.lo[0], box.lo[1], box.lo[2]));
+  if (!core::cellBox(view, grid_level, p, p, box)) return places;
+  const core::Cell cell = core::findCell(view, core::cellKey(grid_level, box.lo[0], box.lo[1], box.lo[2]));
   places.insert(view.listed + cell.first, view.listed + cell.first + cell.count);
   EXPECT_EQ(places.size(), cell.count);
   return places;
 }
 
-/// A sphere is listed in the cells of all points that a walker of the tier can reach it from, and each cell's
-/// list is in order and near it.
+/// A sphere is listed in the cells of all points that a query sphere of the grid level can reach it from, and
+/// each cell's list is in order and near it.
 void expectSoundLists(const HashGrid& grid) {
   const GridView& view = grid.view();
   Random random(1);
-  for (int tier = 0; tier < view.tiers; ++tier) {
+  for (int grid_level = 0; grid_level < view.grid_levels; ++grid_level) {
     for (std::uint32_t k = 0; k < view.count; k += 1 + view.count / 200) {
-      if (tier > 0 && levelIn(grid, k) < view.finest + tier - 1) continue;
+      if (grid_level > 0 && levelIn(grid, k) < view.finest + grid_level - 1) continue;
       const Sphere& s = view.centred[k];
-      const double reach = (double{s.radius} + core::reachOf(view, tier)) * (1 - 1e-5);
+      const double reach = (double{s.radius} + core::reachOf(view, grid_level)) * (1 - 1e-5);
       for (int i = 0; i < 20; ++i) {
         double d[3], length = 0;
         for (double& x : d) x = random.uniform(-1, 1), length += x * x;
         const double step = reach * std::cbrt(random.uniform(0, 1)) / std::max(std::sqrt(length), 1e-3);
-        const core::Vec3f p{static_cast<float>(s.x + step * d[0]), static_cast<float>(s.y + step * d[1]),
-                            static_cast<float>(s.z + step * d[2])};
+        const Vec3f p{static_cast<float>(s.x + step * d[0]), static_cast<float>(s.y + step * d[1]),
+                      static_cast<float>(s.z + step * d[2])};
         const double slack = 1e-6 * view.radius;  // what rounding of the point may add
         if (step * std::sqrt(length) + slack < reach) {
-          EXPECT_TRUE(listedAt(view, tier, p).count(k));
+          EXPECT_TRUE(listedAt(view, grid_level, p).count(k));
         }
       }
     }
@@ -140,7 +141,7 @@ TEST(HashGrid, IsSound) {
   }
 }
 
-/// The memory of a grid and the work of a walker stay proportional to the packing.
+/// The memory of a grid and the work of a query sphere stay proportional to the packing.
 TEST(HashGrid, ListsOfAPackingAreShort) {
   for (std::size_t n : {500u, 4000u}) {
     const HashGrid grid(randomSpheres(n, 0.2, 30, n));
@@ -154,7 +155,7 @@ TEST(HashGrid, NothingOverflows) {
   const Spheres same(5000, Sphere{0.1f, 0.2f, 0.3f, 0.5f});
   const HashGrid grid(same);
   expectSound(grid, same);
-  EXPECT_EQ(grid.view().tiers, 1);
+  EXPECT_EQ(grid.view().grid_levels, 1);
 }
 
 TEST(HashGrid, IsTheSameEveryTime) {

@@ -11,7 +11,7 @@
 namespace innersphere::test {
 namespace {
 
-bool meets(const core::GridView& grid, const core::Vec3f& p, double radius) {
+bool meets(const core::GridView& grid, const Vec3f& p, double radius) {
   for (std::uint32_t k = 0; k < grid.count; ++k) {
     const Sphere& s = grid.centred[k];
     if (std::hypot(double{s.x} - p.x, double{s.y} - p.y, double{s.z} - p.z) <= s.radius + radius) return true;
@@ -46,7 +46,7 @@ TEST(Occupancy, MissesNothing) {
     for (int i = 0; i < 3000; ++i) {
       const double radius = view.radius * std::exp(random.uniform(-10, 0.5));
       const auto at = [&](float half) { return static_cast<float>(random.uniform(-1, 1) * (half + radius)); };
-      const core::Vec3f p{at(view.half.x), at(view.half.y), at(view.half.z)};
+      const Vec3f p{at(view.half.x), at(view.half.y), at(view.half.z)};
       const auto r = static_cast<float>(radius);
       if (!core::meetsBounds(view, p, r) || !meets(view, p, radius * 0.999999)) continue;
       EXPECT_TRUE(grid.occupancy().mayMeet(p, r));

@@ -72,7 +72,7 @@ TEST(MeshTree, EqualsBruteForceBitForBit) {
       for (Vec3d& v : mesh.vertices) {
         for (double& x : v) x = scale * (x + shift);
       }
-      const TriangleTree tree(mesh);
+      const ClosestTriangle tree(mesh);
       std::vector<Triangle> triangles;
       for (const auto& t : mesh.triangles) {
         triangles.emplace_back(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);

@@ -1,4 +1,4 @@
-// Volume-true radii: shares of the solid, and what they are good for.
+// Volume-true radii: cells of the solid, and what they are good for.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ Packing packed(const Solid& solid, std::size_t spheres) {
   return pack(solid, options);
 }
 
-TEST(PackerShares, PrefixesDouble) {
+TEST(PackerCellVolumes, PrefixesDouble) {
   std::vector<std::uint32_t> counts;
   for (const VolumeTrueRadii& radii : packed(Cube(), 300).volume_true) counts.push_back(radii.count);
   EXPECT_EQ(counts, (std::vector<std::uint32_t>{64, 128, 256, 300}));
@@ -33,7 +33,7 @@ TEST(PackerShares, PrefixesDouble) {
   EXPECT_EQ(counts, (std::vector<std::uint32_t>{10}));
 }
 
-TEST(PackerShares, SumToTheVolume) {
+TEST(PackerCellVolumes, SumToTheVolume) {
   const TestTorus torus(3, {5, 0, 0});
   for (const VolumeTrueRadii& radii : packed(torus, 300).volume_true) {
     double sum = 0;
@@ -42,7 +42,7 @@ TEST(PackerShares, SumToTheVolume) {
   }
 }
 
-TEST(PackerShares, NoSphereStandsForLessThanItself) {
+TEST(PackerCellVolumes, NoSphereStandsForLessThanItself) {
   const Packing packing = packed(BittenCube(), 300);
   for (const VolumeTrueRadii& radii : packing.volume_true) {
     for (std::size_t i = 0; i < radii.count; ++i)
@@ -51,7 +51,7 @@ TEST(PackerShares, NoSphereStandsForLessThanItself) {
 }
 
 // Random points instead of a lattice, every sphere instead of a grid.
-TEST(PackerShares, EqualRandomSampling) {
+TEST(PackerCellVolumes, EqualRandomSampling) {
   const BittenCube solid;
   const Packing packing = packed(solid, 64);
   const Container container(solid);
@@ -60,7 +60,7 @@ TEST(PackerShares, EqualRandomSampling) {
     balls.push_back({container.fromWorld({s.x, s.y, s.z}), s.radius / container.side()});
   }
   const double unit = std::pow(container.side(), 3), volume = solid.massProperties().volume;
-  const Shares shares = findShares(container, balls, volume / unit);
+  const CellVolumes cells = findCellVolumes(container, balls, volume / unit);
   std::vector<double> hits(64);
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> place(-0.5, 0.5);
@@ -82,14 +82,14 @@ TEST(PackerShares, EqualRandomSampling) {
   }
   double squared = 0;
   for (std::size_t k = 0; k < 64; ++k) {
-    const double difference = shares.volumes[k] * unit - hits[k] / points;
+    const double difference = cells.volumes[k] * unit - hits[k] / points;
     squared += difference * difference;
   }
   const double error = std::sqrt(squared / 64) / (volume / 64);
-  EXPECT_LT(error, 2 * shares.sampling_error);
-  EXPECT_GT(shares.sampling_error, 0);
-  EXPECT_LT(shares.sampling_error, 0.1);
-  EXPECT_EQ(packing.volume_true.front().sampling_error, shares.sampling_error);
+  EXPECT_LT(error, 2 * cells.sampling_error);
+  EXPECT_GT(cells.sampling_error, 0);
+  EXPECT_LT(cells.sampling_error, 0.1);
+  EXPECT_EQ(packing.volume_true.front().sampling_error, cells.sampling_error);
 }
 
 double overlapVolume(const Packing& p, const std::vector<float>& radii, const Vec3d& shift) {
@@ -105,7 +105,7 @@ double overlapVolume(const Packing& p, const std::vector<float>& radii, const Ve
   return static_cast<double>(sum);
 }
 
-TEST(PackerShares, OverlapOfTwoCubes) {
+TEST(PackerCellVolumes, OverlapOfTwoCubes) {
   const Packing packing = packed(Cube(), 1000);
   std::vector<float> raw;
   for (const Sphere& s : packing.spheres) raw.push_back(s.radius);
@@ -119,10 +119,10 @@ TEST(PackerShares, OverlapOfTwoCubes) {
 
 // Two cubes that touch faces with a thin overlap, turned so that no spheres are aligned: what is filled near
 // the surface decides.
-TEST(PackerShares, ShallowOverlapOfTwoCubes) {
+TEST(PackerCellVolumes, ShallowOverlapOfTwoCubes) {
   const Packing packing = packed(Cube(), 1000);
   const std::vector<float>& radii = packing.volume_true.back().radii;
-  std::vector<float> by_share;
+  std::vector<float> by_cell;
   {
     const Cube solid;
     const Container container(solid);
@@ -131,21 +131,21 @@ TEST(PackerShares, ShallowOverlapOfTwoCubes) {
       balls.push_back({container.fromWorld({s.x, s.y, s.z}), s.radius / container.side()});
     }
     const double unit = std::pow(container.side(), 3);
-    for (double v : findShares(container, balls, 1 / unit).volumes) {
-      by_share.push_back(static_cast<float>(std::cbrt(v * unit / kBall)));
+    for (double v : findCellVolumes(container, balls, 1 / unit).volumes) {
+      by_cell.push_back(static_cast<float>(std::cbrt(v * unit / kBall)));
     }
   }
-  double error = 0, error_by_share = 0;
+  double error = 0, error_by_cell = 0;
   for (const Vec3d& shift : {Vec3d{0.95, 0.1, 0.05}, Vec3d{0.94, 0.2, 0.3}, Vec3d{0.96, 0.15, 0.25}}) {
     const double exact = (1 - shift[0]) * (1 - shift[1]) * (1 - shift[2]);
     error += overlapVolume(packing, radii, shift) / exact - 1;
-    error_by_share += overlapVolume(packing, by_share, shift) / exact - 1;
+    error_by_cell += overlapVolume(packing, by_cell, shift) / exact - 1;
   }
   EXPECT_LT(std::abs(error / 3), 0.1);
-  EXPECT_LT(std::abs(error), 0.75 * std::abs(error_by_share));
+  EXPECT_LT(std::abs(error), 0.75 * std::abs(error_by_cell));
 }
 
-TEST(PackerShares, OneBallIsTheSolid) {
+TEST(PackerCellVolumes, OneBallIsTheSolid) {
   const Packing packing = packed(TestBall(), 100);
   ASSERT_EQ(packing.volume_true.size(), 1u);
   EXPECT_NEAR(packing.volume_true[0].radii[0], 1, 1e-6);

@@ -139,7 +139,7 @@ TEST(PackerProgress, RisesAndComesFromTheCallingThread) {
 TEST(PackerProgress, CancelsInEveryStage) {
   PackOptions options;
   options.spheres = 100;
-  for (const std::string stage : {"packing", "quality", "shares"}) {
+  for (const std::string stage : {"packing", "quality", "cell volumes"}) {
     int calls = 0;
     EXPECT_EQ(codeOf(options,
                      [&](const char* now, double) {

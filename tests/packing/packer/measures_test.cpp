@@ -6,8 +6,10 @@
 #include <numbers>
 
 #include "analytic_solids.hpp"
+#include "file_scratch.hpp"
 #include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
+#include "innersphere/packing_file.hpp"
 #include "innersphere/solids.hpp"
 #include "mesh_shapes.hpp"
 #include "packer/overlap_errors.hpp"
@@ -194,6 +196,32 @@ TEST(PackerMeasures, OverlapErrorsFallWithMoreSpheres) {
     EXPECT_LT(all.volume_true[bin], 0.5 * all.raw[bin]);
   }
   EXPECT_LT(all.volume_true[3], 0.02);
+}
+
+// What a packing at a program's start leaves out: nothing but the errors, and a file is read back without
+// them.
+TEST(PackerMeasures, OverlapErrorsCanBeLeftOut) {
+  const auto solid = makeNamedSolid("lbracket");
+  PackOptions options;
+  options.spheres = 256;
+  const Packing with = pack(*solid, options);
+  options.overlap_errors = false;
+  const Packing without = pack(*solid, options);
+  EXPECT_FALSE(with.overlap_errors.prefixes.empty());
+  EXPECT_TRUE(without.overlap_errors.prefixes.empty());
+  EXPECT_EQ(without.overlap_errors.poses, (std::array<std::uint32_t, 4>{}));
+
+  const Scratch scratch;
+  const auto written = [&](Packing packing, const char* name) {
+    packing.overlap_errors = {};
+    writePacking(packing, scratch.path(name));
+    return bytesOf(scratch.path(name));
+  };
+  EXPECT_EQ(written(with, "with.cbor"), written(without, "without.cbor"));
+  const Packing read = readPacking(scratch.path("without.cbor"));
+  EXPECT_TRUE(read.overlap_errors.prefixes.empty());
+  EXPECT_EQ(read.spheres.size(), 256u);
+  EXPECT_EQ(read.volume_true.size(), 3u);
 }
 
 }  // namespace

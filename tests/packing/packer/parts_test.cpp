@@ -10,12 +10,12 @@
 namespace innersphere::test {
 namespace {
 
-TEST(MaxMin, EqualsADenseSearch) {
+TEST(DualSimplex, EqualsADenseSearch) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
   constexpr double kRounding = 1e-6;  // of the functions
   for (int round = 0; round < 30; ++round) {
-    MaxMin program(0.5);
+    DualSimplex program(0.5);
     std::vector<std::pair<double, Point>> functions;
     for (int k = 0; k < 2 + round % 9; ++k) {
       const Point gradient = Point(unit(random), unit(random), unit(random)).normalized();
@@ -68,39 +68,40 @@ TEST(SphereGrid, FindsTheNearestBall) {
   }
 }
 
-TEST(Ladder, RungsEncloseEveryRadius) {
-  const Ladder ladder(1, 1e-3, 1.0075);
+TEST(RadiusSchedule, StepsEncloseEveryRadius) {
+  const RadiusSchedule schedule(1, 1e-3, 1.0075);
   std::mt19937_64 random(9);
   std::uniform_real_distribution<float> exponent(-3, 0);
   for (int i = 0; i < 10000; ++i) {
     const float radius = std::pow(10.0f, exponent(random));
-    if (radius <= ladder[ladder.size() - 1]) continue;
-    const std::size_t rung = ladder.below(radius);
-    EXPECT_LE(radius, ladder[rung]);
-    EXPECT_GT(radius, ladder[rung + 1]);
+    if (radius <= schedule[schedule.size() - 1]) continue;
+    const std::size_t step = schedule.below(radius);
+    EXPECT_LE(radius, schedule[step]);
+    EXPECT_GT(radius, schedule[step + 1]);
   }
-  for (std::size_t rung = 0; rung + 1 < ladder.size(); ++rung) EXPECT_EQ(ladder.below(ladder[rung]), rung);
+  for (std::size_t step = 0; step + 1 < schedule.size(); ++step)
+    EXPECT_EQ(schedule.below(schedule[step]), step);
 }
 
 TEST(CellQueue, GivesBackTheLargest) {
-  const Ladder ladder(1, 0.01, 1.1);
-  CellQueue queue(ladder);
+  const RadiusSchedule schedule(1, 0.01, 1.1);
+  CellQueue queue(schedule);
   std::mt19937_64 random(11);
   std::uniform_real_distribution<float> unit(0, 1);
   std::size_t above = 0, live = 0;
-  const std::size_t rung = 20;
+  const std::size_t step = 20;
   for (int i = 0; i < 1000; ++i) {
     Cell cell;
     cell.upper = unit(random);
     queue.push(cell);
-    live += cell.upper > ladder[ladder.size() - 1];
-    above += cell.upper > ladder[rung];
+    live += cell.upper > schedule[schedule.size() - 1];
+    above += cell.upper > schedule[step];
   }
   EXPECT_EQ(queue.live(), live);
-  const std::vector<Cell> taken = queue.takeAbove(rung);
+  const std::vector<Cell> taken = queue.takeAbove(step);
   EXPECT_EQ(taken.size(), above);
-  for (const Cell& cell : taken) EXPECT_GT(cell.upper, ladder[rung]);
-  EXPECT_EQ(queue.top(), rung);
+  for (const Cell& cell : taken) EXPECT_GT(cell.upper, schedule[step]);
+  EXPECT_EQ(queue.top(), step);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The cells of one tier of a grid, and which of them list a sphere.
+// The cells of one grid level, and which of them list a sphere.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ INNERSPHERE_HD inline std::uint32_t padded(std::uint32_t count) {
 }
 
 /// Where to look for the cells that list a sphere: those with a point that is not farther away than its
-/// radius and the reach of the tier's walkers, by the squares of three gaps, added up in this order.
+/// radius and the reach of the grid level's query spheres, by the squares of three gaps, added up in this
+/// order.
 struct CellsNear {
   float centre[3];  ///< in cells
   float far2;
@@ -35,12 +36,12 @@ struct CellsNear {
 };
 
 /// Cells are numbered along x, then y, then z: in the order of their keys.
-struct TierCells {
+struct GridLevel {
   int number;
   std::uint32_t first_place;  ///< of the spheres that it may list
   std::uint32_t size[3];
   float scale;  ///< cells in a metre: squares of lengths in cells are neither too small nor too large
-  float reach;  ///< of walkers, in cells
+  float reach;  ///< of query spheres, in cells
   Vec3f half;
   std::uint64_t count;  ///< of cells
 
@@ -69,28 +70,28 @@ struct TierCells {
   }
 };
 
-inline TierCells makeTier(const GridPlan& plan, int number) {
+inline GridLevel makeGridLevel(const GridPlan& plan, int number) {
   constexpr float kMax = std::numeric_limits<float>::max();
-  TierCells tier{};
-  tier.number = number;
-  tier.first_place = plan.firstPlace(number);
-  tier.scale = powerOfTwo(-(plan.view.finest + number));
-  tier.reach = reachOf(plan.view, number) * tier.scale;
-  tier.half = plan.view.half;
-  tier.count = 1;
+  GridLevel grid_level{};
+  grid_level.number = number;
+  grid_level.first_place = plan.firstPlace(number);
+  grid_level.scale = powerOfTwo(-(plan.view.finest + number));
+  grid_level.reach = reachOf(plan.view, number) * grid_level.scale;
+  grid_level.half = plan.view.half;
+  grid_level.count = 1;
   CellBox all{};
   cellBox(plan.view, number, {-kMax, -kMax, -kMax}, {kMax, kMax, kMax}, all);
   for (int axis = 0; axis < 3; ++axis) {
-    tier.size[axis] = all.hi[axis] + 1;
-    tier.count *= tier.size[axis];
+    grid_level.size[axis] = all.hi[axis] + 1;
+    grid_level.count *= grid_level.size[axis];
   }
-  return tier;
+  return grid_level;
 }
 
-/// Of a dense tier each cell has a counter; of another one only those that list something.
-inline bool isDense(const TierCells& tier, std::uint32_t spheres) {
+/// Whether each cell of the level has a counter. In other levels only cells that list something have one.
+inline bool isDense(const GridLevel& grid_level, std::uint32_t spheres) {
   const std::uint64_t most = 64 + std::uint64_t{8} * spheres, limit = std::uint64_t{1} << 31;
-  return tier.count <= (most < limit ? most : limit);
+  return grid_level.count <= (most < limit ? most : limit);
 }
 
 }  // namespace innersphere::core

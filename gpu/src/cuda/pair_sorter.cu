@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "batch/hits.hpp"
-#include "cuda/hits.hpp"
+#include "batch/overlapping_pairs.hpp"
+#include "cuda/pair_sorter.hpp"
 #include "cuda/warp.hpp"
 
 namespace innersphere::device {
@@ -19,7 +19,7 @@ unsigned blocksFor(std::size_t threads) {
   return static_cast<unsigned>((threads + kThreads - 1) / kThreads);
 }
 
-/// How a key is made up; see Batch::hits.
+/// How a key is made up; see Batch::found_pairs.
 struct Bits {
   unsigned a, b;
   __host__ __device__ unsigned queryOf(unsigned long long key) const {
@@ -51,21 +51,21 @@ __global__ void evaluatePairs(const __grid_constant__ Batch batch, const __grid_
   const core::Pair pair = core::makePair(query.frame, load(a.spheres + query.grids[0]->places[bits.aOf(key)]),
                                          load(b.spheres + query.grids[1]->places[bits.bOf(key)]));
   const core::Contact contact = core::makeContact(pair);
-  const core::Vec3r moment = core::lensMoment(pair, contact);
-  const core::Vec3r area = contact.lens.rim_area * contact.n;
+  const Vec3d moment = core::lensMoment(pair, contact);
+  const Vec3d area = contact.lens.rim_area * contact.n;
   values[k] = {{contact.lens.volume, moment.x, moment.y, moment.z, area.x, area.y, area.z}};
   by_b[k] = static_cast<unsigned long long>(number) << bits.b | bits.bOf(key);
   order[k] = k;
 }
 
-/// Whether a hit is the first of its sphere.
+/// Whether an overlapping pair is the first of its sphere.
 struct IsHead {
   const unsigned long long* keys;
   unsigned shift;
   __device__ bool operator()(unsigned k) const { return k == 0 || keys[k] >> shift != keys[k - 1] >> shift; }
 };
 
-/// What is summed of the hits, and in which order.
+/// What is summed of the overlapping pairs, and in which order.
 struct Summands {
   const PairValues* values;
   const unsigned* order;  ///< null: as they are
@@ -75,19 +75,19 @@ struct Summands {
 
 /// The sums of many partners, side by side; all threads of a block call it, and value i comes to thread i.
 __device__ double sumMany(const Summands& summands, unsigned begin, unsigned end,
-                          PairValues (&shares)[kContactShares]) {
-  static_assert(kContactShares == kThreads, "a share for each thread");
-  PairValues share{};
+                          PairValues (&partial_sums)[kPartialSums]) {
+  static_assert(kPartialSums == kThreads, "a partial sum for each thread");
+  PairValues partial{};
 #pragma unroll 4  // to have several in flight
-  for (unsigned k = begin + threadIdx.x; k < end; k += kContactShares) {
+  for (unsigned k = begin + threadIdx.x; k < end; k += kPartialSums) {
 #pragma unroll
-    for (unsigned i = 0; i < PairValues::values; ++i) share.of[i] += summands.of(k, i);
+    for (unsigned i = 0; i < PairValues::values; ++i) partial.of[i] += summands.of(k, i);
   }
-  shares[threadIdx.x] = share;
+  partial_sums[threadIdx.x] = partial;
   __syncthreads();
   double sum = 0;
   if (threadIdx.x < PairValues::values) {
-    for (const PairValues& s : shares) sum += s.of[threadIdx.x];
+    for (const PairValues& s : partial_sums) sum += s.of[threadIdx.x];
   }
   return sum;
 }
@@ -98,7 +98,7 @@ __global__ void writeContacts(const unsigned long long* keys, unsigned count, un
                               std::uint32_t sphere_mask, Summands summands, const unsigned* heads,
                               const unsigned* head_count, SphereContact* contacts) {
   constexpr unsigned kContacts = kThreads / kLanes;
-  __shared__ PairValues shares[kContactShares];
+  __shared__ PairValues partial_sums[kPartialSums];
   __shared__ double sums[kContacts][kLanes];
   const unsigned all = *head_count, blocks = (all + kContacts - 1) / kContacts;
   const unsigned row = threadIdx.x / kLanes, value = threadIdx.x % kLanes;
@@ -109,15 +109,15 @@ __global__ void writeContacts(const unsigned long long* keys, unsigned count, un
   const bool valid = contact < all;
   const unsigned begin = beginOf(contact), end = valid ? beginOf(contact + 1) : begin;
   double sum = 0;
-  if (end - begin <= kContactShares && value < PairValues::values) {
+  if (end - begin <= kPartialSums && value < PairValues::values) {
 #pragma unroll 4
     for (unsigned k = begin; k < end; ++k) sum += summands.of(k, value);
   }
   for (unsigned r = 0; r < kContacts; ++r) {
-    const bool many = r == row && end - begin > kContactShares;
+    const bool many = r == row && end - begin > kPartialSums;
     if (!__syncthreads_or(many)) continue;
     const unsigned of_row = contactOf(r);
-    const double total = sumMany(summands, beginOf(of_row), beginOf(of_row + 1), shares);
+    const double total = sumMany(summands, beginOf(of_row), beginOf(of_row + 1), partial_sums);
     if (threadIdx.x < kLanes) sums[r][threadIdx.x] = total;
     __syncthreads();
     if (r == row) sum = sums[r][value];
@@ -156,7 +156,7 @@ __global__ void writeFirst(const unsigned long long* keys, unsigned shift, const
 }
 
 template <typename T>
-void prepareList(HitList<T>& list, std::size_t items, unsigned queries) {
+void prepareList(PinnedList<T>& list, std::size_t items, unsigned queries) {
   list.items.reserve(items);
   list.first.reserve(queries + 1);
   if (items == 0) std::fill_n(list.first.data(), queries + 1, 0u);
@@ -170,15 +170,15 @@ int bitsFor(unsigned count) {
 
 }  // namespace
 
-void CudaHits::start(const Batch& batch, const Query& single, std::size_t hits, Want want,
-                     cudaStream_t stream) {
-  if (hits >> 31 != 0) {
+void CudaPairSorter::start(const Batch& batch, const Query& single, std::size_t found_pairs, Want want,
+                           cudaStream_t stream) {
+  if (found_pairs >> 31 != 0) {
     throw Error(ErrorCode::device_out_of_memory,
                 "2^31 or more pairs of spheres overlap in one part of a batch; use shorter prefixes");
   }
   const Bits bits{batch.bits_a, batch.bits_b};
-  const auto count = static_cast<unsigned>(hits);
-  sorted_.reserve(hits);
+  const auto count = static_cast<unsigned>(found_pairs);
+  sorted_.reserve(found_pairs);
   if (count > 0) {
     withScratch(scratch_, [&](void* p, std::size_t& size) {
       return cub::DeviceRadixSort::SortKeys(p, size, keys_.data(), sorted_.data(), static_cast<int>(count), 0,
@@ -186,22 +186,23 @@ void CudaHits::start(const Batch& batch, const Query& single, std::size_t hits, 
     });
   }
   if (want == Want::pairs) {
-    HitList<SpherePair>& pairs = lists_.pairs;
-    prepareList(pairs, hits, batch.count);
+    PinnedList<SpherePair>& pairs = lists_.pairs;
+    prepareList(pairs, found_pairs, batch.count);
     if (count == 0) return;
-    writePairs<<<blocksFor(hits), kThreads, 0, stream>>>(sorted_.data(), count, bits, pairs.items.data());
+    writePairs<<<blocksFor(found_pairs), kThreads, 0, stream>>>(sorted_.data(), count, bits,
+                                                                pairs.items.data());
     writeFirst<<<blocksFor(batch.count + 1), kThreads, 0, stream>>>(
         sorted_.data(), bits.a + bits.b, nullptr, nullptr, count, batch.count, pairs.first.data());
     INNERSPHERE_CUDA(cudaGetLastError());
     return;
   }
-  for (HitList<SphereContact>& contacts : lists_.contacts) prepareList(contacts, hits, batch.count);
+  for (PinnedList<SphereContact>& contacts : lists_.contacts) prepareList(contacts, found_pairs, batch.count);
   if (count == 0) return;
-  values_.reserve(hits);
-  order_.reserve(hits);
-  sorted_order_.reserve(hits);
-  evaluatePairs<<<blocksFor(hits), kThreads, 0, stream>>>(batch, single, sorted_.data(), count, bits,
-                                                          values_.data(), keys_.data(), order_.data());
+  values_.reserve(found_pairs);
+  order_.reserve(found_pairs);
+  sorted_order_.reserve(found_pairs);
+  evaluatePairs<<<blocksFor(found_pairs), kThreads, 0, stream>>>(batch, single, sorted_.data(), count, bits,
+                                                                 values_.data(), keys_.data(), order_.data());
   INNERSPHERE_CUDA(cudaGetLastError());
   sumContacts(batch.count, count, bits.b, bits.a, nullptr, lists_.contacts[0], stream);
   if (want == Want::contacts_of_a) return;
@@ -213,20 +214,21 @@ void CudaHits::start(const Batch& batch, const Query& single, std::size_t hits, 
   sumContacts(batch.count, count, 0, bits.b, sorted_order_.data(), lists_.contacts[1], stream);
 }
 
-void CudaHits::sumContacts(unsigned queries, unsigned hits, unsigned shift, unsigned sphere_bits,
-                           const unsigned* order, HitList<SphereContact>& to, cudaStream_t stream) {
-  heads_.reserve(hits);
+void CudaPairSorter::sumContacts(unsigned queries, unsigned found_pairs, unsigned shift, unsigned sphere_bits,
+                                 const unsigned* order, PinnedList<SphereContact>& to, cudaStream_t stream) {
+  heads_.reserve(found_pairs);
   head_count_.reserve(1);
   withScratch(scratch_, [&](void* p, std::size_t& size) {
     return cub::DeviceSelect::If(p, size, thrust::counting_iterator<unsigned>(0), heads_.data(),
-                                 head_count_.data(), static_cast<int>(hits), IsHead{sorted_.data(), shift},
-                                 stream);
+                                 head_count_.data(), static_cast<int>(found_pairs),
+                                 IsHead{sorted_.data(), shift}, stream);
   });
-  writeContacts<<<blocksFor(std::size_t{kLanes} * hits), kThreads, 0, stream>>>(
-      sorted_.data(), hits, shift, (std::uint32_t{1} << sphere_bits) - 1, {values_.data(), order},
+  writeContacts<<<blocksFor(std::size_t{kLanes} * found_pairs), kThreads, 0, stream>>>(
+      sorted_.data(), found_pairs, shift, (std::uint32_t{1} << sphere_bits) - 1, {values_.data(), order},
       heads_.data(), head_count_.data(), to.items.data());
-  writeFirst<<<blocksFor(queries + 1), kThreads, 0, stream>>>(
-      sorted_.data(), shift + sphere_bits, heads_.data(), head_count_.data(), hits, queries, to.first.data());
+  writeFirst<<<blocksFor(queries + 1), kThreads, 0, stream>>>(sorted_.data(), shift + sphere_bits,
+                                                              heads_.data(), head_count_.data(), found_pairs,
+                                                              queries, to.first.data());
   INNERSPHERE_CUDA(cudaGetLastError());
 }
 

@@ -1,4 +1,4 @@
-// Arithmetic on Vec3d, the only linear algebra that meshes and solids need.
+// Boxes along the axes.
 #pragma once
 
 #include <algorithm>
@@ -9,27 +9,6 @@
 
 namespace innersphere {
 
-inline Vec3d operator+(const Vec3d& a, const Vec3d& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-inline Vec3d operator-(const Vec3d& a, const Vec3d& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-inline Vec3d operator-(const Vec3d& a) {
-  return {-a[0], -a[1], -a[2]};
-}
-inline Vec3d operator*(double s, const Vec3d& a) {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-inline double dot(const Vec3d& a, const Vec3d& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline double norm(const Vec3d& a) {
-  return std::sqrt(dot(a, a));
-}
-inline Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 inline bool isFinite(const Vec3d& a) {
   return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
 }

@@ -1,12 +1,12 @@
-// The walk of one body's spheres through the other's grid: what both backends share of it.
+// The traversal of one body's spheres through the other's grid: what both backends share of it.
 //
 // Each sphere of A meets the spheres of B that are at least as large as it, and each sphere of B those of A
-// that are strictly larger: every pair once. All of them are listed in one cell of the walker's tier, so the
-// work for one sphere does not depend on how many there are. What overlaps in lower precision is a
-// candidate; pair.hpp decides it in double precision.
+// that are strictly larger: every pair once. All of them are listed in one cell of the query sphere's grid
+// level, so the work for one sphere does not depend on how many there are. What overlaps in lower precision
+// is a candidate; pair.hpp decides it in double precision.
 //
-// Margins make walkers larger than their tier foresees. Then they look into all cells near them, and a sphere
-// that is listed in several of these counts in one.
+// Margins make query spheres larger than their grid level foresees. Then they look into all cells near them,
+// and a sphere that is listed in several of these counts in one.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Probe {
 };
 
 INNERSPHERE_HD inline Probe makeProbe(const Search& search, const Sphere& s) {
-  const Vec3r p = search.matrix * Vec3r{s.x, s.y, s.z} + search.offset;
+  const Vec3d p = search.matrix * Vec3d{s.x, s.y, s.z} + search.offset;
   return {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
           search.ratio * s.radius + search.margin};
 }
@@ -33,19 +33,19 @@ INNERSPHERE_HD inline bool isFromA(const Setup& setup, std::uint32_t cluster) {
   return cluster < setup.a.clusters;
 }
 
-/// Who walks, and where.
-struct Walker {
+/// One direction of a query: the spheres of a body in the grid of the other.
+struct Traversal {
   const GridView& own;
   const GridView& grid;
   const Search& search;
 };
 
-INNERSPHERE_HD inline Walker walkerOf(const Setup& setup, bool from_a) {
+INNERSPHERE_HD inline Traversal traversalOf(const Setup& setup, bool from_a) {
   if (from_a) return {setup.a.grid, setup.b.grid, setup.a_in_b};
   return {setup.b.grid, setup.a.grid, setup.b_in_a};
 }
 
-/// A ball around spheres of the walking body, larger by all margins and tolerances. It may be much larger
+/// A ball around spheres of the searching body, larger by all margins and tolerances. It may be much larger
 /// than the grid, and its place is rounded by a part of the way to it.
 INNERSPHERE_HD inline Probe makeBallProbe(const Search& search, const Sphere& ball) {
   constexpr float kRounded = 1 + 1.0f / (1 << 20);
@@ -60,35 +60,35 @@ INNERSPHERE_HD inline bool ballMeets(const Search& search, const GridView& grid,
 }
 
 /// False if no sphere of the cluster can meet one of the grid.
-INNERSPHERE_HD inline bool clusterMeets(const Walker& walker, const Cluster& cluster) {
-  return ballMeets(walker.search, walker.grid, cluster.ball);
+INNERSPHERE_HD inline bool clusterMeets(const Traversal& traversal, const Cluster& cluster) {
+  return ballMeets(traversal.search, traversal.grid, cluster.ball);
 }
 
-/// A sphere on its walk.
+/// A query sphere in the other body's grid.
 struct Lookup {
-  Vec3f p;         ///< centre, relative to that of the grid
-  float reach;     ///< radius with all margins and tolerances
-  float smallest;  ///< partners below it are not this walker's to find
+  Vec3f p;         ///< The centre, relative to that of the grid.
+  float reach;     ///< The radius with all margins and tolerances.
+  float smallest;  ///< The smallest partner that this query sphere has to find.
 };
 
-/// A little below what a walker of this radius need look for: pair.hpp has the last word on equals.
+/// A little below what a query sphere of this radius need look for: pair.hpp has the last word on equals.
 INNERSPHERE_HD inline float smallestPartner(const Search& search, float radius) {
   return radius * (1 - 1e-6f) - search.grid_margin;
 }
 
 /// False if the sphere cannot meet any of the grid.
-INNERSPHERE_HD inline bool makeLookup(const Walker& walker, const Sphere& sphere, Lookup& lookup) {
-  const Search& search = walker.search;
+INNERSPHERE_HD inline bool makeLookup(const Traversal& traversal, const Sphere& sphere, Lookup& lookup) {
+  const Search& search = traversal.search;
   const Probe probe = makeProbe(search, sphere);
   lookup.p = probe.p;
   lookup.reach = probe.radius + search.grid_margin + search.tolerance;
   lookup.smallest = smallestPartner(search, probe.radius);
-  return meetsBounds(walker.grid, lookup.p, lookup.reach) && !(lookup.smallest > walker.grid.largest);
+  return meetsBounds(traversal.grid, lookup.p, lookup.reach) && !(lookup.smallest > traversal.grid.largest);
 }
 
-/// Where a walker looks.
+/// Where a query sphere looks.
 struct Cells {
-  int tier;
+  int grid_level;
   CellBox box;
   std::uint32_t count;  ///< of cells
   bool all;  ///< they would be too many: it looks at all spheres of the grid instead, as if in one cell
@@ -104,13 +104,13 @@ struct Cells {
 
 INNERSPHERE_HD inline Cells cellsOf(const GridView& grid, const Lookup& lookup) {
   Cells cells;
-  cells.tier = tierOf(grid, levelOf(lookup.smallest));
-  const float beyond = lookup.reach - reachOf(grid, cells.tier);
+  cells.grid_level = gridLevelOf(grid, levelOf(lookup.smallest));
+  const float beyond = lookup.reach - reachOf(grid, cells.grid_level);
   const float e = beyond > 0 ? beyond : 0;
   const Vec3f& p = lookup.p;
   cells.all = false;
   cells.count = 0;
-  if (!cellBox(grid, cells.tier, {p.x - e, p.y - e, p.z - e}, {p.x + e, p.y + e, p.z + e}, cells.box))
+  if (!cellBox(grid, cells.grid_level, {p.x - e, p.y - e, p.z - e}, {p.x + e, p.y + e, p.z + e}, cells.box))
     return cells;
   std::uint64_t count = 1;
   for (int axis = 0; axis < 3; ++axis) count *= cells.box.hi[axis] - cells.box.lo[axis] + 1;
@@ -119,13 +119,13 @@ INNERSPHERE_HD inline Cells cellsOf(const GridView& grid, const Lookup& lookup) 
   return cells;
 }
 
-/// Whether a partner counts in this cell: of those where a walker looks, the one nearest to its centre, which
-/// is relative to that of the grid.
+/// Whether a partner counts in this cell. A pair found in several cells is reported once: in the visited cell
+/// nearest to the partner's centre, which is relative to that of the grid.
 INNERSPHERE_HD inline bool countsIn(const GridView& grid, const Cells& cells, const std::uint32_t (&cell)[3],
                                     const Sphere& partner) {
   const Vec3f p{partner.x, partner.y, partner.z};
   CellBox own;
-  if (!cellBox(grid, cells.tier, p, p, own)) return false;
+  if (!cellBox(grid, cells.grid_level, p, p, own)) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint32_t lo = cells.box.lo[axis], hi = cells.box.hi[axis], x = own.lo[axis];
     if (cell[axis] != (x < lo ? lo : x > hi ? hi : x)) return false;

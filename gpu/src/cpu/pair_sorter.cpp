@@ -1,0 +1,119 @@
+#include "cpu/pair_sorter.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <utility>
+
+#include "common/radix_sort.hpp"
+#include "cpu/kernels.hpp"
+
+namespace innersphere {
+
+namespace {
+
+constexpr std::size_t kFew = 64;  ///< are sorted sooner by comparing
+
+template <typename T>
+void clear(QueryResult::Ranges<T>& ranges, std::size_t queries) {
+  ranges.items.clear();
+  ranges.first.assign(queries + 1, 0);
+}
+
+}  // namespace
+
+void PairSorter::run(const std::vector<PreparedQuery>& queries, const std::vector<core::Sums>& sums,
+                     const OverlappingPairs& found_pairs, Want want, Workers& workers, QueryResult& result) {
+  clear(result.pairs, queries.size());
+  clear(result.contacts_a, queries.size());
+  clear(result.contacts_b, queries.size());
+  if (!wantsPairs(want)) return;
+  groupByQuery(sums, found_pairs);
+  sortGroups(queries, found_pairs, &OverlappingPair::a, &OverlappingPair::b, workers);
+  if (want == Want::pairs) return writePairs(found_pairs, result.pairs);
+  writeContacts(found_pairs, &OverlappingPair::a, workers, result.contacts_a);
+  if (want == Want::contacts_of_a) return;
+  sortGroups(queries, found_pairs, &OverlappingPair::b, nullptr, workers);
+  writeContacts(found_pairs, &OverlappingPair::b, workers, result.contacts_b);
+}
+
+void PairSorter::groupByQuery(const std::vector<core::Sums>& sums, const OverlappingPairs& found_pairs) {
+  assert(found_pairs.count >> 32 == 0);
+  first_.resize(sums.size() + 1);
+  first_[0] = 0;
+  for (std::size_t q = 0; q < sums.size(); ++q) first_[q + 1] = first_[q] + sums[q].pairs;
+  order_.resize(found_pairs.count);
+  spare_.resize(found_pairs.count);
+  if (sums.size() == 1) return std::iota(order_.begin(), order_.end(), 0u);
+  cursor_.assign(first_.begin(), first_.end());
+  for (std::size_t k = 0; k < found_pairs.count; ++k)
+    order_[cursor_[found_pairs.items[k].query]++] = static_cast<std::uint32_t>(k);
+}
+
+void PairSorter::sortGroups(const std::vector<PreparedQuery>& queries, const OverlappingPairs& found_pairs,
+                            Sphere first, Sphere second, Workers& workers) {
+  const auto key = [&](Sphere sphere) {
+    return [&found_pairs, sphere](std::uint32_t k) { return found_pairs.items[k].*sphere; };
+  };
+  workers.forRanges(queries.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t q = begin; q < end; ++q) {
+      const auto limit = [&](Sphere sphere) {
+        return sphere == &OverlappingPair::a ? queries[q].setup.a.grid.count : queries[q].setup.b.grid.count;
+      };
+      const std::size_t count = first_[q + 1] - first_[q];
+      std::uint32_t *const group = order_.data() + first_[q], *order = group,
+                           *spare = spare_.data() + first_[q];
+      if (count < kFew) {
+        std::sort(group, group + count, [&](std::uint32_t x, std::uint32_t y) {
+          const auto keys = [](const OverlappingPair& found, bool a_first) {
+            return a_first ? std::pair(found.a, found.b) : std::pair(found.b, found.a);
+          };
+          return keys(found_pairs.items[x], first == &OverlappingPair::a) <
+                 keys(found_pairs.items[y], first == &OverlappingPair::a);
+        });
+        continue;
+      }
+      if (second) sortByNumber(order, spare, count, limit(second), key(second));
+      sortByNumber(order, spare, count, limit(first), key(first));
+      if (order != group) std::copy_n(order, count, group);
+    }
+  });
+}
+
+void PairSorter::writePairs(const OverlappingPairs& found_pairs,
+                            QueryResult::Ranges<SpherePair>& pairs) const {
+  pairs.first.assign(first_.begin(), first_.end());
+  pairs.items.resize(order_.size());
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const OverlappingPair& found = found_pairs.items[order_[k]];
+    pairs.items[k] = {found.a, found.b};
+  }
+}
+
+/// Sums the lenses of each sphere with its partners.
+void PairSorter::writeContacts(const OverlappingPairs& found_pairs, Sphere sphere, Workers& workers,
+                               QueryResult::Ranges<SphereContact>& contacts) {
+  heads_.resize(order_.size() + 1);
+  std::size_t heads = 0;
+  for (std::size_t q = 0; q + 1 < first_.size(); ++q) {
+    contacts.first[q] = heads;
+    std::uint32_t before = 0xffffffffu;  // no sphere has this number
+    for (std::size_t k = first_[q]; k < first_[q + 1]; ++k) {
+      const std::uint32_t here = found_pairs.items[order_[k]].*sphere;
+      heads_[heads] = k;
+      heads += here != before ? 1 : 0;
+      before = here;
+    }
+  }
+  contacts.first.back() = heads;
+  heads_[heads] = order_.size();
+  contacts.items.resize(heads);
+  workers.forRanges(heads, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      contacts.items[c].sphere = found_pairs.items[order_[heads_[c]]].*sphere;
+    cpuKernels().sumContacts(found_pairs.values.data(), order_.data(), heads_.data(), begin, end,
+                             contacts.items.data());
+  });
+}
+
+}  // namespace innersphere

@@ -1,0 +1,40 @@
+// From the overlapping pairs that the CPU found to sorted pairs and the contacts of each sphere.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "batch/backend.hpp"
+#include "batch/overlapping_pairs.hpp"
+#include "common/workers.hpp"
+#include "innersphere/query.hpp"
+
+namespace innersphere {
+
+/// Sorting makes the lists independent of the order in which overlapping pairs were found; each sphere's
+/// contact is then summed in the order of its partners. Keeps its memory for the next batch.
+class PairSorter {
+ public:
+  void run(const std::vector<PreparedQuery>& queries, const std::vector<core::Sums>& sums,
+           const OverlappingPairs& found_pairs, Want want, Workers& workers, QueryResult& result);
+
+ private:
+  /// Whose number a sphere is, in an overlapping pair.
+  using Sphere = std::uint32_t OverlappingPair::*;
+
+  void groupByQuery(const std::vector<core::Sums>& sums, const OverlappingPairs& found_pairs);
+  /// Sorts each query's pairs by the first of these spheres and, where that is equal, by the second one.
+  /// Without a second one equal pairs keep their order.
+  void sortGroups(const std::vector<PreparedQuery>& queries, const OverlappingPairs& found_pairs,
+                  Sphere first, Sphere second, Workers& workers);
+  void writePairs(const OverlappingPairs& found_pairs, QueryResult::Ranges<SpherePair>& pairs) const;
+  void writeContacts(const OverlappingPairs& found_pairs, Sphere sphere, Workers& workers,
+                     QueryResult::Ranges<SphereContact>& contacts);
+
+  std::vector<std::size_t> first_;  ///< overlapping pairs of all queries before each
+  std::vector<std::size_t> cursor_;
+  std::vector<std::uint32_t> order_, spare_;  ///< numbers of the overlapping pairs, by query, then sorted
+  std::vector<std::size_t> heads_;            ///< where a new sphere begins in order_
+};
+
+}  // namespace innersphere

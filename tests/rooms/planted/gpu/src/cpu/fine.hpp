@@ -1,0 +1,4 @@
+#pragma once
+
+#include "core/upward.hpp"
+#include "innersphere/query.hpp"

@@ -1,0 +1,2 @@
+#include "core/upward.hpp"
+#include "cpu/fine.hpp"

@@ -1,0 +1,4 @@
+# A table for the planted faults beside it.
+set(libraries gpu)
+set(gpu_rooms core cpu|cuda)
+set(exceptions "")
