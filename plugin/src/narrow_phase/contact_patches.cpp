@@ -16,7 +16,7 @@ namespace {
 /// Keeps quotients of zeros finite, at any scale.
 constexpr btScalar kTiny = btScalar(1e-30);
 /// What there is room for from the start: few pairs have more, and need memory again.
-constexpr std::size_t kUsualCandidates = 96;
+constexpr std::size_t kUsualSamples = 96;
 constexpr std::size_t kUsualPatches = 16;
 
 /// The patch whose direction and place a contact fits best.
@@ -45,7 +45,7 @@ struct Sorted {
   Sorted() : members(kUsualPatches) {
     patches.reserve(kUsualPatches);
     moments.reserve(kUsualPatches);
-    for (std::vector<std::size_t>& m : members) m.reserve(kUsualCandidates);
+    for (std::vector<std::size_t>& m : members) m.reserve(kUsualSamples);
   }
   std::vector<Patch> patches;
   std::vector<std::vector<std::size_t>> members;
@@ -71,13 +71,14 @@ const Sorted& sortIntoPatches(const std::vector<SphereContact>& contacts, const 
 
 /// Where the enlarged spheres of one solid are so large that those of the other vanish in them, their overlap
 /// has no direction. The way to the nearest surface takes its place.
-const std::vector<SphereContact>& aimed(const std::vector<SphereContact>& contacts, const Gauge& gauge) {
+const std::vector<SphereContact>& aimed(const std::vector<SphereContact>& contacts,
+                                        const SurfaceProbe& probe) {
   static thread_local std::vector<SphereContact> result;
   result = contacts;
   for (std::size_t i = 0; i < result.size(); ++i) {
     btVector3 direction(0, 0, 0);
-    Gap gap;
-    gauge.nearest(i, direction, gap);
+    OpposedPoints gap;
+    probe.nearest(i, direction, gap);
     result[i].area =
         toFloats(direction * btScalar(std::cbrt(contacts[i].volume) * std::cbrt(contacts[i].volume)));
   }
@@ -104,42 +105,41 @@ void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vecto
 
 }  // namespace
 
-void findCandidates(const std::vector<SphereContact>& contacts, const Gauge& gauge, btScalar spacing,
-                    const btMatrix3x3& reference, const std::vector<ContactPatch>& patches,
-                    Candidates& candidates) {
+void selectSamples(const std::vector<SphereContact>& contacts, const SurfaceProbe& probe, btScalar spacing,
+                   const btMatrix3x3& reference, const std::vector<ContactPatch>& patches, Samples& samples) {
   static thread_local std::vector<std::uint64_t> old_ids;
   collectIds(patches, old_ids);
-  candidates.indices.clear();
-  candidates.indices.reserve(kUsualCandidates);
-  candidates.lines.clear();
-  candidates.lines.reserve(kUsualCandidates);
-  candidates.patches.clear();
-  candidates.patches.reserve(kUsualPatches);
+  samples.indices.clear();
+  samples.indices.reserve(kUsualSamples);
+  samples.lines.clear();
+  samples.lines.reserve(kUsualSamples);
+  samples.patches.clear();
+  samples.patches.reserve(kUsualPatches);
   const Sorted* sorted = &sortIntoPatches(contacts, reference);
   if (sorted->patches.empty() && !contacts.empty())
-    sorted = &sortIntoPatches(aimed(contacts, gauge), reference);
+    sorted = &sortIntoPatches(aimed(contacts, probe), reference);
   for (std::size_t p = 0; p < sorted->moments.size(); ++p) {
     const PatchMoments& moments = sorted->moments[p];
     if (moments.area > 0)
-      pickCandidates({contacts, sorted->members[p], moments, old_ids, gauge, spacing}, candidates);
+      appendSamples({contacts, sorted->members[p], moments, old_ids, probe, spacing}, samples);
   }
 }
 
-bool measurePatches(Candidates& candidates, const Gauge& gauge, const Measure& measure,
-                    std::vector<ContactPatch>& patches) {
+bool refinePatches(Samples& samples, const SurfaceProbe& probe, const ContactSettings& measure,
+                   std::vector<ContactPatch>& patches) {
   static thread_local std::vector<std::uint64_t> old_ids;
-  static thread_local std::vector<MeasuredPoint> found;
+  static thread_local std::vector<WeightedPoint> found;
   collectIds(patches, old_ids);
   found.clear();
-  found.reserve(2 * kUsualCandidates);
-  const bool first_time = candidates.lines.empty();
-  for (std::size_t p = 0; p < candidates.patches.size(); ++p)
-    measurePoints(candidates, p, gauge, measure.separation, found);
-  if (first_time) dropUnmeasured(candidates);
+  found.reserve(2 * kUsualSamples);
+  const bool first_time = samples.lines.empty();
+  for (std::size_t p = 0; p < samples.patches.size(); ++p)
+    findContactPoints(samples, p, probe, measure.separation, found);
+  if (first_time) dropUnprobed(samples);
   keepLeastWaysOut(measure.spacing, found);
-  selectPatches(found, old_ids, measure.spacing, patches);
+  reduceToManifolds(found, old_ids, measure.spacing, patches);
   return std::any_of(found.begin(), found.end(),
-                     [&](const MeasuredPoint& m) { return m.point.depth > -measure.spacing; });
+                     [&](const WeightedPoint& m) { return m.point.depth > -measure.spacing; });
 }
 
 void gradientPatch(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,

@@ -11,7 +11,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// A point and the part of a patch of spheres that it stands for.
-struct MeasuredPoint {
+struct WeightedPoint {
   /// What it is measured between.
   enum class Kind {
     faces,
@@ -26,10 +26,10 @@ struct MeasuredPoint {
   btScalar radius;   ///< mean distance of the patch's area from there [m]
 };
 
-/// Appends those contacts of the candidates' patch `p` that are on, or near, both surfaces: not further apart
-/// than `separation` [m]. Leaves the lines that they were measured along in the candidates.
-void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, btScalar separation,
-                   std::vector<MeasuredPoint>& found);
+/// Appends those contacts of the samples' patch `p` that are on, or near, both surfaces: not further apart
+/// than `separation` [m]. Leaves the lines that they were measured along in the samples.
+void findContactPoints(Samples& samples, std::size_t p, const SurfaceProbe& probe, btScalar separation,
+                       std::vector<WeightedPoint>& found);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

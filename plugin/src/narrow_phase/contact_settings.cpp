@@ -7,11 +7,11 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-Measure::Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b,
-                 btScalar needed)
+ContactSettings::ContactSettings(const ContactOptions& options, const PackingShape& a,
+                                 const btCollisionShape& b, btScalar needed)
     : spacing(btMin(a.getContactBreakingThreshold(gContactBreakingThreshold),
                     b.getContactBreakingThreshold(gContactBreakingThreshold))),
-      separation(btMax(spacing, needed + ContactMemory::reserve(spacing))) {
+      separation(btMax(spacing, needed + ContactTransport::reserve(spacing))) {
   const PackingShape* packing_b = PackingShape::from(&b);
   on_surfaces = options.stiffness == 0 && options.response != Response::penalty && a.impl().hasSurface() &&
                 (packing_b == nullptr || packing_b->impl().hasSurface());
@@ -23,8 +23,8 @@ Measure::Measure(const ContactOptions& options, const PackingShape& a, const btC
     estimator = options.estimator;
     return;
   }
-  slack_a = separation + prefix_a->recess() * a.getLocalScaling().x();
-  if (packing_b != nullptr) slack_b = prefix_b->recess() * b.getLocalScaling().x();
+  search_margin_a = separation + prefix_a->inset() * a.getLocalScaling().x();
+  if (packing_b != nullptr) search_margin_b = prefix_b->inset() * b.getLocalScaling().x();
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

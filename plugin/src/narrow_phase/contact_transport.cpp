@@ -8,7 +8,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// In units of the spacing: bodies that have moved less since a search have the same candidates for contacts,
+/// In units of the spacing: bodies that have moved less since a search have the same samples for contacts,
 constexpr btScalar kMeasureAgain = btScalar(0.5);
 /// and less since they were measured, the same contacts. The error is of second order: on a ball of five
 /// spacings a hundredth of this.
@@ -55,8 +55,9 @@ void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector
 
 }  // namespace
 
-ContactMemory::Age ContactMemory::ageAt(const Placed& now, btScalar size_a, btScalar size_b, btScalar needed,
-                                        btScalar found, btScalar spacing, bool empty) const {
+ContactTransport::Age ContactTransport::ageAt(const Placed& now, btScalar size_a, btScalar size_b,
+                                              btScalar needed, btScalar found, btScalar spacing,
+                                              bool empty) const {
   const btScalar searched = motionBetween(searched_at_, now, size_a, size_b);
   if (searched > (enclosed_ ? btScalar(0) : kMeasureAgain * spacing) || needed + searched > found)
     return Age::stale;
@@ -66,29 +67,30 @@ ContactMemory::Age ContactMemory::ageAt(const Placed& now, btScalar size_a, btSc
   return measured > carried ? Age::moved : Age::current;
 }
 
-btScalar ContactMemory::reserve(btScalar spacing) {
+btScalar ContactTransport::reserve(btScalar spacing) {
   return kMeasureAgain * spacing;
 }
 
-btScalar ContactMemory::leeway(const Placed& now, btScalar size_a, btScalar size_b, btScalar spacing) const {
-  if (!candidates.indices.empty()) return -1;
+btScalar ContactTransport::leeway(const Placed& now, btScalar size_a, btScalar size_b,
+                                  btScalar spacing) const {
+  if (!samples.indices.empty()) return -1;
   return reserve(spacing) - motionBetween(searched_at_, now, size_a, size_b);
 }
 
-void ContactMemory::searchedAt(const Placed& now) {
+void ContactTransport::searchedAt(const Placed& now) {
   searched_at_ = now;
   enclosed_ = false;
-  for (const Candidates::OfPatch& patch : candidates.patches) {
-    for (const Candidates::OfPatch& other : candidates.patches)
+  for (const Samples::OfPatch& patch : samples.patches) {
+    for (const Samples::OfPatch& other : samples.patches)
       enclosed_ = enclosed_ || patch.normal.dot(other.normal) < kEnclosed;
   }
 }
 
-void ContactMemory::turnTo(const Placed& now) {
-  turn(now.a.getBasis() * measured_at_.a.getBasis().transpose(), candidates);
+void ContactTransport::turnTo(const Placed& now) {
+  turn(now.a.getBasis() * measured_at_.a.getBasis().transpose(), samples);
 }
 
-void ContactMemory::measuredAt(const Placed& now, btScalar found) {
+void ContactTransport::measuredAt(const Placed& now, btScalar found) {
   measured_at_ = now;
   measured_ = patches;
   gap_ = found;
@@ -97,7 +99,7 @@ void ContactMemory::measuredAt(const Placed& now, btScalar found) {
   }
 }
 
-void ContactMemory::carryTo(const Placed& now, const PackingShape& a, btScalar spacing) {
+void ContactTransport::carryTo(const Placed& now, const PackingShape& a, btScalar spacing) {
   const Placed& then = measured_at_;
   patches = measured_;
   if (patches.empty() || then == now) return;

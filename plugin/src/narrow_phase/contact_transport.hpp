@@ -22,28 +22,28 @@ struct Placed {
 
 /// While bodies do not move much against each other, the spheres that were found in contact are good for
 /// being measured again, and while they hardly move, the contacts themselves are, if they go along.
-class ContactMemory {
+class ContactTransport {
  public:
   enum class Age {
     current,  ///< patches are right, once carried along
-    moved,    ///< the candidates need to be measured again
+    moved,    ///< the samples need to be measured again
     stale,    ///< contact has to be searched for
   };
   /// Contacts up to `needed` [m] apart are wanted now, and were found up to `found`. Sizes [m]: no point of A
-  /// is further than `size_a` from its origin, nor of B than `size_b`. `spacing`: see Measure. `empty`: there
-  /// is nothing to be measured.
+  /// is further than `size_a` from its origin, nor of B than `size_b`. `spacing`: see ContactSettings.
+  /// `empty`: there is nothing to be measured.
   Age ageAt(const Placed& now, btScalar size_a, btScalar size_b, btScalar needed, btScalar found,
             btScalar spacing, bool empty) const;
   /// How much further apart than needed contacts are to be found, so that they are good for later steps.
   static btScalar reserve(btScalar spacing);
 
-  /// How far bodies without candidates may move on until contact has to be searched for again [m]. Negative
-  /// if there are candidates.
+  /// How far bodies without samples may move on until contact has to be searched for again [m]. Negative
+  /// if there are samples.
   btScalar leeway(const Placed& now, btScalar size_a, btScalar size_b, btScalar spacing) const;
 
-  /// candidates have been found anew.
+  /// samples have been found anew.
   void searchedAt(const Placed& now);
-  /// Turns the candidates along, to be measured again.
+  /// Turns the samples along, to be measured again.
   void turnTo(const Placed& now);
   /// patches have been measured, with all contacts up to `found` [m] apart.
   void measuredAt(const Placed& now, btScalar found);
@@ -56,7 +56,7 @@ class ContactMemory {
   /// on where surfaces are curved. A's is the packing that positions are relative to the origin of.
   void carryTo(const Placed& now, const PackingShape& a, btScalar spacing);
 
-  Candidates candidates;
+  Samples samples;
   std::vector<ContactPatch> patches;
 
  private:

@@ -30,17 +30,17 @@ struct Place {
   btVector3 slope;  ///< of the depth, in that plane
 };
 
-Place placeOf(const Gap& gap, const btVector3& direction) {
+Place placeOf(const OpposedPoints& gap, const btVector3& direction) {
   const btScalar a = gap.normal_a.dot(direction), b = gap.normal_b.dot(direction);
   const btVector3 slope = gap.normal_b / b - gap.normal_a / a;
   return {(gap.on_a - gap.on_b).dot(direction), slope};
 }
 
-bool usable(const Gap& gap, const btVector3& direction) {
+bool usable(const OpposedPoints& gap, const btVector3& direction) {
   return gap.normal_a.dot(direction) > btScalar(0.5) && gap.normal_b.dot(direction) > btScalar(0.5);
 }
 
-btScalar depthOf(const Measured& m) {
+btScalar depthOf(const ProbedSample& m) {
   return (m.gap.on_a - m.gap.on_b).dot(m.direction);
 }
 
@@ -51,7 +51,7 @@ struct Top {
   btVector3 shift;  ///< from here
 };
 
-Top topOf(const Measured& m) {
+Top topOf(const ProbedSample& m) {
   const Place place = placeOf(m.gap, m.direction);
   if (fitTogether(m.gap.curvature_a, m.gap.curvature_b) || place.slope.length() > kSteep)
     return {place.depth, btVector3(0, 0, 0)};
@@ -60,7 +60,7 @@ Top topOf(const Measured& m) {
 }
 
 /// Moves a measurement uphill; not where slopes above `steepest` say that the top is far.
-void climb(const Gauge& gauge, btScalar steepest, int steps, Measured& m) {
+void climb(const SurfaceProbe& probe, btScalar steepest, int steps, ProbedSample& m) {
   Place place = placeOf(m.gap, m.direction);
   // How fast the slope falls with distance. Nothing is to be climbed where faces are flat, or fit together.
   const btScalar fastest = m.gap.curvature_a + m.gap.curvature_b;
@@ -68,11 +68,11 @@ void climb(const Gauge& gauge, btScalar steepest, int steps, Measured& m) {
   if (fitTogether(m.gap.curvature_a, m.gap.curvature_b) || place.slope.length() > steepest) return;
   btVector3 shift(0, 0, 0);
   for (int i = 0; i < steps; ++i) {
-    Gap gap;
+    OpposedPoints gap;
     gap.triangle_a = m.gap.triangle_a;
     gap.triangle_b = m.gap.triangle_b;
     const btVector3 step = place.slope / fall;
-    if (!gauge.measure(m.index, m.direction, shift + step, gap) || !usable(gap, m.direction)) return;
+    if (!probe.measure(m.index, m.direction, shift + step, gap) || !usable(gap, m.direction)) return;
     const Place next = placeOf(gap, m.direction);
     if (next.depth <= place.depth) {
       if (fall >= fastest) return;
@@ -94,19 +94,19 @@ bool fitTogether(btScalar curvature_a, btScalar curvature_b) {
   return !(curvature_a + curvature_b > kUnlike * (btFabs(curvature_a) + btFabs(curvature_b)));
 }
 
-void climb(const Gauge& gauge, btScalar separation, std::vector<Measured>& measured) {
-  std::array<Measured, kPatchPoints> tops;
+void climb(const SurfaceProbe& probe, btScalar separation, std::vector<ProbedSample>& measured) {
+  std::array<ProbedSample, kPatchPoints> tops;
   int count = 0;
   const auto isClimbed = [&](const Top& top, const btVector3& from) {
-    return std::any_of(tops.begin(), tops.begin() + count, [&](const Measured& climbed) {
+    return std::any_of(tops.begin(), tops.begin() + count, [&](const ProbedSample& climbed) {
       const btVector3 way = climbed.gap.on_b - from;
       return (way - top.shift).length() < btMax(kSameHill * way.length(), kSameTop * separation);
     });
   };
   while (count < kPatchPoints) {
-    Measured* best = nullptr;
+    ProbedSample* best = nullptr;
     btScalar most = count > 0 ? -separation : -BT_LARGE_FLOAT;
-    for (Measured& m : measured) {
+    for (ProbedSample& m : measured) {
       if (m.starts_climb || !usable(m.gap, m.direction)) continue;
       const Top top = topOf(m);
       // The first is sure to be there.
@@ -118,16 +118,16 @@ void climb(const Gauge& gauge, btScalar separation, std::vector<Measured>& measu
     }
     if (best == nullptr) break;
     best->starts_climb = true;
-    Measured& top = tops[count];
+    ProbedSample& top = tops[count];
     top = *best;
     top.id = kDeepestId - static_cast<std::uint64_t>(count++);
-    climb(gauge, BT_LARGE_FLOAT, kSteps, top);
+    climb(probe, BT_LARGE_FLOAT, kSteps, top);
   }
-  for (Measured& m : measured) {
-    if (gauge.exactB() && usable(m.gap, m.direction)) climb(gauge, kBeside, kStepsBeside, m);
+  for (ProbedSample& m : measured) {
+    if (probe.exactB() && usable(m.gap, m.direction)) climb(probe, kBeside, kStepsBeside, m);
   }
   std::copy_if(tops.begin(), tops.begin() + count, std::back_inserter(measured),
-               [](const Measured& top) { return top.gap.curvature_a + top.gap.curvature_b > 0; });
+               [](const ProbedSample& top) { return top.gap.curvature_a + top.gap.curvature_b > 0; });
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

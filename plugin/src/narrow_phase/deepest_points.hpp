@@ -12,7 +12,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// between them: beside them a rolling body would brake, and one that lies on two hills would rock from one
 /// to the other. Appends the tops of the four deepest hills of the depth, with ids of their own, as far as
 /// they come within `separation` [m]; where B's normals are exact, moves the others uphill, too.
-void climb(const Gauge& gauge, btScalar separation, std::vector<Measured>& measured);
+void climb(const SurfaceProbe& probe, btScalar separation, std::vector<ProbedSample>& measured);
 
 /// Whether surfaces that touch are flat, or curved so that one lies in the other: their curvatures add up to
 /// nothing, or to a small part of themselves. Then there is no deepest point to speak of.

@@ -22,7 +22,7 @@ constexpr btScalar kInwards = btScalar(0.01);
 constexpr btScalar kShallow = btScalar(0.01);
 
 /// Whether both faces of an edge do. `direction`: unit, out of the solid.
-bool fallsAway(const EdgedSolid::Edge& edge, const btVector3& direction) {
+bool fallsAway(const SharpEdges::Edge& edge, const btVector3& direction) {
   return edge.inwards[0].dot(direction) < -kFalls && edge.inwards[1].dot(direction) < -kFalls;
 }
 
@@ -33,7 +33,7 @@ bool isOn(btScalar share) {
 /// Two edges, each looked for from one side of the gap.
 class Pair {
  public:
-  Pair(const EdgedSolid& a, const EdgedSolid& b, const Gap& gap, const btVector3& direction)
+  Pair(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& gap, const btVector3& direction)
       : a_(a),
         b_(b),
         gap_(gap),
@@ -49,7 +49,7 @@ class Pair {
     return found && isOn(share_a_) && isOn(share_b_) && isOutermost();
   }
 
-  void describe(Gauge::Corner& crossing) const {
+  void describe(SurfaceProbe::Corner& crossing) const {
     crossing.gap = gap_;
     crossing.gap.on_a = on_a() + normal_ * a_.margin;
     crossing.gap.on_b = on_b() - normal_ * b_.margin;
@@ -85,20 +85,20 @@ class Pair {
     return !(depth > kShallow * length) || (a_.isIn(middle, depth) && b_.isIn(middle, depth));
   }
 
-  const EdgedSolid& a_;
-  const EdgedSolid& b_;
-  const Gap& gap_;
+  const SharpEdges& a_;
+  const SharpEdges& b_;
+  const OpposedPoints& gap_;
   const btVector3 out_of_a_;  ///< about
   const btVector3 start_a_, start_b_;
-  EdgedSolid::Edge edge_a_, edge_b_;
+  SharpEdges::Edge edge_a_, edge_b_;
   btScalar share_a_ = 0, share_b_ = 0;
   btVector3 normal_{0, 0, 0};
 };
 
 }  // namespace
 
-bool crossingEdges(const EdgedSolid& a, const EdgedSolid& b, const Gap& gap, const btVector3& direction,
-                   Gauge::Corner& crossing) {
+bool crossingEdges(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& gap,
+                   const btVector3& direction, SurfaceProbe::Corner& crossing) {
   Pair pair(a, b, gap, direction);
   // To where the gap gets deeper; or, if it lies between the edges, to where each solid reaches further.
   const btVector3 deeper = gap.normal_b - gap.normal_a;

@@ -7,9 +7,9 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// See Gauge::crossing(). Positions are relative to A's origin, axes of the world.
-bool crossingEdges(const EdgedSolid& a, const EdgedSolid& b, const Gap& gap, const btVector3& direction,
-                   Gauge::Corner& crossing);
+/// See SurfaceProbe::crossing(). Positions are relative to A's origin, axes of the world.
+bool crossingEdges(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& gap,
+                   const btVector3& direction, SurfaceProbe::Corner& crossing);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -23,8 +23,8 @@ constexpr std::size_t kMaxGroups = 8;
 constexpr btScalar kSunkAround = 3;
 
 /// Whether there is a better way out than the one that `point` is pushed, by `other`.
-bool isFreedBy(const MeasuredPoint& other, const MeasuredPoint& point, btScalar spacing) {
-  using Kind = MeasuredPoint::Kind;
+bool isFreedBy(const WeightedPoint& other, const WeightedPoint& point, btScalar spacing) {
+  using Kind = WeightedPoint::Kind;
   const bool crossing = point.kind == Kind::crossing;
   if (!crossing && (other.kind != Kind::crossing || point.kind == Kind::faces)) return false;
   if (other.kind == Kind::edge || point.point.normal.dot(other.point.normal) > kSameGroup) return false;
@@ -124,7 +124,7 @@ struct Reach {
   btVector3 centre{0, 0, 0};
   btScalar square = 0;
 
-  void add(const MeasuredPoint& m) {
+  void add(const WeightedPoint& m) {
     area += m.area;
     centre += m.centre * m.area;
     square += (m.radius * m.radius + m.centre.length2()) * m.area;
@@ -141,29 +141,29 @@ std::vector<std::vector<ContactPoint>> roomForGroups() {
 
 }  // namespace
 
-void keepLeastWaysOut(btScalar spacing, std::vector<MeasuredPoint>& found) {
-  static thread_local std::vector<MeasuredPoint> all;
-  const auto isCrossing = [](const MeasuredPoint& m) { return m.kind == MeasuredPoint::Kind::crossing; };
+void keepLeastWaysOut(btScalar spacing, std::vector<WeightedPoint>& found) {
+  static thread_local std::vector<WeightedPoint> all;
+  const auto isCrossing = [](const WeightedPoint& m) { return m.kind == WeightedPoint::Kind::crossing; };
   if (std::none_of(found.begin(), found.end(), isCrossing)) return;
   all = found;
-  const auto isFreed = [&](const MeasuredPoint& m) {
+  const auto isFreed = [&](const WeightedPoint& m) {
     return std::any_of(all.begin(), all.end(),
-                       [&](const MeasuredPoint& other) { return isFreedBy(other, m, spacing); });
+                       [&](const WeightedPoint& other) { return isFreedBy(other, m, spacing); });
   };
   found.erase(std::remove_if(found.begin(), found.end(), isFreed), found.end());
 }
 
-void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uint64_t>& old_ids,
-                   btScalar spacing, std::vector<ContactPatch>& patches) {
+void reduceToManifolds(std::vector<WeightedPoint>& found, const std::vector<std::uint64_t>& old_ids,
+                       btScalar spacing, std::vector<ContactPatch>& patches) {
   static thread_local std::vector<std::vector<ContactPoint>> groups = roomForGroups();
   static thread_local std::vector<btScalar> worth;
   std::array<Reach, kMaxGroups> reaches;
   for (std::vector<ContactPoint>& group : groups) group.clear();
   patches.clear();
-  std::sort(found.begin(), found.end(), [](const MeasuredPoint& a, const MeasuredPoint& b) {
+  std::sort(found.begin(), found.end(), [](const WeightedPoint& a, const WeightedPoint& b) {
     return a.point.depth != b.point.depth ? a.point.depth > b.point.depth : a.point.id < b.point.id;
   });
-  for (const MeasuredPoint& m : found) {
+  for (const WeightedPoint& m : found) {
     std::size_t best = patches.size();
     btScalar cosine = patches.size() < kMaxGroups ? kSameGroup : btScalar(-2);
     for (std::size_t g = 0; g < patches.size(); ++g) {

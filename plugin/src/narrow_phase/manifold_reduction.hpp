@@ -11,15 +11,15 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Crossing edges that have sunk into each other are apart again after the least of several ways out. Drops
 /// those that are longer, and pushes along other ways, from where they have sunk in; faces stay.
-void keepLeastWaysOut(btScalar spacing, std::vector<MeasuredPoint>& found);
+void keepLeastWaysOut(btScalar spacing, std::vector<WeightedPoint>& found);
 
 /// Groups points by their normals, wherever they are: rigid bodies feel only the wrench, and four points
 /// spread over everything that faces one way carry any load that all of them could. Each group becomes a
 /// patch with up to four points: the deepest, then those that span the largest area with it. Points with ids
 /// of the step before are preferred, so that the choice does not flicker; of points closer than `spacing` [m]
 /// to each other one is left. Reorders `found`.
-void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uint64_t>& old_ids,
-                   btScalar spacing, std::vector<ContactPatch>& patches);
+void reduceToManifolds(std::vector<WeightedPoint>& found, const std::vector<std::uint64_t>& old_ids,
+                       btScalar spacing, std::vector<ContactPatch>& patches);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

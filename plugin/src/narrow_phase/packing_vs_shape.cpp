@@ -13,10 +13,10 @@ namespace {
 
 /// The cap that a plane at signed distance `s` from its centre cuts from a ball. The ball is at `centre`, the
 /// plane's normal points to the side that is kept out.
-SphereContact cap(const Touch& touch, const btVector3& centre, double r) {
-  const double s = touch.distance;
+SphereContact cap(const NearSphere& near_sphere, const btVector3& centre, double r) {
+  const double s = near_sphere.distance;
   SphereContact contact;
-  contact.sphere = touch.sphere;
+  contact.sphere = near_sphere.sphere;
   if (s <= -r) {
     contact.volume = static_cast<float>(4.0 / 3.0 * M_PI * r * r * r);
     contact.centroid = toFloats(centre);
@@ -26,8 +26,8 @@ SphereContact cap(const Touch& touch, const btVector3& centre, double r) {
   contact.volume = static_cast<float>(M_PI * h * h * (3 * r - h) / 3);
   // The cap's centroid lies 3 (2r - h)^2 / (4 (3r - h)) from the centre of the ball.
   const double offset = 3 * (2 * r - h) * (2 * r - h) / (4 * (3 * r - h));
-  contact.centroid = toFloats(centre - touch.normal * btScalar(offset));
-  contact.area = toFloats(touch.normal * btScalar(-M_PI * (r * r - s * s)));
+  contact.centroid = toFloats(centre - near_sphere.normal * btScalar(offset));
+  contact.area = toFloats(near_sphere.normal * btScalar(-M_PI * (r * r - s * s)));
   return contact;
 }
 
@@ -39,22 +39,22 @@ double capEnergy(double s, double r) {
   return M_PI * (r * h * h * h / 3 - h * h * h * h / 12) + ball * std::max(0.0, -s - r);
 }
 
-Overlap sumOf(const PackingBody& a, const std::vector<Touch>& touches) {
+Overlap sumOf(const PlacedPacking& a, const std::vector<NearSphere>& near_spheres) {
   Overlap sum;
   btVector3 force(0, 0, 0), torque(0, 0, 0), area(0, 0, 0), moment(0, 0, 0);
-  for (const Touch& touch : touches) {
-    const btScalar r = a.radiusOf(touch.sphere) + a.margin;
-    if (!(touch.distance < r)) continue;
-    const btVector3 centre = a.centreOf(touch.sphere);
-    const SphereContact contact = cap(touch, centre, r);
-    const btVector3 push = touch.normal * btScalar(-contact.volume);
+  for (const NearSphere& near_sphere : near_spheres) {
+    const btScalar r = a.radiusOf(near_sphere.sphere) + a.margin;
+    if (!(near_sphere.distance < r)) continue;
+    const btVector3 centre = a.centreOf(near_sphere.sphere);
+    const SphereContact contact = cap(near_sphere, centre, r);
+    const btVector3 push = near_sphere.normal * btScalar(-contact.volume);
     force += push;
     torque += centre.cross(push);
     area += toBullet(contact.area);
     moment += toBullet(contact.centroid) * btScalar(contact.volume);
     sum.volume += contact.volume;
     sum.stiffness += toBullet(contact.area).length();
-    sum.energy += capEnergy(touch.distance, r);
+    sum.energy += capEnergy(near_sphere.distance, r);
     ++sum.pair_count;
   }
   sum.force = toDoubles(force);
@@ -67,7 +67,7 @@ Overlap sumOf(const PackingBody& a, const std::vector<Touch>& touches) {
 }  // namespace
 
 SurfaceContact::SurfaceContact(const PackingShape& packing, const btCollisionShape& other)
-    : packing_(packing), other_(other), surface_(makeOtherSurface(other)) {}
+    : packing_(packing), other_(other), surface_(makeShapeSurface(other)) {}
 
 void SurfaceContact::update(const ContactOptions& options, const btTransform& packing,
                             const btTransform& other, btScalar separation) {
@@ -77,25 +77,25 @@ void SurfaceContact::update(const ContactOptions& options, const btTransform& pa
   leeway_ = -1;
   if (!surface_) return;
   const Placed now{packing, other};
-  const Measure measure(options, packing_, other_, separation);
-  const PackingBody a(packing_, packing, measure.estimator, measure.slack_a, measure.prefix_a);
+  const ContactSettings measure(options, packing_, other_, separation);
+  const PlacedPacking a(packing_, packing, measure.estimator, measure.search_margin_a, measure.prefix_a);
   if (remember(a, measure, now, separation)) return;
-  touches_.clear();
-  surface_->touch(a, other, touches_);
-  const auto caps = [&](btScalar slack) {
+  near_spheres_.clear();
+  surface_->findNearSpheres(a, other, near_spheres_);
+  const auto caps = [&](btScalar search_margin) {
     contacts.clear();
-    for (const Touch& touch : touches_) {
-      const btScalar reach = a.radiusOf(touch.sphere) + a.margin + slack;
-      if (touch.distance < reach)
-        contacts.push_back(cap(touch, a.centreOf(touch.sphere) + touch.aside, reach));
+    for (const NearSphere& near_sphere : near_spheres_) {
+      const btScalar reach = a.radiusOf(near_sphere.sphere) + a.margin + search_margin;
+      if (near_sphere.distance < reach)
+        contacts.push_back(cap(near_sphere, a.centreOf(near_sphere.sphere) + near_sphere.aside, reach));
     }
   };
   if (measure.on_surfaces) {
-    caps(a.slack);
-    assert(contacts.size() == touches_.size());  // the gauge counts on it
-    const SurfaceGauge gauge(a, *surface_, other, touches_);
-    findCandidates(contacts, gauge, measure.spacing, packing.getBasis(), patches, memory_.candidates);
-    const bool near = measurePatches(memory_.candidates, gauge, measure, patches);
+    caps(a.search_margin);
+    assert(contacts.size() == near_spheres_.size());  // the probe counts on it
+    const ShapeProbe probe(a, *surface_, other, near_spheres_);
+    selectSamples(contacts, probe, measure.spacing, packing.getBasis(), patches, memory_.samples);
+    const bool near = refinePatches(memory_.samples, probe, measure, patches);
     if (!near) caps(0);
     if (near || contacts.empty()) {
       memory_.searchedAt(now);
@@ -107,38 +107,38 @@ void SurfaceContact::update(const ContactOptions& options, const btTransform& pa
     }
   } else {
     caps(0);
-    if (options.response == Response::penalty) overlap_ = sumOf(a, touches_);
+    if (options.response == Response::penalty) overlap_ = sumOf(a, near_spheres_);
   }
   volumePatches(contacts, measure.spacing, packing.getBasis(), patches);
 }
 
-bool SurfaceContact::remember(const PackingBody& a, const Measure& measure, const Placed& now,
+bool SurfaceContact::remember(const PlacedPacking& a, const ContactSettings& measure, const Placed& now,
                               btScalar separation) {
   // Asked in every step: it remembers what it was asked last.
   const bool same = surface_->isAsBefore() && measured_ && measure.on_surfaces &&
                     measure.prefix_a == measured_->prefix_a && measure.spacing == measured_->spacing &&
                     margin_ == a.margin && scale_ == a.scale();
-  const std::optional<Measure> before = measured_;
+  const std::optional<ContactSettings> before = measured_;
   measured_.reset();
   if (!same) return false;
   const btScalar size_b = other_.isInfinite() ? BT_LARGE_FLOAT : other_.getAngularMotionDisc();
-  const ContactMemory::Age age = memory_.ageAt(now, packing_.getAngularMotionDisc(), size_b, separation,
-                                               before->separation, measure.spacing, touches_.empty());
-  if (age == ContactMemory::Age::stale) return false;
-  if (age == ContactMemory::Age::current) {
+  const ContactTransport::Age age = memory_.ageAt(now, packing_.getAngularMotionDisc(), size_b, separation,
+                                                  before->separation, measure.spacing, near_spheres_.empty());
+  if (age == ContactTransport::Age::stale) return false;
+  if (age == ContactTransport::Age::current) {
     memory_.carryTo(now, packing_, measure.spacing);
-    if (touches_.empty())
+    if (near_spheres_.empty())
       leeway_ = memory_.leeway(now, packing_.getAngularMotionDisc(), size_b, measure.spacing);
-    reach_ = before->separation - ContactMemory::reserve(measure.spacing);
+    reach_ = before->separation - ContactTransport::reserve(measure.spacing);
   } else {
-    if (!surface_->touchAgain(a, now.b, touches_)) return false;
+    if (!surface_->updateNearSpheres(a, now.b, near_spheres_)) return false;
     memory_.turnTo(now);
-    const SurfaceGauge gauge(a, *surface_, now.b, touches_);
-    const bool near = measurePatches(memory_.candidates, gauge, *before, memory_.patches);
-    const auto cuts = [&](const Touch& touch) {
-      return touch.distance < a.radiusOf(touch.sphere) + a.margin;
+    const ShapeProbe probe(a, *surface_, now.b, near_spheres_);
+    const bool near = refinePatches(memory_.samples, probe, *before, memory_.patches);
+    const auto cuts = [&](const NearSphere& near_sphere) {
+      return near_sphere.distance < a.radiusOf(near_sphere.sphere) + a.margin;
     };
-    if (!near && std::any_of(touches_.begin(), touches_.end(), cuts)) return false;
+    if (!near && std::any_of(near_spheres_.begin(), near_spheres_.end(), cuts)) return false;
     memory_.measuredAt(now, before->separation);
   }
   measured_ = before;
@@ -153,13 +153,13 @@ bool SurfaceContact::isAsBefore() {
 
 const Overlap& SurfaceContact::volumesOf(const ContactOptions& options, const btTransform& packing,
                                          const btTransform& other) {
-  static thread_local std::vector<Touch> touches;
+  static thread_local std::vector<NearSphere> near_spheres;
   if (overlap_) return *overlap_;
-  const PackingBody a(packing_, packing, options.estimator, 0,
-                      Measure(options, packing_, other_, 0).prefix_a);
-  touches.clear();
-  if (surface_) surface_->touch(a, other, touches);
-  return overlap_.emplace(sumOf(a, touches));
+  const PlacedPacking a(packing_, packing, options.estimator, 0,
+                        ContactSettings(options, packing_, other_, 0).prefix_a);
+  near_spheres.clear();
+  if (surface_) surface_->findNearSpheres(a, other, near_spheres);
+  return overlap_.emplace(sumOf(a, near_spheres));
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -40,13 +40,14 @@ class SurfaceContact {
   const PackingShape& packing_;
   const btCollisionShape& other_;
   /// Contacts on the surfaces from those of earlier steps. False if they need to be searched for.
-  bool remember(const PackingBody& a, const Measure& measure, const Placed& now, btScalar separation);
+  bool remember(const PlacedPacking& a, const ContactSettings& measure, const Placed& now,
+                btScalar separation);
 
-  std::unique_ptr<OtherSurface> surface_;  ///< null for shapes without one
-  ContactMemory memory_;                   ///< its candidates are indices of touches
-  std::vector<Touch> touches_;             ///< of the last search
-  std::optional<Measure> measured_;        ///< of it, if it found contact of the surfaces
-  btScalar margin_ = 0;                    ///< of the packing, then
+  std::unique_ptr<ShapeSurface> surface_;    ///< null for shapes without one
+  ContactTransport memory_;                  ///< its samples are indices of near spheres
+  std::vector<NearSphere> near_spheres_;     ///< of the last search
+  std::optional<ContactSettings> measured_;  ///< of it, if it found contact of the surfaces
+  btScalar margin_ = 0;                      ///< of the packing, then
   btScalar scale_ = 0;
   btScalar leeway_ = -1;
   btScalar reach_ = 0;

@@ -76,7 +76,7 @@ void pickForward(const PatchContacts& from, const std::vector<std::size_t>& near
   for (std::size_t i : near) {
     const btVector3 side = toBullet(from.contacts[i].centroid) - from.moments.centre;
     const std::size_t sector = sectorOf(side.dot(from.moments.tangent[0]), side.dot(from.moments.tangent[1]));
-    const Gauge::Forward forward = from.gauge.forward(i, from.moments.normal);
+    const SurfaceProbe::Forward forward = from.probe.forward(i, from.moments.normal);
     furthest[2 * sector + (forward.of_a ? 0 : 1)].update(i, forward.distance);
   }
   for (const Furthest& f : furthest) {
@@ -86,38 +86,38 @@ void pickForward(const PatchContacts& from, const std::vector<std::size_t>& near
 
 }  // namespace
 
-void turn(const btMatrix3x3& by, Candidates& candidates) {
-  for (Candidates::OfPatch& patch : candidates.patches) patch.normal = by * patch.normal;
-  for (Candidates::Line& line : candidates.lines) line.direction = by * line.direction;
+void turn(const btMatrix3x3& by, Samples& samples) {
+  for (Samples::OfPatch& patch : samples.patches) patch.normal = by * patch.normal;
+  for (Samples::Line& line : samples.lines) line.direction = by * line.direction;
 }
 
-void dropUnmeasured(Candidates& candidates) {
+void dropUnprobed(Samples& samples) {
   std::size_t kept = 0, k = 0;
-  for (Candidates::OfPatch& patch : candidates.patches) {
+  for (Samples::OfPatch& patch : samples.patches) {
     for (; k < patch.end; ++k) {
-      if (candidates.lines[k].direction.isZero()) continue;
-      candidates.indices[kept] = candidates.indices[k];
-      candidates.lines[kept++] = candidates.lines[k];
+      if (samples.lines[k].direction.isZero()) continue;
+      samples.indices[kept] = samples.indices[k];
+      samples.lines[kept++] = samples.lines[k];
     }
     patch.end = kept;
   }
-  candidates.indices.resize(kept);
-  candidates.lines.resize(kept);
+  samples.indices.resize(kept);
+  samples.lines.resize(kept);
 }
 
-void pickCandidates(const PatchContacts& from, Candidates& candidates) {
+void appendSamples(const PatchContacts& from, Samples& samples) {
   static thread_local std::vector<std::size_t> near, picked;
   const auto append = [&](const std::vector<std::size_t>& indices) {
-    candidates.indices.insert(candidates.indices.end(), indices.begin(), indices.end());
-    candidates.patches.push_back(
-        {from.moments.normal, from.moments.area, from.moments.radius, candidates.indices.size()});
+    samples.indices.insert(samples.indices.end(), indices.begin(), indices.end());
+    samples.patches.push_back(
+        {from.moments.normal, from.moments.area, from.moments.radius, samples.indices.size()});
   };
   near = from.indices;
-  if (from.gauge.exactB()) dropFar(from, near);
+  if (from.probe.exactB()) dropFar(from, near);
   if (near.size() <= kDirections + kFacing + kOthers) return append(near);
   picked.clear();
   for (std::size_t i : near) {
-    if (isOld(from, from.gauge.id(i))) picked.push_back(i);
+    if (isOld(from, from.probe.id(i))) picked.push_back(i);
   }
   pickOutermost(from, near, picked);
   for (std::size_t k = 0; k < kOthers; ++k) picked.push_back(near[k * near.size() / kOthers]);

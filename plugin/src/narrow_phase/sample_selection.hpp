@@ -12,7 +12,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Contacts to measure, patch after patch.
-struct Candidates {
+struct Samples {
   struct OfPatch {
     btVector3 normal;  ///< unit, from A to B
     btScalar area;     ///< [m^2]
@@ -35,19 +35,19 @@ struct PatchContacts {
   const std::vector<std::size_t>& indices;  ///< those of the patch
   const PatchMoments& moments;
   const std::vector<std::uint64_t>& old_ids;  ///< points of the step before
-  const Gauge& gauge;
-  btScalar spacing;  ///< see Measure
+  const SurfaceProbe& probe;
+  btScalar spacing;  ///< see ContactSettings
 };
 
 /// Turns all directions.
-void turn(const btMatrix3x3& by, Candidates& candidates);
+void turn(const btMatrix3x3& by, Samples& samples);
 
 /// Leaves those that have been measured once, and were near enough to be measured again.
-void dropUnmeasured(Candidates& candidates);
+void dropUnprobed(Samples& samples);
 
 /// Appends some contacts of a patch: those of the step before, those that span the patch, those that stand
 /// out or face the other body most, and some of the others.
-void pickCandidates(const PatchContacts& from, Candidates& candidates);
+void appendSamples(const PatchContacts& from, Samples& samples);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -24,12 +24,12 @@ struct SurfacePoint {
   btVector3 normal{0, 0, 0};  ///< unit, out of the solid
   btScalar facing = 0;        ///< cosine between the triangle's normal and the ray
   btScalar curvature = 0;     ///< [1/m]
-  std::size_t triangle = Gap::kNone;
+  std::size_t triangle = OpposedPoints::kNone;
 };
 
 /// In the frame of a surface.
 struct Ray {
-  Ray(const PackingBody& body, const btVector3& start, const btVector3& way, btScalar length)
+  Ray(const PlacedPacking& body, const btVector3& start, const btVector3& way, btScalar length)
       : from((start * body.world.getBasis()) / body.scale()),
         direction(way * body.world.getBasis()),
         reach(length / body.scale()) {}
@@ -38,7 +38,7 @@ struct Ray {
   btScalar reach;
 };
 
-SurfacePoint pointOf(const PackingBody& body, const SurfaceTree::Hit& hit, const btVector3& from,
+SurfacePoint pointOf(const PlacedPacking& body, const SurfaceQueries::Hit& hit, const btVector3& from,
                      const btVector3& direction) {
   const btMatrix3x3& axes = body.world.getBasis();
   SurfacePoint point;
@@ -51,17 +51,18 @@ SurfacePoint pointOf(const PackingBody& body, const SurfaceTree::Hit& hit, const
 }
 
 /// Where a ray from inside the solid leaves it; through triangle `known` or one near it, if it does.
-bool leave(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
+bool leave(const PlacedPacking& body, const btVector3& from, const btVector3& direction, btScalar reach,
            std::size_t known, SurfacePoint& point) {
-  const SurfaceTree& tree = body.shape().surfaceTree();
+  const SurfaceQueries& tree = body.shape().surfaceQueries();
   const Ray ray(body, from, direction, reach);
-  SurfaceTree::Hit hit;
+  SurfaceQueries::Hit hit;
   const auto leaves = [&] {
     point = pointOf(body, hit, from, direction);
     return !(point.facing < kFacing);
   };
-  const bool near = known != Gap::kNone && tree.castNear(known, ray.from, ray.direction, ray.reach, hit) &&
-                    hit.distance > 0 && leaves();
+  const bool near = known != OpposedPoints::kNone &&
+                    tree.castNear(known, ray.from, ray.direction, ray.reach, hit) && hit.distance > 0 &&
+                    leaves();
   if (!near && !(tree.cast(ray.from, ray.direction, ray.reach, ray.direction, hit) && leaves())) return false;
   point.at += direction * body.margin;
   return true;
@@ -69,24 +70,24 @@ bool leave(const PackingBody& body, const btVector3& from, const btVector3& dire
 
 /// Where the line of a ray enters the solid: ahead of it, or behind if it starts inside; through triangle
 /// `known` or one near it, if it does.
-bool enter(const PackingBody& body, const btVector3& from, const btVector3& direction, btScalar reach,
+bool enter(const PlacedPacking& body, const btVector3& from, const btVector3& direction, btScalar reach,
            std::size_t known, const btVector3& opposed, SurfacePoint& point) {
-  const SurfaceTree& tree = body.shape().surfaceTree();
+  const SurfaceQueries& tree = body.shape().surfaceQueries();
   const Ray ray(body, from, direction, reach);
   const btVector3 towards = -opposed * body.world.getBasis();
-  SurfaceTree::Hit hit;
+  SurfaceQueries::Hit hit;
   const auto enters = [&] {
     point = pointOf(body, hit, from, direction);
     return !(point.facing > -kFacing);
   };
-  const bool near =
-      known != Gap::kNone && tree.castNear(known, ray.from, ray.direction, ray.reach, hit) && enters();
+  const bool near = known != OpposedPoints::kNone &&
+                    tree.castNear(known, ray.from, ray.direction, ray.reach, hit) && enters();
   if (!near) {
     if (!tree.cast(ray.from, ray.direction, ray.reach, towards, hit)) return false;
     point = pointOf(body, hit, from, direction);
     if (point.facing > 0) {
       // A line along a face may miss the edge where it enters.
-      SurfaceTree::Nearest nearest;
+      SurfaceQueries::Nearest nearest;
       const bool inside = tree.nearest(ray.from, ray.reach, nearest) && nearest.distance < 0;
       if (!inside || !tree.cast(ray.from, -ray.direction, ray.reach, towards, hit)) return false;
       point = pointOf(body, hit, from, -direction);
@@ -99,29 +100,29 @@ bool enter(const PackingBody& body, const btVector3& from, const btVector3& dire
 }
 
 /// Whether a face with this normal is at a place. `size` is that of the things looked at.
-bool faceAt(const PackingBody& body, const btVector3& at, const btVector3& normal, btScalar size) {
+bool faceAt(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar size) {
   // A little inside, where the direction to the face is well defined.
   const btVector3 place = at - normal * (kSunk * size + body.margin);
-  SurfaceTree::Nearest nearest;
+  SurfaceQueries::Nearest nearest;
   return body.nearest(place, size, nearest) && nearest.distance < 0 &&
          nearest.normal.dot(normal) > kSameBentFace;
 }
 
 /// The face with about this normal that a place is over or under, if there is one.
-bool faceUnder(const PackingBody& body, const btVector3& at, const btVector3& normal, btScalar size,
+bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar size,
                SurfacePoint& point) {
   const btVector3 inside = at - normal * (kSunk * size + body.margin);
-  return faceAt(body, at, normal, size) && leave(body, inside, normal, size, Gap::kNone, point);
+  return faceAt(body, at, normal, size) && leave(body, inside, normal, size, OpposedPoints::kNone, point);
 }
 
 /// Corners uphill from a triangle, relative to the body's origin: visit(corner, id, is_peak).
 template <typename Visit>
-void forEachCorner(const PackingBody& body, std::size_t triangle, const btVector3& direction,
+void forEachCorner(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,
                    const btVector3& start, btScalar reach, std::uint64_t first_id, const Visit& visit) {
   static thread_local std::vector<std::uint32_t> vertices;
   const btMatrix3x3& axes = body.world.getBasis();
   vertices.clear();
-  const bool is_peak = body.shape().vertexClimb().from(
+  const bool is_peak = body.shape().vertexHillClimb().from(
       triangle, direction * axes, (start * axes) / body.scale(), reach / body.scale(), vertices);
   for (std::uint32_t v : vertices) {
     const btVector3 vertex = axes * (toBullet(body.shape().packing().surface.vertices[v]) * body.scale());
@@ -131,32 +132,33 @@ void forEachCorner(const PackingBody& body, std::size_t triangle, const btVector
 
 }  // namespace
 
-bool SurfaceGauge::goesOn(const Touch& touch, const btVector3& place) const {
+bool ShapeProbe::goesOn(const NearSphere& near_sphere, const btVector3& place) const {
   // A little above a face it is that far away; beyond its edge it is further.
   constexpr btScalar kAbove = btScalar(0.03), kFurther = btScalar(0.01);  // of the sphere's reach
-  const btScalar reach = a_.reach(touch.sphere);
-  const btVector3 above = place + touch.normal * (kAbove * reach);
+  const btScalar reach = a_.reach(near_sphere.sphere);
+  const btVector3 above = place + near_sphere.normal * (kAbove * reach);
   // On a large ground.
   const btScalar rounding = 4 * SIMD_EPSILON * (a_.origin() + above - world_.getOrigin()).length();
   btScalar distance = 0;
   return !other_.distanceOf(a_, world_, above, distance) || distance < (kAbove + kFurther) * reach + rounding;
 }
 
-bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3& shift, Gap& gap) const {
-  const Touch& touch = touches_[index];
-  const btScalar radius = a_.ownRadius(touch.sphere);
+bool ShapeProbe::measure(std::size_t index, const btVector3&, const btVector3& shift,
+                         OpposedPoints& gap) const {
+  const NearSphere& near_sphere = near_spheres_[index];
+  const btScalar radius = a_.ownRadius(near_sphere.sphere);
   // Only of a flat surface it is known what it is like beside the nearest point.
-  const bool flat = touch.curvature == 0 && !touch.isOnEdge();
-  if (shift.length2() > 0 && (!flat || shift.length() > radius + a_.slack)) return false;
-  const btVector3 from = a_.centreOf(touch.sphere) + touch.aside + shift;
-  const btVector3 towards_b = -touch.normal;
-  gap.on_b = from + towards_b * touch.distance;
-  if (shift.length2() > 0 && !goesOn(touch, gap.on_b)) return false;
+  const bool flat = near_sphere.curvature == 0 && !near_sphere.isOnEdge();
+  if (shift.length2() > 0 && (!flat || shift.length() > radius + a_.search_margin)) return false;
+  const btVector3 from = a_.centreOf(near_sphere.sphere) + near_sphere.aside + shift;
+  const btVector3 towards_b = -near_sphere.normal;
+  gap.on_b = from + towards_b * near_sphere.distance;
+  if (shift.length2() > 0 && !goesOn(near_sphere, gap.on_b)) return false;
   SurfacePoint on_a;
-  const bool leaves = leave(a_, from, towards_b, 2 * (radius + a_.slack), gap.triangle_a, on_a);
-  if (on_a.triangle == Gap::kNone && gap.triangle_a != Gap::kNone) {
+  const bool leaves = leave(a_, from, towards_b, 2 * (radius + a_.search_margin), gap.triangle_a, on_a);
+  if (on_a.triangle == OpposedPoints::kNone && gap.triangle_a != OpposedPoints::kNone) {
     // Deep in A: it is some other face that is near.
-    const EdgedSolid a(a_, {0, 0, 0});
+    const SharpEdges a(a_, {0, 0, 0});
     on_a.triangle = gap.triangle_a;
     on_a.at = a.middle(gap.triangle_a);
     on_a.normal = a.face(gap.triangle_a);
@@ -167,82 +169,84 @@ bool SurfaceGauge::measure(std::size_t index, const btVector3&, const btVector3&
   gap.curvature_a = on_a.curvature;
   gap.triangle_a = on_a.triangle;
   gap.normal_b = towards_b;
-  gap.curvature_b = touch.curvature;
+  gap.curvature_b = near_sphere.curvature;
   return leaves;
 }
 
-bool SurfaceGauge::nearest(std::size_t index, btVector3& direction, Gap& gap) const {
-  gap.triangle_a = a_.shape().solid->triangleNear(touches_[index].sphere);
-  direction = -touches_[index].normal;
+bool ShapeProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints& gap) const {
+  gap.triangle_a = a_.shape().solid->triangleNear(near_spheres_[index].sphere);
+  direction = -near_spheres_[index].normal;
   return true;
 }
 
-void SurfaceGauge::corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
-                           std::vector<Corner>& corners) const {
+void ShapeProbe::corners(std::size_t index, const OpposedPoints& gap, const btVector3& normal, bool of_a,
+                         std::vector<Corner>& corners) const {
   if (!of_a) return;
-  const auto reachOf = [&](const Touch& touch) { return a_.ownRadius(touch.sphere) + a_.slack; };
-  forEachCorner(a_, gap.triangle_a, normal, gap.on_a, reachOf(touches_[index]), kCornerId,
+  const auto reachOf = [&](const NearSphere& near_sphere) {
+    return a_.ownRadius(near_sphere.sphere) + a_.search_margin;
+  };
+  forEachCorner(a_, gap.triangle_a, normal, gap.on_a, reachOf(near_spheres_[index]), kCornerId,
                 [&](const btVector3& at, std::uint64_t id, bool is_peak) {
                   // The face is known where spheres are near it.
                   Corner corner{gap, id, is_peak};
-                  const Touch* over = nullptr;
+                  const NearSphere* over = nullptr;
                   btScalar nearest = BT_LARGE_FLOAT;
-                  for (const Touch& touch : touches_) {
-                    const btScalar reach = reachOf(touch);
-                    const btVector3 centre = a_.centreOf(touch.sphere);
+                  for (const NearSphere& near_sphere : near_spheres_) {
+                    const btScalar reach = reachOf(near_sphere);
+                    const btVector3 centre = a_.centreOf(near_sphere.sphere);
                     const btScalar distance2 = centre.distance2(at);
-                    if (touch.isOnEdge() || !(distance2 < reach * reach)) continue;
-                    if (!(touch.normal.dot(-normal) > kSameFace)) continue;
+                    if (near_sphere.isOnEdge() || !(distance2 < reach * reach)) continue;
+                    if (!(near_sphere.normal.dot(-normal) > kSameFace)) continue;
                     if (!(distance2 < nearest)) continue;
                     nearest = distance2;
-                    over = &touch;
-                    corner.gap.normal_b = -touch.normal;
-                    const btScalar height = (at - centre).dot(touch.normal) + touch.distance;
-                    corner.gap.on_b = at - touch.normal * height;
+                    over = &near_sphere;
+                    corner.gap.normal_b = -near_sphere.normal;
+                    const btScalar height = (at - centre).dot(near_sphere.normal) + near_sphere.distance;
+                    corner.gap.on_b = at - near_sphere.normal * height;
                   }
                   corner.gap.on_a = at;
                   if (over != nullptr && goesOn(*over, corner.gap.on_b)) corners.push_back(corner);
                 });
 }
 
-bool SurfaceGauge::crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const {
-  EdgedSolid b;
-  Gap start = gap;
+bool ShapeProbe::crossing(const OpposedPoints& gap, const btVector3& direction, Corner& crossing) const {
+  SharpEdges b;
+  OpposedPoints start = gap;
   // Seen from outside.
-  const btVector3 place = gap.on_b - gap.normal_b * a_.slack;
+  const btVector3 place = gap.on_b - gap.normal_b * a_.search_margin;
   if (!other_.facets(a_, world_, b) || !b.nearestTriangle(place, start.triangle_b)) return false;
   crossing.is_alone = btFabs(b.face(start.triangle_b).dot(gap.normal_b)) < kSameFace;
   return crossingEdges({a_, {0, 0, 0}}, b, start, direction, crossing);
 }
 
-Gauge::Forward SurfaceGauge::forward(std::size_t index, const btVector3&) const {
-  const Touch& touch = touches_[index];
-  return {true, a_.ownRadius(touch.sphere) - touch.distance};
+SurfaceProbe::Forward ShapeProbe::forward(std::size_t index, const btVector3&) const {
+  const NearSphere& near_sphere = near_spheres_[index];
+  return {true, a_.ownRadius(near_sphere.sphere) - near_sphere.distance};
 }
 
-Gauge::Forward PackingGauge::forward(std::size_t index, const btVector3& normal) const {
+SurfaceProbe::Forward PackingProbe::forward(std::size_t index, const btVector3& normal) const {
   const bool of_a = index < count_a_;
-  const PackingBody& own = of_a ? a_ : b_;
+  const PlacedPacking& own = of_a ? a_ : b_;
   const std::size_t sphere = contacts_[index].sphere;
   return {of_a, (of_a ? 1 : -1) * own.centreOf(sphere).dot(normal) + own.ownRadius(sphere)};
 }
 
-std::uint64_t PackingGauge::id(std::size_t index) const {
+std::uint64_t PackingProbe::id(std::size_t index) const {
   return 2 * std::uint64_t(contacts_[index].sphere) + (index < count_a_ ? 0 : 1);
 }
 
-bool PackingGauge::measure(std::size_t index, const btVector3& direction, const btVector3& shift,
-                           Gap& gap) const {
+bool PackingProbe::measure(std::size_t index, const btVector3& direction, const btVector3& shift,
+                           OpposedPoints& gap) const {
   const bool of_a = index < count_a_;
-  const PackingBody& own = of_a ? a_ : b_;
-  const PackingBody& other = of_a ? b_ : a_;
+  const PlacedPacking& own = of_a ? a_ : b_;
+  const PlacedPacking& other = of_a ? b_ : a_;
   const std::size_t sphere = contacts_[index].sphere;
   const btScalar radius = own.ownRadius(sphere);
   if (shift.length() > reachOf(index)) return false;
   const btVector3 way = of_a ? direction : -direction;
   const btVector3 from = own.centreOf(sphere) + shift;
   const btVector3 apart = other.origin() - own.origin();
-  const btScalar reach = 2 * (radius + a_.slack + b_.slack);
+  const btScalar reach = 2 * (radius + a_.search_margin + b_.search_margin);
   SurfacePoint left, entered;
   if (!leave(own, from, way, reach, of_a ? gap.triangle_a : gap.triangle_b, left) ||
       !enter(other, from - apart, way, reach, of_a ? gap.triangle_b : gap.triangle_a, left.normal, entered))
@@ -261,39 +265,39 @@ bool PackingGauge::measure(std::size_t index, const btVector3& direction, const 
   return true;
 }
 
-bool PackingGauge::nearest(std::size_t index, btVector3& direction, Gap& gap) const {
+bool PackingProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints& gap) const {
   const bool of_a = index < count_a_;
-  const PackingBody& own = of_a ? a_ : b_;
-  const PackingBody& other = of_a ? b_ : a_;
+  const PlacedPacking& own = of_a ? a_ : b_;
+  const PlacedPacking& other = of_a ? b_ : a_;
   const std::size_t sphere = contacts_[index].sphere;
   const btVector3 centre = own.origin() + own.centreOf(sphere) - other.origin();
-  const btScalar reach = 2 * (own.ownRadius(sphere) + a_.slack + b_.slack);
+  const btScalar reach = 2 * (own.ownRadius(sphere) + a_.search_margin + b_.search_margin);
   (of_a ? gap.triangle_a : gap.triangle_b) = own.shape().solid->triangleNear(sphere);
-  SurfaceTree::Nearest nearest;
+  SurfaceQueries::Nearest nearest;
   if (!other.nearest(centre, reach, nearest)) return false;
   if (!nearest.beside) (of_a ? gap.triangle_b : gap.triangle_a) = nearest.triangle;
   direction = nearest.normal * btScalar(of_a ? -1 : 1);
   return true;
 }
 
-Gauge::Reach PackingGauge::reach(const Gap& gap, const btVector3& towards) const {
-  const auto until = [&](const PackingBody& body, std::size_t triangle, const btVector3& at) {
+SurfaceProbe::Reach PackingProbe::reach(const OpposedPoints& gap, const btVector3& towards) const {
+  const auto until = [&](const PlacedPacking& body, std::size_t triangle, const btVector3& at) {
     const btMatrix3x3& axes = body.world.getBasis();
     return body.scale() *
-           body.shape().surfaceTree().untilSharpEdge(triangle, (at * axes) / body.scale(), towards * axes);
+           body.shape().surfaceQueries().untilSharpEdge(triangle, (at * axes) / body.scale(), towards * axes);
   };
   return {until(a_, gap.triangle_a, gap.on_a), until(b_, gap.triangle_b, gap.on_b - apart())};
 }
 
-bool PackingGauge::crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const {
+bool PackingProbe::crossing(const OpposedPoints& gap, const btVector3& direction, Corner& crossing) const {
   return crossingEdges({a_, {0, 0, 0}}, {b_, apart()}, gap, direction, crossing);
 }
 
-void PackingGauge::corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
+void PackingProbe::corners(std::size_t index, const OpposedPoints& gap, const btVector3& normal, bool of_a,
                            std::vector<Corner>& corners) const {
   const btScalar reach = reachOf(index);
-  const PackingBody& own = of_a ? a_ : b_;
-  const PackingBody& other = of_a ? b_ : a_;
+  const PlacedPacking& own = of_a ? a_ : b_;
+  const PlacedPacking& other = of_a ? b_ : a_;
   // All of this relative to the solid whose corners are looked for; `way` leads out of it.
   const btVector3 offset = of_a ? btVector3(0, 0, 0) : apart();
   const btVector3 to_other = of_a ? apart() : -apart();

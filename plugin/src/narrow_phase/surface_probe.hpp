@@ -14,7 +14,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Two opposed points of the surfaces. Axes of the world, positions relative to the origin of A's packing.
-struct Gap {
+struct OpposedPoints {
   btVector3 on_a{0, 0, 0};
   btVector3 on_b{0, 0, 0};
   btVector3 normal_a{0, 0, 0};  ///< unit, out of A
@@ -28,41 +28,41 @@ struct Gap {
 };
 
 /// Measures along a line through the centre of a sphere in contact.
-class Gauge {
+class SurfaceProbe {
  public:
-  virtual ~Gauge() = default;
-  /// At contact `index` of the list that the gauge was made for, along `direction` from A to B (a shape that
+  virtual ~SurfaceProbe() = default;
+  /// At contact `index` of the list that the probe was made for, along `direction` from A to B (a shape that
   /// is no packing chooses its own), with the line moved sideways by `shift`. False if the line does not pass
   /// both surfaces near there. The triangles that `gap` comes with, or those around them, are taken if the
   /// line passes them; all are looked at only where they are kNone, or missed. Where B is no packing, the gap
   /// then holds a face of A all the same: that by which the line leaves A sideways, or one near the sphere.
   virtual bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
-                       Gap& gap) const = 0;
+                       OpposedPoints& gap) const = 0;
   /// The direction from A to B in which the sphere of a contact is nearest to the other solid's surface.
   /// False if it is too far away to tell. Leaves the triangles near the sphere in `gap`.
-  virtual bool nearest(std::size_t index, btVector3& direction, Gap& gap) const = 0;
+  virtual bool nearest(std::size_t index, btVector3& direction, OpposedPoints& gap) const = 0;
   /// How far the faces at a gap go on in direction `towards` (unit), until they end in a sharp edge [m].
   struct Reach {
     btScalar a;
     btScalar b;
   };
-  virtual Reach reach(const Gap& gap, const btVector3& towards) const = 0;
+  virtual Reach reach(const OpposedPoints& gap, const btVector3& towards) const = 0;
   /// Appends the corners near a gap where A (or else B) reaches furthest along `normal` (from A to B) and
   /// that are over the face of the other solid; also the far end of an edge that is level. Each with the
   /// point of the face that it is over.
   struct Corner {
-    Gap gap;
+    OpposedPoints gap;
     std::uint64_t id = 0;   ///< no sphere has it
     bool is_peak = true;    ///< the surface does not rise on from it
     bool is_alone = false;  ///< a crossing, and the gap that it was found from lies at an edge of B: its
                             ///< corners are over no face
   };
-  virtual void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
+  virtual void corners(std::size_t index, const OpposedPoints& gap, const btVector3& normal, bool of_a,
                        std::vector<Corner>& corners) const = 0;
   /// Where, not far from a gap between two flat faces, an edge of A crosses one of B, and both solids have
   /// nothing further out along the normal to both nearby. False if none is found. `direction`: about that in
   /// which the solids are in contact, from A to B.
-  virtual bool crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const = 0;
+  virtual bool crossing(const OpposedPoints& gap, const btVector3& direction, Corner& crossing) const = 0;
   /// How far the sphere of a contact stands out of its solid along `normal` (from A to B), or, where that is
   /// known, towards the other surface. Only differences between spheres of one solid matter [m].
   struct Forward {
@@ -76,48 +76,48 @@ class Gauge {
   virtual bool exactB() const = 0;
 };
 
-/// Contacts of a packing with a shape of another kind; `touches` are parallel to the contacts.
-class SurfaceGauge : public Gauge {
+/// Contacts of a packing with a shape of another kind; `near spheres` are parallel to the contacts.
+class ShapeProbe : public SurfaceProbe {
  public:
   /// `world`: where the other shape is.
-  SurfaceGauge(const PackingBody& a, OtherSurface& other, const btTransform& world,
-               const std::vector<Touch>& touches)
-      : a_(a), other_(other), world_(world), touches_(touches) {}
+  ShapeProbe(const PlacedPacking& a, ShapeSurface& other, const btTransform& world,
+             const std::vector<NearSphere>& near_spheres)
+      : a_(a), other_(other), world_(world), near_spheres_(near_spheres) {}
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
-               Gap& gap) const override;
-  bool nearest(std::size_t index, btVector3& direction, Gap& gap) const override;
+               OpposedPoints& gap) const override;
+  bool nearest(std::size_t index, btVector3& direction, OpposedPoints& gap) const override;
   /// Of the other shape only its distance is known: it is taken as large.
-  Reach reach(const Gap&, const btVector3&) const override { return {0, BT_LARGE_FLOAT}; }
-  void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
+  Reach reach(const OpposedPoints&, const btVector3&) const override { return {0, BT_LARGE_FLOAT}; }
+  void corners(std::size_t index, const OpposedPoints& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;
-  bool crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const override;
+  bool crossing(const OpposedPoints& gap, const btVector3& direction, Corner& crossing) const override;
   Forward forward(std::size_t index, const btVector3& normal) const override;
-  std::uint64_t id(std::size_t index) const override { return touches_[index].sphere; }
+  std::uint64_t id(std::size_t index) const override { return near_spheres_[index].sphere; }
   bool exactB() const override { return true; }
 
  private:
   /// Whether the plane of a touch is still the surface of B at `place` of it.
-  bool goesOn(const Touch& touch, const btVector3& place) const;
+  bool goesOn(const NearSphere& near_sphere, const btVector3& place) const;
 
-  const PackingBody& a_;
-  OtherSurface& other_;
+  const PlacedPacking& a_;
+  ShapeSurface& other_;
   const btTransform& world_;
-  const std::vector<Touch>& touches_;
+  const std::vector<NearSphere>& near_spheres_;
 };
 
 /// Contacts of two packings: the first `count_a` are of A's spheres, the others of B's.
-class PackingGauge : public Gauge {
+class PackingProbe : public SurfaceProbe {
  public:
-  PackingGauge(const PackingBody& a, const PackingBody& b, const std::vector<SphereContact>& contacts,
+  PackingProbe(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
                std::size_t count_a)
       : a_(a), b_(b), contacts_(contacts), count_a_(count_a) {}
   bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
-               Gap& gap) const override;
-  bool nearest(std::size_t index, btVector3& direction, Gap& gap) const override;
-  Reach reach(const Gap& gap, const btVector3& towards) const override;
-  void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
+               OpposedPoints& gap) const override;
+  bool nearest(std::size_t index, btVector3& direction, OpposedPoints& gap) const override;
+  Reach reach(const OpposedPoints& gap, const btVector3& towards) const override;
+  void corners(std::size_t index, const OpposedPoints& gap, const btVector3& normal, bool of_a,
                std::vector<Corner>& corners) const override;
-  bool crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const override;
+  bool crossing(const OpposedPoints& gap, const btVector3& direction, Corner& crossing) const override;
   Forward forward(std::size_t index, const btVector3& normal) const override;
   std::uint64_t id(std::size_t index) const override;
   bool exactB() const override { return false; }
@@ -126,12 +126,12 @@ class PackingGauge : public Gauge {
   btVector3 apart() const { return b_.origin() - a_.origin(); }
   /// How far away the solid of a contact's sphere may end [m].
   btScalar reachOf(std::size_t index) const {
-    const PackingBody& own = index < count_a_ ? a_ : b_;
-    return own.ownRadius(contacts_[index].sphere) + own.slack;
+    const PlacedPacking& own = index < count_a_ ? a_ : b_;
+    return own.ownRadius(contacts_[index].sphere) + own.search_margin;
   }
 
-  const PackingBody& a_;
-  const PackingBody& b_;
+  const PlacedPacking& a_;
+  const PlacedPacking& b_;
   const std::vector<SphereContact>& contacts_;
   std::size_t count_a_;
 };

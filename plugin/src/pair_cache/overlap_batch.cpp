@@ -15,27 +15,26 @@ namespace {
 
 /// By how much spheres without volume-true radii are enlarged to fill their solid [m].
 btScalar gapsOf(const PackingShape& shape, const Prefix& prefix) {
-  return prefix.volume_true == nullptr ? prefix.recess() * shape.getLocalScaling().x() : btScalar(0);
+  return prefix.volume_true == nullptr ? prefix.inset() * shape.getLocalScaling().x() : btScalar(0);
 }
 
 struct Bodies {
   explicit Bodies(const PackingContact& contact)
-      : a(*contact.a.packing, contact.a.transform, Estimator::raw, contact.measure->slack_a,
+      : a(*contact.a.packing, contact.a.transform, Estimator::raw, contact.measure->search_margin_a,
           contact.measure->prefix_a),
-        b(*contact.b.packing, contact.b.transform, Estimator::raw, contact.measure->slack_b,
+        b(*contact.b.packing, contact.b.transform, Estimator::raw, contact.measure->search_margin_b,
           contact.measure->prefix_b) {}
-  PackingBody a;
-  PackingBody b;
+  PlacedPacking a;
+  PlacedPacking b;
 };
 
-/// Keeps those of `contacts` that are candidates.
-void keepCandidates(const std::vector<SphereContact>& contacts, std::size_t count_a,
-                    PackingContact& contact) {
+/// Keeps those of `contacts` that are samples.
+void keepSamples(const std::vector<SphereContact>& contacts, std::size_t count_a, PackingContact& contact) {
   constexpr std::size_t kNone = ~std::size_t(0);
   static thread_local std::vector<std::size_t> place;
-  std::vector<std::size_t>& candidates = contact.memory.candidates.indices;
+  std::vector<std::size_t>& samples = contact.memory.samples.indices;
   place.assign(contacts.size(), kNone);
-  for (std::size_t i : candidates) place[i] = 0;
+  for (std::size_t i : samples) place[i] = 0;
   contact.contacts.clear();
   contact.count_a = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -44,13 +43,13 @@ void keepCandidates(const std::vector<SphereContact>& contacts, std::size_t coun
     contact.contacts.push_back(contacts[i]);
     if (i < count_a) ++contact.count_a;
   }
-  for (std::size_t& i : candidates) i = place[i];
+  for (std::size_t& i : samples) i = place[i];
 }
 
-/// Whether surfaces are near each other at any of the candidates.
+/// Whether surfaces are near each other at any of the samples.
 bool measureOnSurfaces(const Bodies& bodies, PackingContact& contact) {
-  const PackingGauge gauge(bodies.a, bodies.b, contact.contacts, contact.count_a);
-  return measurePatches(contact.memory.candidates, gauge, *contact.measure, contact.memory.patches);
+  const PackingProbe probe(bodies.a, bodies.b, contact.contacts, contact.count_a);
+  return refinePatches(contact.memory.samples, probe, *contact.measure, contact.memory.patches);
 }
 
 }  // namespace
@@ -157,8 +156,8 @@ OverlapBatch::Age OverlapBatch::ageOf(const PackingContact& contact, const Packi
                                       const PackingSide& b) const {
   if (!contact.valid || !contact.a.isAlike(a) || !contact.b.isAlike(b)) return Age::stale;
   // Also if the bodies have become faster: contacts are wanted from further away then.
-  const Measure& measure = *contact.measure;
-  const bool empty = contact.memory.candidates.indices.empty();
+  const ContactSettings& measure = *contact.measure;
+  const bool empty = contact.memory.samples.indices.empty();
   const Age age = contact.memory.ageAt({a.transform, b.transform}, a.packing->getAngularMotionDisc(),
                                        b.packing->getAngularMotionDisc(), contact.needed, measure.separation,
                                        measure.spacing, empty);
@@ -256,7 +255,7 @@ void OverlapBatch::updateAlone(PackingContact& contact, const PackingSide& a, co
 }
 
 void OverlapBatch::workWithoutQuery(PackingContact& contact, Task task) const {
-  const Measure& measure = *contact.measure;
+  const ContactSettings& measure = *contact.measure;
   if (task == Task::carry) {
     contact.memory.carryTo(contact.placed(), *contact.a.packing, measure.spacing);
   } else {
@@ -272,11 +271,11 @@ void OverlapBatch::handOut(PackingContact& contact) const {
   if (!contact.valid || !looks_.isFresh(look)) return;
   look.received = contact.separation == 0 &&
                   contact.receiver.receive(contact.memory.patches, options_, contact.time_step);
-  const Measure& measure = *contact.measure;
+  const ContactSettings& measure = *contact.measure;
   if (!look.received || !measure.on_surfaces || contact.deep) return;
   const btScalar leeway = contact.memory.leeway(contact.placed(), contact.a.packing->getAngularMotionDisc(),
                                                 contact.b.packing->getAngularMotionDisc(), measure.spacing);
-  looks_.calm(look, leeway, measure.separation - ContactMemory::reserve(measure.spacing));
+  looks_.calm(look, leeway, measure.separation - ContactTransport::reserve(measure.spacing));
 }
 
 void OverlapBatch::startQueries() {
@@ -346,16 +345,16 @@ btScalar OverlapBatch::neededSeparation(const PackingContact& contact) const {
 }
 
 PairQuery OverlapBatch::makeQuery(Task task, const PackingContact& contact) const {
-  const Measure& measure = *contact.measure;
+  const ContactSettings& measure = *contact.measure;
   PairQuery query;
   query.a = &contact.a.packing->model();
   query.b = &contact.b.packing->model();
-  query.placement_a = PackingBody(*contact.a.packing, contact.a.transform, Estimator::raw, 0).placement();
-  query.placement_b = PackingBody(*contact.b.packing, contact.b.transform, Estimator::raw, 0).placement();
+  query.placement_a = PlacedPacking(*contact.a.packing, contact.a.transform, Estimator::raw, 0).placement();
+  query.placement_b = PlacedPacking(*contact.b.packing, contact.b.transform, Estimator::raw, 0).placement();
   query.margin = contact.a.margin + contact.b.margin;
   query.prefix_a = static_cast<std::uint32_t>(measure.prefix_a->count);
   query.prefix_b = static_cast<std::uint32_t>(measure.prefix_b->count);
-  if (task == Task::surfaces) query.margin += measure.slack();
+  if (task == Task::surfaces) query.margin += measure.search_margin();
   if (task == Task::deep) {
     query.margin +=
         gapsOf(*contact.a.packing, *measure.prefix_a) + gapsOf(*contact.b.packing, *measure.prefix_b);
@@ -384,15 +383,15 @@ OverlapBatch::Task OverlapBatch::takeResult(Task task, std::size_t index, Packin
   const std::size_t count_a = contacts.size();
   append(result_.contacts_b);
 
-  const Measure& measure = *contact.measure;
+  const ContactSettings& measure = *contact.measure;
   const btMatrix3x3& reference = contact.a.transform.getBasis();
-  ContactMemory& memory = contact.memory;
+  ContactTransport& memory = contact.memory;
   Task left = Task::nothing;
   if (task == Task::surfaces) {
     const Bodies bodies(contact);
-    findCandidates(contacts, PackingGauge(bodies.a, bodies.b, contacts, count_a), measure.spacing, reference,
-                   memory.patches, memory.candidates);
-    keepCandidates(contacts, count_a, contact);
+    selectSamples(contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), measure.spacing, reference,
+                  memory.patches, memory.samples);
+    keepSamples(contacts, count_a, contact);
     const bool touching = measureOnSurfaces(bodies, contact);
     contact.deep = false;
     if (!contacts.empty() && !touching) left = Task::touch;

@@ -30,16 +30,16 @@ struct PackingContact : ListedPair {
   Look own_look;
   Look* look = &own_look;   ///< the board's once it has been added
   bool valid = false;       ///< what is known of the contact belongs together
-  btScalar separation = 0;  ///< asked for; see Measure
+  btScalar separation = 0;  ///< asked for; see ContactSettings
   btScalar time_step = 0;   ///< within which contacts may close [s]
   btScalar needed = 0;      ///< patches are, or will be, right for gaps up to this [m]
   PackingSide a;
   PackingSide b;
-  std::optional<Measure> measure;  ///< of the last query
+  std::optional<ContactSettings> measure;  ///< of the last query
   Placed placed() const { return {a.transform, b.transform}; }
 
-  ContactMemory memory;                 ///< its candidates are indices of contacts
-  std::vector<SphereContact> contacts;  ///< those that are candidates
+  ContactTransport memory;              ///< its samples are indices of contacts
+  std::vector<SphereContact> contacts;  ///< those that are samples
   std::size_t count_a = 0;              ///< of A's spheres, which come first
   Overlap overlap;                      ///< only where depth is not measured on the surfaces
   bool deep = false;                    ///< the surfaces are not near each other, and yet the solids overlap
@@ -92,14 +92,14 @@ class OverlapBatch {
 
  private:
   QueryContext& context();
-  using Age = ContactMemory::Age;
+  using Age = ContactTransport::Age;
   Age ageOf(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
   bool isUpToDate(const PackingContact& contact, const PackingSide& a, const PackingSide& b) const;
   /// What is left to do for a pair.
   enum class Task : std::uint8_t {
     nothing,
     carry,     ///< its contacts go along
-    measure,   ///< its candidates for contacts are measured again
+    measure,   ///< its samples for contacts are measured again
     surfaces,  ///< a query, with spheres enlarged so that they find all contact of the surfaces they stand
                ///< for
     touch,     ///< one with spheres as they are, where the surfaces showed no overlap: it may be too deep

@@ -33,7 +33,7 @@ PackingShape::Impl::Impl(std::shared_ptr<const CollisionModel> model) {
   if (!model) {
     throw Error(ErrorCode::bad_argument, "PackingShape needs a CollisionModel; it was given a null pointer.");
   }
-  solid = PackedSolid::of(std::move(model));
+  solid = PackedModel::of(std::move(model));
   prefix = &solid->prefix(packing().spheres.size());
 }
 
@@ -78,12 +78,12 @@ void PackingShape::getAabb(const btTransform& t, btVector3& min, btVector3& max)
   impl_->watch.notice(t, impl_->disc);
   const btScalar scale = impl_->scaling.x();
   btTransformAabb(impl_->solid->box_min * scale, impl_->solid->box_max * scale,
-                  impl_->bulge() * scale + getMargin(), t, min, max);
+                  impl_->overshoot() * scale + getMargin(), t, min, max);
 }
 
 void PackingShape::getBoundingSphere(btVector3& centre, btScalar& radius) const {
   centre = impl_->solid->sphere_centre * impl_->scaling.x();
-  radius = (impl_->solid->sphere_radius + impl_->bulge()) * impl_->scaling.x() + getMargin();
+  radius = (impl_->solid->sphere_radius + impl_->overshoot()) * impl_->scaling.x() + getMargin();
 }
 
 btScalar PackingShape::getAngularMotionDisc() const {
@@ -145,7 +145,7 @@ void PackingShape::processAllTriangles(btTriangleCallback* callback, const btVec
   btVector3 packing_min, packing_max;
   btTransformAabb(min / to_shape.scale, max / to_shape.scale, 0, to_shape.from_packing.inverse(), packing_min,
                   packing_max);
-  impl_->surfaceTree().processTriangles(&to_shape, packing_min, packing_max);
+  impl_->surfaceQueries().processTriangles(&to_shape, packing_min, packing_max);
 }
 
 int PackingShape::calculateSerializeBufferSize() const {

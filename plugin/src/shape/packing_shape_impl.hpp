@@ -19,10 +19,10 @@ struct PackingShape::Impl {
 
   const Packing& packing() const { return solid->packing(); }
   bool hasSurface() const { return solid->hasSurface(); }
-  const SurfaceTree& surfaceTree() const { return solid->surfaceTree(); }
-  const VertexClimb& vertexClimb() const { return solid->vertexClimb(); }
+  const SurfaceQueries& surfaceQueries() const { return solid->surfaceQueries(); }
+  const VertexHillClimb& vertexHillClimb() const { return solid->vertexHillClimb(); }
   /// By how much volume-true spheres reach out of the boxes below: without a surface they are what collides.
-  btScalar bulge() const { return hasSurface() ? btScalar(0) : prefix->largest_bulge; }
+  btScalar overshoot() const { return hasSurface() ? btScalar(0) : prefix->largest_overshoot; }
   /// The spheres to use where gaps of `accuracy` [m] at the surface are allowed; 0: those the user chose.
   const Prefix& prefixFor(btScalar accuracy) const {
     return accuracy > 0 ? solid->prefixWithin(accuracy / scaling.x(), *prefix) : *prefix;
@@ -30,7 +30,7 @@ struct PackingShape::Impl {
   /// From the packing's frame to the world for a body at `body`: x_world = result(scale * x).
   btTransform toWorld(const btTransform& body) const;
 
-  std::shared_ptr<const PackedSolid> solid;
+  std::shared_ptr<const PackedModel> solid;
   const Prefix* prefix;  ///< that the user chose
   btVector3 scaling{1, 1, 1};
   btScalar disc = 0;        ///< asked for many times in a step

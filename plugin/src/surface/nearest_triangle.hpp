@@ -18,7 +18,7 @@ class NearestTriangle {
       : triangles_(triangles), point_(point), best2_(reach * reach) {}
 
   /// Squares of distances from the point: of boxes, and that beyond which nothing is looked for.
-  TriangleTree::Lanes distances2(const TriangleTree::Boxes& boxes) const;
+  TriangleBvh::Lanes distances2(const TriangleBvh::Boxes& boxes) const;
   btScalar farthest2() const { return best2_ * (1 + kSame); }
   /// Shows it a triangle; farthest2() thereafter.
   btScalar test(std::size_t triangle);
@@ -48,12 +48,12 @@ class NearestTriangle {
   btVoronoiSimplexSolver solver_;
 };
 
-inline TriangleTree::Lanes NearestTriangle::distances2(const TriangleTree::Boxes& boxes) const {
-  TriangleTree::Lanes sum{};
+inline TriangleBvh::Lanes NearestTriangle::distances2(const TriangleBvh::Boxes& boxes) const {
+  TriangleBvh::Lanes sum{};
   for (int k = 0; k < 3; ++k) {
     const float at = static_cast<float>(point_[k]);
-    const TriangleTree::Lanes outside = TriangleTree::greater(boxes.min[k] - at, at - boxes.max[k]);
-    const TriangleTree::Lanes gap = TriangleTree::greater(outside, TriangleTree::Lanes{});
+    const TriangleBvh::Lanes outside = TriangleBvh::greater(boxes.min[k] - at, at - boxes.max[k]);
+    const TriangleBvh::Lanes gap = TriangleBvh::greater(outside, TriangleBvh::Lanes{});
     sum += gap * gap;
   }
   return sum;

@@ -14,7 +14,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-using Lanes = TriangleTree::Lanes;
+using Lanes = TriangleBvh::Lanes;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 /// Rays that are flatter to a triangle meet it itself, not the curved surface that it stands for.
 constexpr btScalar kShared = btScalar(1e-5);
@@ -31,12 +31,12 @@ class EntersAt {
           static_cast<float>(1 / std::copysign(btMax(btFabs(direction[k]), btScalar(1e-20)), direction[k]));
     }
   }
-  Lanes operator()(const TriangleTree::Boxes& boxes) const {
+  Lanes operator()(const TriangleBvh::Boxes& boxes) const {
     Lanes enter{}, leave = enter + kFar;
     for (int k = 0; k < 3; ++k) {
       const Lanes a = (boxes.min[k] - from_[k]) * inverse_[k], b = (boxes.max[k] - from_[k]) * inverse_[k];
-      enter = TriangleTree::greater(enter, TriangleTree::lesser(a, b));
-      leave = TriangleTree::lesser(leave, TriangleTree::greater(a, b));
+      enter = TriangleBvh::greater(enter, TriangleBvh::lesser(a, b));
+      leave = TriangleBvh::lesser(leave, TriangleBvh::greater(a, b));
     }
     return enter <= leave ? enter : Lanes{} + kFar;
   }
@@ -47,7 +47,7 @@ class EntersAt {
 
 /// What the curved surface is like where its triangle is hit.
 void complete(const SmoothNormals& normals, const SmoothNormals::Crossing& crossing, const btVector3& from,
-              const btVector3& direction, SurfaceTree::Hit& hit) {
+              const btVector3& direction, SurfaceQueries::Hit& hit) {
   hit.distance = crossing.distance;
   hit.face = normals.face(hit.triangle);
   hit.curvature = normals.curvature(hit.triangle);
@@ -63,13 +63,13 @@ void complete(const SmoothNormals& normals, const SmoothNormals::Crossing& cross
 
 }  // namespace
 
-SurfaceTree::SurfaceTree(const Surface& surface) : surface_(surface), tree_(surface) {}
+SurfaceQueries::SurfaceQueries(const Surface& surface) : surface_(surface), tree_(surface) {}
 
-void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3& min,
-                                   const btVector3& max) const {
-  const auto apart = [&](const TriangleTree::Boxes& boxes) {
+void SurfaceQueries::processTriangles(btTriangleCallback* callback, const btVector3& min,
+                                      const btVector3& max) const {
+  const auto apart = [&](const TriangleBvh::Boxes& boxes) {
     Lanes distances{};
-    for (std::size_t lane = 0; lane < TriangleTree::kWidth; ++lane) {
+    for (std::size_t lane = 0; lane < TriangleBvh::kWidth; ++lane) {
       for (int k = 0; k < 3; ++k) {
         if (boxes.max[k][lane] < min[k] || boxes.min[k][lane] > max[k]) distances[lane] = kFar;
       }
@@ -84,8 +84,8 @@ void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3
   });
 }
 
-bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScalar length,
-                       const btVector3& towards, Hit& hit) const {
+bool SurfaceQueries::cast(const btVector3& from, const btVector3& direction, btScalar length,
+                          const btVector3& towards, Hit& hit) const {
   const SmoothNormals& normals = this->normals();
   SmoothNormals::Crossing nearest;
   nearest.distance = length;
@@ -107,8 +107,8 @@ bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScal
   return found;
 }
 
-bool SurfaceTree::castNear(std::size_t triangle, const btVector3& from, const btVector3& direction,
-                           btScalar length, Hit& hit) const {
+bool SurfaceQueries::castNear(std::size_t triangle, const btVector3& from, const btVector3& direction,
+                              btScalar length, Hit& hit) const {
   const SmoothNormals& normals = this->normals();
   SmoothNormals::Crossing crossing;
   if (!normals.crossNear(triangle, from, direction, crossing) || !(btFabs(crossing.distance) < length))
@@ -118,29 +118,29 @@ bool SurfaceTree::castNear(std::size_t triangle, const btVector3& from, const bt
   return true;
 }
 
-btScalar SurfaceTree::untilSharpEdge(std::size_t triangle, const btVector3& point,
-                                     const btVector3& towards) const {
+btScalar SurfaceQueries::untilSharpEdge(std::size_t triangle, const btVector3& point,
+                                        const btVector3& towards) const {
   return normals().untilSharpEdge(triangle, point, towards).distance;
 }
 
-bool SurfaceTree::sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
-                            SmoothNormals::SharpEdge& edge) const {
+bool SurfaceQueries::sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
+                               SmoothNormals::SharpEdge& edge) const {
   const SmoothNormals::Ending ending = normals().untilSharpEdge(triangle, point, towards);
   if (ending.found()) edge = normals().sharpEdge(ending);
   return ending.found();
 }
 
-bool SurfaceTree::nearest(const btVector3& point, btScalar reach, Nearest& result) const {
+bool SurfaceQueries::nearest(const btVector3& point, btScalar reach, Nearest& result) const {
   NearestTriangle search(normals(), point, reach);
   tree_.search(
-      search.farthest2(), [&](const TriangleTree::Boxes& boxes) { return search.distances2(boxes); },
+      search.farthest2(), [&](const TriangleBvh::Boxes& boxes) { return search.distances2(boxes); },
       [&](std::uint32_t t) { return search.test(t); });
   if (!search.found()) return false;
   result = {search.distance(), search.normal(), search.triangle(), search.beside()};
   return true;
 }
 
-const SmoothNormals& SurfaceTree::normals() const {
+const SmoothNormals& SurfaceQueries::normals() const {
   return normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
 }
 

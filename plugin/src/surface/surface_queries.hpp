@@ -16,9 +16,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// In the surface's frame. Refers to the surface: it must stay. Const members are safe to call from several
 /// threads at once.
-class SurfaceTree {
+class SurfaceQueries {
  public:
-  explicit SurfaceTree(const Surface& surface);
+  explicit SurfaceQueries(const Surface& surface);
 
   /// All triangles that meet a box, and some near it.
   void processTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const;
@@ -58,7 +58,7 @@ class SurfaceTree {
 
  private:
   const Surface& surface_;
-  TriangleTree tree_;
+  TriangleBvh tree_;
   Lazy<SmoothNormals> normals_;
 };
 

@@ -14,9 +14,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Walks from triangle to triangle. Refers to the surface: it must stay. Const members are safe to call from
 /// several threads at once.
-class VertexClimb {
+class VertexHillClimb {
  public:
-  explicit VertexClimb(const Surface& surface);
+  explicit VertexHillClimb(const Surface& surface);
 
   /// Appends the vertex that is furthest along `direction` (unit) among its neighbours, uphill from a
   /// triangle and no further than `reach` from `start`, and the other ends of edges that are level with it,

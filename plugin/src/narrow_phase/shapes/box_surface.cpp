@@ -42,7 +42,7 @@ class BoxSurface : public DistanceSurface {
 
 }  // namespace
 
-std::unique_ptr<OtherSurface> makeBoxSurface(const btCollisionShape& shape) {
+std::unique_ptr<ShapeSurface> makeBoxSurface(const btCollisionShape& shape) {
   return std::make_unique<BoxSurface>(static_cast<const btBoxShape&>(shape));
 }
 

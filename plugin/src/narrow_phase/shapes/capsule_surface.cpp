@@ -31,7 +31,7 @@ class CapsuleSurface : public DistanceSurface {
 
 }  // namespace
 
-std::unique_ptr<OtherSurface> makeCapsuleSurface(const btCollisionShape& shape) {
+std::unique_ptr<ShapeSurface> makeCapsuleSurface(const btCollisionShape& shape) {
   return std::make_unique<CapsuleSurface>(static_cast<const btCapsuleShape&>(shape));
 }
 

@@ -40,7 +40,7 @@ class ConvexSurface : public DistanceSurface {
 
 }  // namespace
 
-std::unique_ptr<OtherSurface> makeConvexSurface(const btCollisionShape& shape) {
+std::unique_ptr<ShapeSurface> makeConvexSurface(const btCollisionShape& shape) {
   return std::make_unique<ConvexSurface>(static_cast<const btConvexShape&>(shape));
 }
 

@@ -109,7 +109,7 @@ void Facets::setHull(const btPolyhedralConvexShape& shape) {
   margin_ = shape.localGetSupportingVertex(x).x() - furthest;
 }
 
-bool Facets::place(const btTransform& world, const btVector3& relative_to, EdgedSolid& solid) const {
+bool Facets::place(const btTransform& world, const btVector3& relative_to, SharpEdges& solid) const {
   if (!tree_) return false;
   solid.surface = tree_.get();
   solid.margin = margin_;
@@ -123,7 +123,7 @@ void Facets::set(const std::vector<btVector3>& points, Surface (*make)(const std
   if (points == points_) return;
   points_ = points;
   surface_ = make(points_);
-  tree_ = surface_.triangles.empty() ? nullptr : std::make_unique<SurfaceTree>(surface_);
+  tree_ = surface_.triangles.empty() ? nullptr : std::make_unique<SurfaceQueries>(surface_);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

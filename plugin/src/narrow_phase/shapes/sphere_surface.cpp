@@ -25,7 +25,7 @@ class SphereSurface : public DistanceSurface {
 
 }  // namespace
 
-std::unique_ptr<OtherSurface> makeSphereSurface(const btCollisionShape& shape) {
+std::unique_ptr<ShapeSurface> makeSphereSurface(const btCollisionShape& shape) {
   return std::make_unique<SphereSurface>(static_cast<const btSphereShape&>(shape));
 }
 
