@@ -10,6 +10,7 @@
 #include "innersphere/contact_options.hpp"
 #include "innersphere/packing_shape.hpp"
 #include "narrow_phase/contact_point.hpp"
+#include "narrow_phase/contact_settings.hpp"
 #include "narrow_phase/contact_transport.hpp"
 #include "narrow_phase/shapes/shape_surface.hpp"
 
