@@ -26,9 +26,11 @@ Placement PlacedPacking::placement() const {
   return p;
 }
 
-bool PlacedPacking::nearest(const btVector3& place, btScalar reach, SurfaceQueries::Nearest& nearest) const {
+bool PlacedPacking::nearest(const btVector3& place, btScalar max_distance,
+                            SurfaceQueries::Nearest& nearest) const {
   const btMatrix3x3& axes = world.getBasis();
-  if (!impl->surfaceQueries().nearest((place * axes) / scale(), reach / scale(), nearest)) return false;
+  if (!impl->surfaceQueries().nearest((place * axes) / scale(), max_distance / scale(), nearest))
+    return false;
   nearest.distance *= scale();
   nearest.normal = axes * nearest.normal;
   return true;

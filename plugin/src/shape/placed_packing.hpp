@@ -33,15 +33,15 @@ struct PlacedPacking {
     return radii == nullptr ? ownRadius(i) : btScalar(radii[i]) * scale();
   }
   /// How close to the other surface its centre must be to be reported.
-  btScalar reach(std::size_t i) const { return radiusOf(i) + margin + search_margin; }
+  btScalar searchRadius(std::size_t i) const { return radiusOf(i) + margin + search_margin; }
   /// No sphere reaches further beyond its own radius than this.
   btScalar largestExcess() const { return search_margin + margin + excess; }
 
   Placement placement() const;
 
   /// Of the solid's surface, without the margin: `place` relative to origin(), axes of the world, and the
-  /// normal of the result, too. False if the surface is further away than `reach` [m].
-  bool nearest(const btVector3& place, btScalar reach, SurfaceQueries::Nearest& nearest) const;
+  /// normal of the result, too. False if the surface is further away than `max_distance` [m].
+  bool nearest(const btVector3& place, btScalar max_distance, SurfaceQueries::Nearest& nearest) const;
 
   const PackingShape::Impl* impl;
   const Prefix* prefix;

@@ -14,13 +14,14 @@ bool SharpEdges::edgeTowards(std::size_t triangle, const btVector3& point, const
   return true;
 }
 
-bool SharpEdges::nearestFace(const btVector3& place, btScalar reach, SurfaceQueries::Nearest& nearest) const {
-  return surface->nearest(((place - origin) * axes) / scale, reach / scale, nearest);
+bool SharpEdges::nearestFace(const btVector3& place, btScalar max_distance,
+                             SurfaceQueries::Nearest& nearest) const {
+  return surface->nearest(((place - origin) * axes) / scale, max_distance / scale, nearest);
 }
 
-bool SharpEdges::isIn(const btVector3& place, btScalar reach) const {
+bool SharpEdges::isIn(const btVector3& place, btScalar max_distance) const {
   SurfaceQueries::Nearest nearest;
-  return nearestFace(place, reach, nearest) && (nearest.distance < 0) != inside_out;
+  return nearestFace(place, max_distance, nearest) && (nearest.distance < 0) != inside_out;
 }
 
 bool SharpEdges::nearestTriangle(const btVector3& place, std::size_t& triangle) const {

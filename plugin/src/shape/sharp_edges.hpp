@@ -32,10 +32,10 @@ struct SharpEdges {
   /// Its normal: unit, out of the solid unless that is inside out.
   btVector3 face(std::size_t triangle) const { return axes * surface->normals().face(triangle); }
   /// The face that is nearest to a place, in the frame and the lengths of the surface. False if none is
-  /// within `reach` [m].
-  bool nearestFace(const btVector3& place, btScalar reach, SurfaceQueries::Nearest& nearest) const;
-  /// Whether the faces enclose a place that is no further away from them than `reach` [m].
-  bool isIn(const btVector3& place, btScalar reach) const;
+  /// within `max_distance` [m].
+  bool nearestFace(const btVector3& place, btScalar max_distance, SurfaceQueries::Nearest& nearest) const;
+  /// Whether the faces enclose a place that is no further away from them than `max_distance` [m].
+  bool isIn(const btVector3& place, btScalar max_distance) const;
   /// The triangle that is nearest to a place. False if there is none.
   bool nearestTriangle(const btVector3& place, std::size_t& triangle) const;
   /// How far away from the faces a place is, on either side. False if there are none.

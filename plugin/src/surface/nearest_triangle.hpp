@@ -13,9 +13,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// Of the triangles that it is shown, in the surface's frame. Refers to them: they must stay.
 class NearestTriangle {
  public:
-  /// Triangles further away from `point` than `reach` do not count.
-  NearestTriangle(const SmoothNormals& triangles, const btVector3& point, btScalar reach)
-      : triangles_(triangles), point_(point), best2_(reach * reach) {}
+  /// Triangles further away from `point` than `max_distance` do not count.
+  NearestTriangle(const SmoothNormals& triangles, const btVector3& point, btScalar max_distance)
+      : triangles_(triangles), point_(point), best2_(max_distance * max_distance) {}
 
   /// Squares of distances from the point: of boxes, and that beyond which nothing is looked for.
   TriangleBvh::Lanes distances2(const TriangleBvh::Boxes& boxes) const;

@@ -130,8 +130,8 @@ bool SurfaceQueries::sharpEdge(std::size_t triangle, const btVector3& point, con
   return ending.found();
 }
 
-bool SurfaceQueries::nearest(const btVector3& point, btScalar reach, Nearest& result) const {
-  NearestTriangle search(normals(), point, reach);
+bool SurfaceQueries::nearest(const btVector3& point, btScalar max_distance, Nearest& result) const {
+  NearestTriangle search(normals(), point, max_distance);
   tree_.search(
       search.farthest2(), [&](const TriangleBvh::Boxes& boxes) { return search.distances2(boxes); },
       [&](std::uint32_t t) { return search.test(t); });

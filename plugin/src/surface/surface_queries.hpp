@@ -51,8 +51,8 @@ class SurfaceQueries {
     std::size_t triangle;
     bool beside;  ///< the nearest point is on an edge, which the triangle shares with another face
   };
-  /// False if the surface is further away from `point` than `reach`.
-  bool nearest(const btVector3& point, btScalar reach, Nearest& result) const;
+  /// False if the surface is further away from `point` than `max_distance`.
+  bool nearest(const btVector3& point, btScalar max_distance, Nearest& result) const;
 
   const SmoothNormals& normals() const;
 

@@ -28,14 +28,14 @@ VertexHillClimb::VertexHillClimb(const Surface& surface)
 }
 
 bool VertexHillClimb::from(std::size_t triangle, const btVector3& direction, const btVector3& start,
-                           btScalar reach, std::vector<std::uint32_t>& vertices) const {
+                           btScalar max_distance, std::vector<std::uint32_t>& vertices) const {
   const auto at = [&](std::uint32_t v) { return toBullet(surface_.vertices[v]); };
   constexpr std::uint32_t kNone = ~std::uint32_t(0);
   std::uint32_t top = kNone;
   btScalar highest = -BT_LARGE_FLOAT;
   const auto climb = [&](std::uint32_t v) {
     const btScalar height = at(v).dot(direction);
-    if (!(height > highest) || !(at(v).distance2(start) < reach * reach)) return;
+    if (!(height > highest) || !(at(v).distance2(start) < max_distance * max_distance)) return;
     top = v;
     highest = height;
   };

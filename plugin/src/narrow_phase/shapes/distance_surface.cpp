@@ -19,7 +19,7 @@ void DistanceSurface::findNearSpheres(const PlacedPacking& body, const btTransfo
   const auto test = [&](std::size_t i) {
     NearSphere found;
     found.sphere = static_cast<std::uint32_t>(i);
-    if (updateNearSphere(body, world, to_shape, found) && found.distance < body.reach(i))
+    if (updateNearSphere(body, world, to_shape, found) && found.distance < body.searchRadius(i))
       near_spheres.push_back(found);
   };
   body.sphereBvh().forEach(near, test);

@@ -1,6 +1,7 @@
 // Where a face of a packing lies on an edge or a corner of another shape.
 #pragma once
 
+#include "narrow_phase/contact_tolerances.hpp"
 #include "narrow_phase/shapes/shape_surface.hpp"
 
 namespace innersphere {
@@ -15,12 +16,11 @@ bool faceOver(const PlacedPacking& body, const NearSphere& near_sphere, btVector
 /// further out in a direction than a place of its surface; relative to the body's origin, axes of the world.
 template <typename IsOutermost>
 void layFaceOn(const PlacedPacking& body, NearSphere& near_sphere, const IsOutermost& isOutermost) {
-  constexpr btScalar kTolerance = btScalar(1e-3);  // of the sphere's reach
   btVector3 face;
   if (!faceOver(body, near_sphere, face)) return;
   const btVector3 to_edge = near_sphere.normal * -near_sphere.distance;
   const btVector3 edge = body.centreOf(near_sphere.sphere) + to_edge;
-  if (!isOutermost(edge, -face, kTolerance * body.reach(near_sphere.sphere))) return;
+  if (!isOutermost(edge, -face, kOutermostTolerance * body.searchRadius(near_sphere.sphere))) return;
   near_sphere.normal = -face;
   near_sphere.distance = face.dot(to_edge);
   near_sphere.aside = to_edge - face * near_sphere.distance;

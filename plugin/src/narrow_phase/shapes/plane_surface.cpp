@@ -30,7 +30,7 @@ class PlaneSurface : public DistanceSurface {
     };
     const auto test = [&](std::size_t i) {
       const btScalar distance = across.dot(centre(body.shape().packing().spheres[i])) + offset;
-      if (!(distance < body.reach(i))) return;
+      if (!(distance < body.searchRadius(i))) return;
       near_spheres.push_back({static_cast<std::uint32_t>(i), distance, world.getBasis() * normal});
     };
     body.sphereBvh().forEach(near, test);

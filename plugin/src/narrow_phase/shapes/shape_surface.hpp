@@ -30,26 +30,26 @@ class ShapeSurface {
  public:
   virtual ~ShapeSurface() = default;
 
-  /// Appends the spheres of `body` whose centre is closer than their reach (body.reach) to this shape placed
-  /// at `world`.
+  /// Appends the spheres of `body` whose centre is closer than their search radius (body.searchRadius) to
+  /// this shape placed at `world`.
   virtual void findNearSpheres(const PlacedPacking& body, const btTransform& world,
                                std::vector<NearSphere>& near_spheres) = 0;
 
   /// Whether the shape is as it was when it was asked last. False if that cannot be told.
   virtual bool isAsBefore() { return false; }
-  /// Renews near spheres, of the same spheres, for where the bodies are now; they may be beyond reach by
+  /// Renews the distances of near spheres for where the bodies are now; they may be further away by
   /// then. False if that cannot be done.
   virtual bool updateNearSpheres(const PlacedPacking&, const btTransform&, std::vector<NearSphere>&) {
     return false;
   }
 
-  /// How far away from it a place outside is, relative to body.origin(), near the last near spheres [m].
+  /// How far away from it a place outside is, relative to body.origin(), near the spheres found last [m].
   /// False if that is not known.
   virtual bool distanceOf(const PlacedPacking&, const btTransform&, const btVector3&, btScalar&) {
     return false;
   }
 
-  /// Its flat faces, those near the last near spheres at least, relative to body.origin(). False if it has
+  /// Its flat faces, those near the spheres found last at least, relative to body.origin(). False if it has
   /// none.
   virtual bool facets(const PlacedPacking&, const btTransform&, SharpEdges&) { return false; }
 };

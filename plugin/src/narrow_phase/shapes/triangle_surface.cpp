@@ -15,15 +15,13 @@
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 #include <LinearMath/btAabbUtil2.h>
 
+#include "narrow_phase/contact_tolerances.hpp"
 #include "narrow_phase/shapes/distance_surface.hpp"
 #include "narrow_phase/shapes/face_on_edge.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
-
-/// Directions of contact of one sphere closer than this are one contact.
-constexpr btScalar kSameDirection = btScalar(0.866);  // cos 30 degrees
 
 /// Nearest point of one triangle to the centre of one sphere, lengths in the packing's frame.
 struct TrianglePoint {
@@ -73,18 +71,18 @@ class Collector : public btTriangleCallback {
     solver_.closestPtPointTriangle(c, v[0], v[1], v[2], result);
     const btVector3 offset = c - result.m_closestPointOnSimplex;
     const btScalar distance = offset.length();
-    const btScalar reach = body_.reach(i) / body_.scale();
-    if (!(distance < reach)) return;
+    const btScalar search_radius = body_.searchRadius(i) / body_.scale();
+    if (!(distance < search_radius)) return;
     const btUsageBitfield& used = result.m_usedVertices;
     const bool interior = used.usedVertexA && used.usedVertexB && used.usedVertexC;
     const auto order = static_cast<std::uint32_t>(points_.size());
     TrianglePoint point{
         static_cast<std::uint32_t>(i),  order, interior, distance, normal.dot(c - v[0]), normal,
         result.m_closestPointOnSimplex, v};
-    if (distance > SIMD_EPSILON * reach) {
+    if (distance > SIMD_EPSILON * search_radius) {
       point.direction = offset / distance;
     } else {
-      point.height = SIMD_EPSILON * reach;  // a centre on the surface counts as in front of it
+      point.height = SIMD_EPSILON * search_radius;  // a centre on the surface counts as in front of it
     }
     points_.push_back(point);
   }
@@ -177,14 +175,14 @@ class TriangleSurface : public ShapeSurface {
   void setNear(const PlacedPacking& body, const btTransform& world,
                const std::vector<TrianglePoint>& points) {
     btVector3 min = points[0].point, max = min;
-    btScalar reach = 0;
+    btScalar search_radius = 0;
     for (const TrianglePoint& c : points) {
       min.setMin(c.point);
       max.setMax(c.point);
-      reach = btMax(reach, body.reach(c.sphere));
+      search_radius = btMax(search_radius, body.searchRadius(c.sphere));
     }
-    btTransformAabb(min * body.scale(), max * body.scale(), reach, world.inverseTimes(body.world), near_min_,
-                    near_max_);
+    btTransformAabb(min * body.scale(), max * body.scale(), search_radius, world.inverseTimes(body.world),
+                    near_min_, near_max_);
     near_min_[3] = near_max_[3] = 0;  // == compares it
   }
 
@@ -205,10 +203,11 @@ class TriangleSurface : public ShapeSurface {
                std::vector<NearSphere>& near_spheres) const {
     const std::size_t start = near_spheres.size();
     const auto known = [&](const btVector3& normal) {
-      return std::any_of(near_spheres.begin() + static_cast<std::ptrdiff_t>(start), near_spheres.end(),
-                         [&](const NearSphere& t) { return btFabs(t.normal.dot(normal)) > kSameDirection; });
+      return std::any_of(
+          near_spheres.begin() + static_cast<std::ptrdiff_t>(start), near_spheres.end(),
+          [&](const NearSphere& t) { return btFabs(t.normal.dot(normal)) > kSameDirectionCosine; });
     };
-    const btScalar same = btScalar(1e-4) * body.prefix->median_radius;
+    const btScalar same = kSamePlace * body.prefix->median_radius;
     for (const TrianglePoint* c = first; c != last; ++c) {
       const btVector3 direction = body.world.getBasis() * c->direction;
       if (known(direction) || (!c->interior && isNearerBeside(c, first, same))) continue;
