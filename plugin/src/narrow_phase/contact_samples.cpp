@@ -12,9 +12,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// Samples of a patch from which on several threads probe them.
-constexpr std::size_t kMany = 8;
+constexpr std::size_t kManySamples = 8;
 /// What there is room for from the start: few patches have more samples, and need memory again.
-constexpr std::size_t kUsualSamples = 128;
+constexpr std::size_t kUsualPatchSamples = 128;
 
 /// One patch of the samples.
 struct PatchSamples {
@@ -47,7 +47,7 @@ void probeAll(const PackingProbe& probe, const PatchSamples& of, std::vector<Sam
     tried[i] = {sample, found};
   };
   // Bodies that are linked have many; other pairs are done long before them.
-  if (tried.size() >= kMany) {
+  if (tried.size() >= kManySamples) {
     inParallel(tried.size(), probeOne);
   } else {
     for (std::size_t i = 0; i < tried.size(); ++i) probeOne(i);
@@ -222,10 +222,10 @@ class PatchContactPoints {
 }  // namespace
 
 SampleScratch::SampleScratch() {
-  tried.reserve(kUsualSamples);
-  probed.reserve(kUsualSamples);
-  places.reserve(kUsualSamples);
-  sideways.reserve(kUsualSamples);
+  tried.reserve(kUsualPatchSamples);
+  probed.reserve(kUsualPatchSamples);
+  places.reserve(kUsualPatchSamples);
+  sideways.reserve(kUsualPatchSamples);
 }
 
 void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation, Samples& samples,

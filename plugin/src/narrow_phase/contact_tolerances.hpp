@@ -124,6 +124,12 @@ constexpr std::size_t kMaxManifolds = 8;
 /// In depths: how far around a crossing edges have sunk in.
 constexpr btScalar kSunkAround = 3;
 
+// --- Patches by volume -------------------------------------------------------------------------------------
+
+/// Determinant of the spread of a patch over the square of its trace: a thinner patch shows no slope across
+/// it.
+constexpr btScalar kThinPatch = btScalar(1e-4);
+
 // --- Shapes that are no packings -------------------------------------------------------------------------
 
 /// In search radii: what a place may lack to be the outermost of a shape, for rounding.

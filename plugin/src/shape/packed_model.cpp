@@ -15,7 +15,7 @@ btScalar largestInset(const Packing& packing, std::size_t count) {
   const Surface& surface = packing.surface;
   const std::size_t stride = surface.triangles.size() / kPlaces + 1;
   btScalar inset = 0;
-  const auto look = [&](const btVector3& p) {
+  const auto visit = [&](const btVector3& p) {
     btScalar gap = BT_LARGE_FLOAT;
     for (std::size_t i = 0; i < count; ++i) {
       const Sphere& s = packing.spheres[i];
@@ -26,8 +26,8 @@ btScalar largestInset(const Packing& packing, std::size_t count) {
   for (std::size_t t = 0; t < surface.triangles.size(); t += stride) {
     btVector3 corners[3];
     for (int k = 0; k < 3; ++k) corners[k] = toBullet(surface.vertices[surface.triangles[t][k]]);
-    look(corners[0]);
-    look((corners[0] + corners[1] + corners[2]) / 3);
+    visit(corners[0]);
+    visit((corners[0] + corners[1] + corners[2]) / 3);
   }
   return inset;
 }

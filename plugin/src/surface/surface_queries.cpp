@@ -6,9 +6,9 @@
 #include <limits>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
 #include "common/bullet_vectors.hpp"
-#include "surface/nearest_triangle.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -16,9 +16,13 @@ namespace {
 
 using Lanes = TriangleBvh::Lanes;
 constexpr float kFar = std::numeric_limits<float>::infinity();
-/// Rays that are flatter to a triangle meet it itself, not the curved surface that it stands for.
+/// Ratio: hits whose distances differ by less lie on an edge that both triangles share.
 constexpr btScalar kShared = btScalar(1e-5);
+/// Cosine, 84 degrees: rays that are flatter to a triangle meet it itself, not the curved surface that it stands
+/// for.
 constexpr btScalar kGrazing = btScalar(0.1);
+/// Cosine, 15 degrees: a nearest point that is seen from further aside lies on an edge.
+constexpr btScalar kOver = btScalar(0.966);
 
 /// How far along a ray its parts inside of boxes begin.
 class EntersAt {
@@ -59,6 +63,95 @@ void complete(const SmoothNormals& normals, const SmoothNormals::Crossing& cross
   const btScalar further = hit.distance + place.bulge / facing;
   if (place.bulge > 0 && normals.isPastSharpEdge(hit.triangle, from + direction * further)) return;
   hit.distance = further;
+}
+
+/// The nearest of the triangles that it is shown to a point.
+class NearestTriangle {
+ public:
+  /// Triangles further away from `point` than `max_distance` do not count.
+  NearestTriangle(const SmoothNormals& triangles, const btVector3& point, btScalar max_distance)
+      : triangles_(triangles), point_(point), best2_(max_distance * max_distance) {}
+
+  /// Squares of distances from the point: of boxes, and that beyond which nothing is looked for.
+  Lanes distances2(const TriangleBvh::Boxes& boxes) const;
+  btScalar farthest2() const { return best2_ * (1 + kSame); }
+  /// Shows it a triangle; farthest2() thereafter.
+  btScalar test(std::size_t triangle);
+
+  bool found() const { return found_; }
+  /// Only if found(): of the point from the surface [m], negative inside the solid.
+  btScalar distance() const;
+  /// Unit, out of the solid, along the line from the nearest point.
+  btVector3 normal() const;
+  /// Of those that share the nearest point, the one seen from the steepest angle.
+  std::size_t triangle() const { return triangle_; }
+  /// It is seen from 15 degrees or more.
+  bool beside() const;
+
+ private:
+  /// Triangles whose nearest points differ by less than this fraction of the distance share them.
+  static constexpr btScalar kSame = btScalar(1e-5);
+
+  const SmoothNormals& triangles_;
+  const btVector3 point_;
+  btScalar best2_;
+  bool found_ = false;
+  btScalar height_ = 0;
+  btVector3 face_{0, 0, 0};
+  std::size_t triangle_ = 0;
+  btVector3 offset_{0, 0, 0};
+  btVoronoiSimplexSolver solver_;
+};
+
+Lanes NearestTriangle::distances2(const TriangleBvh::Boxes& boxes) const {
+  Lanes sum{};
+  for (int k = 0; k < 3; ++k) {
+    const float at = static_cast<float>(point_[k]);
+    const Lanes outside = TriangleBvh::greater(boxes.min[k] - at, at - boxes.max[k]);
+    const Lanes gap = TriangleBvh::greater(outside, Lanes{});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+btScalar NearestTriangle::test(std::size_t t) {
+  const btVector3& face = triangles_.face(t);
+  if (face.isZero()) return farthest2();
+  const btVector3* const corners = triangles_.corners(t);
+  btSubSimplexClosestResult closest;
+  closest.reset();
+  solver_.closestPtPointTriangle(point_, corners[0], corners[1], corners[2], closest);
+  const btVector3 offset = point_ - closest.m_closestPointOnSimplex;
+  const btScalar length2 = offset.length2();
+  if (length2 > farthest2()) return farthest2();
+  // Of those that share the nearest point, the one seen from the steepest angle tells inside from outside.
+  const btScalar height = offset.dot(face);
+  const bool shared = found_ && length2 >= best2_ * (1 - kSame);
+  const bool steeper =
+      btFabs(height) > btFabs(height_) || (btFabs(height) == btFabs(height_) && t < triangle_);
+  if (!shared || steeper) {
+    height_ = height;
+    face_ = face;
+    triangle_ = t;
+  }
+  if (length2 < best2_ || !found_) {
+    best2_ = length2;
+    offset_ = offset;
+  }
+  found_ = true;
+  return farthest2();
+}
+
+btScalar NearestTriangle::distance() const {
+  return height_ < 0 ? -btSqrt(best2_) : btSqrt(best2_);
+}
+
+btVector3 NearestTriangle::normal() const {
+  return btSqrt(best2_) > SIMD_EPSILON ? offset_ / distance() : face_;
+}
+
+bool NearestTriangle::beside() const {
+  return btFabs(height_) < kOver * btSqrt(best2_);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ bool DistanceSurface::updateNearSpheres(const PlacedPacking& body, const btTrans
   });
 }
 
-/// Of the sphere that `touch` names.
+/// Of the sphere that `near_sphere` names.
 bool DistanceSurface::updateNearSphere(const PlacedPacking& body, const btTransform& world,
                                        const btTransform& to_shape, NearSphere& near_sphere) const {
   Nearest found;

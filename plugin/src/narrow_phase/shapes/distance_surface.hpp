@@ -48,7 +48,7 @@ class DistanceSurface : public ShapeSurface {
   Facets facets_;
 };
 
-// One maker a kind; each in its own file.
+// One maker for each kind.
 std::unique_ptr<ShapeSurface> makePlaneSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeSphereSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeBoxSurface(const btCollisionShape& shape);

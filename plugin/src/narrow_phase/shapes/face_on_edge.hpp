@@ -7,11 +7,11 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// The face of `body` that lies on the place where `touch` is nearest to the other surface: its unit normal,
+/// The face of `body` that lies on the place where `near_sphere` is nearest to the other surface: its unit normal,
 /// out of the body. False if there is none near.
 bool faceOver(const PlacedPacking& body, const NearSphere& near_sphere, btVector3& normal);
 
-/// The sphere of a touch on an edge sees it askew, but the edge bears the face that lies on it, along the
+/// A sphere sees an edge askew, but the edge bears the face that lies on it, along the
 /// normal of the face. isOutermost(place, direction, tolerance) tells whether the other shape has nothing
 /// further out in a direction than a place of its surface; relative to the body's origin, axes of the world.
 template <typename IsOutermost>
