@@ -50,7 +50,7 @@ void drawNormals(const btPersistentManifold& manifold, btScalar time_step, btIDe
 
 void drawSpheres(const btCollisionShape& shape, const btTransform& world, btIDebugDraw& drawer) {
   if (const PackingShape* packing = PackingShape::from(&shape)) {
-    const PackingBody body(*packing, world, Estimator::raw, 0);
+    const PlacedPacking body(*packing, world, Estimator::raw, 0);
     for (std::size_t i = 0; i < body.count(); ++i) {
       drawer.drawSphere(body.ownRadius(i),
                         btTransform(body.world.getBasis(), body.origin() + body.centreOf(i)), kSphereColour);

@@ -2,48 +2,40 @@
 
 #include <optional>
 
+#include "narrow_phase/contact_tolerances.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Surfaces whose normals differ by less than 20 degrees oppose each other.
-constexpr btScalar kOpposed = btScalar(0.94);
-/// Else an edge or a corner lies on a face; if both bend, on one within 30 degrees of the direction of the
-/// overlap.
-constexpr btScalar kFace = btScalar(0.866);
-/// A face that ends this much sooner than the other has its edge there.
-constexpr btScalar kEdge = btScalar(0.25);
-/// Normals that deviate less than this are those of one face [rad].
-constexpr btScalar kFlat = btScalar(1e-3);
-
 /// Root mean square of the deviation of normals from their mean [rad].
-btScalar bend(const std::vector<Measured>& measured, btVector3 Gap::*normal) {
+btScalar bend(const std::vector<ProbedSample>& samples, btVector3 OpposedPoints::*normal) {
   btVector3 sum(0, 0, 0);
   btScalar squares = 0;
-  const btScalar count = btMax(btScalar(measured.size()), btScalar(1));
-  for (const Measured& m : measured) sum += m.gap.*normal;
-  for (const Measured& m : measured) squares += (m.gap.*normal).distance2(sum / count);
+  const btScalar count = btMax(btScalar(samples.size()), btScalar(1));
+  for (const ProbedSample& s : samples) sum += s.points.*normal;
+  for (const ProbedSample& s : samples) squares += (s.points.*normal).distance2(sum / count);
   return btSqrt(squares / count);
 }
 
 /// Where the surfaces oppose each other. `face_a`: weight of A's normal if both are flat.
-btVector3 mean(const Gap& gap, btScalar face_a) {
-  const btScalar a = btFabs(gap.curvature_a), b = btFabs(gap.curvature_b);
+btVector3 mean(const OpposedPoints& points, btScalar face_a) {
+  const btScalar a = btFabs(points.curvature_a), b = btFabs(points.curvature_b);
   const btScalar weight_a = a + b > 0 ? b / (a + b) : face_a;
-  return (gap.normal_a * weight_a + gap.normal_b * (1 - weight_a)).normalized();
+  return (points.normal_a * weight_a + points.normal_b * (1 - weight_a)).normalized();
 }
 
 /// The deepest contact of two faces that are tilted against each other; null if there is none.
-const Measured* deepestTilted(const std::vector<Measured>& measured) {
-  const Measured* deepest = nullptr;
+const ProbedSample* deepestTilted(const std::vector<ProbedSample>& samples) {
+  const ProbedSample* deepest = nullptr;
   btScalar most = 0;
-  for (const Measured& m : measured) {
-    const Gap& gap = m.gap;
-    if (!opposed(gap) || gap.curvature_a != 0 || gap.curvature_b != 0) continue;
-    if (gap.normal_a.distance(gap.normal_b) < kFlat) continue;
-    const btScalar depth = (gap.on_a - gap.on_b).dot(m.direction);
+  for (const ProbedSample& s : samples) {
+    const OpposedPoints& points = s.points;
+    if (!opposed(points) || !points.areFlat()) continue;
+    if (points.normal_a.distance(points.normal_b) < kOneNormal) continue;
+    const btScalar depth = points.depthAlong(s.direction);
     if (deepest == nullptr || depth > most) {
-      deepest = &m;
+      deepest = &s;
       most = depth;
     }
   }
@@ -52,47 +44,49 @@ const Measured* deepestTilted(const std::vector<Measured>& measured) {
 
 /// Of two faces that meet at an angle, whether A's bears the other one, which ends in an edge where the
 /// contact would get deeper. Nothing if two edges cross.
-std::optional<bool> isFaceOfA(const Gap& gap, const Gauge& gauge) {
-  const Gauge::Reach reach = gauge.reach(gap, (gap.normal_b - gap.normal_a).normalized());
-  if (reach.a < kEdge * reach.b) return false;
-  if (reach.b < kEdge * reach.a) return true;
+std::optional<bool> isFaceOfA(const OpposedPoints& points, const FaceExtents* extents) {
+  if (extents == nullptr) return false;
+  const btVector3 deeper = (points.normal_b - points.normal_a).normalized();
+  const FaceExtents::EdgeDistances distances = extents->edgeDistances(points, deeper);
+  if (distances.a < kEndsSooner * distances.b) return false;
+  if (distances.b < kEndsSooner * distances.a) return true;
   return std::nullopt;
 }
 
 }  // namespace
 
-ContactNormal::ContactNormal(const std::vector<Measured>& measured, const Gauge& gauge)
-    : gauge_(&gauge),
-      flat_a_(bend(measured, &Gap::normal_a) < kFlat),
-      flat_b_(bend(measured, &Gap::normal_b) < kFlat) {
+ContactNormal::ContactNormal(const std::vector<ProbedSample>& samples, const FaceExtents* extents)
+    : extents_(extents),
+      flat_a_(bend(samples, &OpposedPoints::normal_a) < kOneNormal),
+      flat_b_(bend(samples, &OpposedPoints::normal_b) < kOneNormal) {
   if (flat_a_ != flat_b_) {
     face_a_ = flat_a_ ? btScalar(1) : btScalar(0);
-  } else if (const Measured* m = deepestTilted(measured)) {
-    if (const std::optional<bool> a = isFaceOfA(m->gap, gauge)) face_a_ = *a ? btScalar(1) : btScalar(0);
+  } else if (const ProbedSample* s = deepestTilted(samples)) {
+    if (const std::optional<bool> a = isFaceOfA(s->points, extents)) face_a_ = *a ? btScalar(1) : btScalar(0);
   }
 }
 
-btVector3 ContactNormal::at(const Measured& m) const {
-  const btVector3 &a = m.gap.normal_a, &b = m.gap.normal_b;
-  if (opposed(m.gap)) return mean(m.gap, face_a_);
+btVector3 ContactNormal::at(const ProbedSample& sample) const {
+  const btVector3 &a = sample.points.normal_a, &b = sample.points.normal_b;
+  if (opposed(sample.points)) return mean(sample.points, face_a_);
   const bool one_is_flat = flat_a_ != flat_b_;
-  if (one_is_flat && gauge_->exactB()) return flat_a_ ? a : b;
-  if (const std::optional<bool> on_a = isFaceOfA(m.gap, *gauge_)) return *on_a ? a : b;
+  if (one_is_flat && extents_ == nullptr) return flat_a_ ? a : b;
+  if (const std::optional<bool> on_a = isFaceOfA(sample.points, extents_)) return *on_a ? a : b;
   if (one_is_flat) return flat_a_ ? a : b;
-  const btVector3& nearest = a.dot(m.direction) > b.dot(m.direction) ? a : b;
-  const bool edges = !flat_a_ && nearest.dot(m.direction) < kFace;
-  return edges ? m.direction : nearest;
+  const btVector3& nearest = a.dot(sample.direction) > b.dot(sample.direction) ? a : b;
+  const bool edges = !flat_a_ && nearest.dot(sample.direction) < kBearingFaceCosine;
+  return edges ? sample.direction : nearest;
 }
 
-bool opposed(const Gap& gap) {
-  return gap.normal_a.dot(gap.normal_b) > kOpposed;
+bool opposed(const OpposedPoints& points) {
+  return points.normal_a.dot(points.normal_b) > kOpposedCosine;
 }
 
-btVector3 normalAlone(const Gap& gap, const btVector3& direction) {
-  if (opposed(gap)) return mean(gap, btScalar(0.5));
+btVector3 normalAlone(const OpposedPoints& points, const btVector3& direction) {
+  if (opposed(points)) return mean(points, btScalar(0.5));
   const btVector3& nearest =
-      gap.normal_a.dot(direction) > gap.normal_b.dot(direction) ? gap.normal_a : gap.normal_b;
-  return nearest.dot(direction) < kFace ? direction : nearest;
+      points.normal_a.dot(direction) > points.normal_b.dot(direction) ? points.normal_a : points.normal_b;
+  return nearest.dot(direction) < kBearingFaceCosine ? direction : nearest;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

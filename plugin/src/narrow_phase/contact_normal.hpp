@@ -1,4 +1,4 @@
-// The direction of contact between two measured surfaces.
+// The direction of contact between two surfaces that were probed.
 #pragma once
 
 #include <vector>
@@ -8,32 +8,38 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A contact of a sphere, measured on the surfaces.
-struct Measured {
-  Gap gap;
-  btVector3 direction{0, 0, 0};  ///< of the line, unit, from A to B
-  std::size_t index = 0;         ///< of the contact
-  std::uint64_t id = 0;          ///< of the sphere
-  bool starts_climb = false;     ///< to the top of a hill, see climb
+/// The surfaces lie on each other: their normals differ by less than 20 degrees.
+bool opposed(const OpposedPoints& points);
+
+/// A first estimate from one sample alone: where a line across the contact should point.
+btVector3 normalAlone(const OpposedPoints& points, const btVector3& direction);
+
+/// Tells where faces end.
+class FaceExtents {
+ public:
+  virtual ~FaceExtents() = default;
+  struct EdgeDistances {
+    btScalar a;
+    btScalar b;
+  };
+  /// How far the faces at opposed points go on in direction `towards` (unit) until they end in a sharp edge
+  /// [m]. BT_LARGE_FLOAT where no edge is near.
+  virtual EdgeDistances edgeDistances(const OpposedPoints& points, const btVector3& towards) const = 0;
 };
 
-/// The surfaces lie on each other: their normals differ by less than 20 degrees.
-bool opposed(const Gap& gap);
-
-/// A first estimate from one measurement alone: where a line across the contact should point.
-btVector3 normalAlone(const Gap& gap, const btVector3& direction);
-
-/// The direction of contact at each of the measurements of a patch. Beside the deepest point both normals
-/// lean away from it, each in proportion to its curvature, so the flatter surface counts for more; a flat one
+/// The direction of contact at each of the samples of a patch. Beside the deepest point both normals lean
+/// away from it, each in proportion to its curvature, so the flatter surface counts for more; a flat one
 /// counts alone. Of two faces that meet at an angle, that one counts which the other one's edge lies on.
 class ContactNormal {
  public:
-  ContactNormal(const std::vector<Measured>& measured, const Gauge& gauge);
+  /// `extents` is null where nothing is known of B but its distance: its faces are then taken as endless.
+  ContactNormal(const std::vector<ProbedSample>& samples, const FaceExtents* extents);
 
-  btVector3 at(const Measured& measured) const;
+  /// Unit, from A to B.
+  btVector3 at(const ProbedSample& sample) const;
 
  private:
-  const Gauge* gauge_;
+  const FaceExtents* extents_;
   bool flat_a_;  ///< all of the patch is one face of A
   bool flat_b_;
   btScalar face_a_ = btScalar(0.5);  ///< weight of A's normal where two faces meet

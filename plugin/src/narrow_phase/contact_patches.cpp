@@ -16,8 +16,40 @@ namespace {
 /// Keeps quotients of zeros finite, at any scale.
 constexpr btScalar kTiny = btScalar(1e-30);
 /// What there is room for from the start: few pairs have more, and need memory again.
-constexpr std::size_t kUsualCandidates = 96;
+constexpr std::size_t kUsualSamples = 96;
 constexpr std::size_t kUsualPatches = 16;
+
+/// The contacts of each patch, as moments and indices.
+struct SortedContacts {
+  SortedContacts() : members(kUsualPatches) {
+    patches.reserve(kUsualPatches);
+    moments.reserve(kUsualPatches);
+    for (std::vector<std::size_t>& m : members) m.reserve(kUsualSamples);
+  }
+  std::vector<Patch> patches;
+  std::vector<std::vector<std::size_t>> members;
+  std::vector<PatchMoments> moments;
+};
+
+/// All the memory that the geometry of one pair works in.
+struct Scratch {
+  Scratch() { found.reserve(2 * kUsualSamples); }
+  SortedContacts sorted;
+  std::vector<SphereContact> aimed;
+  std::vector<std::size_t> indices;
+  std::vector<std::uint64_t> old_ids;
+  SelectionScratch selection;
+  SampleScratch sampling;
+  std::vector<WeightedPoint> found;
+  ReductionScratch reduction;
+};
+
+/// Each thread has its own. No two pairs use it at once: while a thread waits for others it takes on no work
+/// but theirs, see inParallel.
+Scratch& scratchOfThread() {
+  static thread_local Scratch scratch;
+  return scratch;
+}
 
 /// The patch whose direction and place a contact fits best.
 std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& patches,
@@ -40,20 +72,8 @@ std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& pa
   return best;
 }
 
-/// The contacts of each patch, as moments and indices. Valid until the next call in the same thread.
-struct Sorted {
-  Sorted() : members(kUsualPatches) {
-    patches.reserve(kUsualPatches);
-    moments.reserve(kUsualPatches);
-    for (std::vector<std::size_t>& m : members) m.reserve(kUsualCandidates);
-  }
-  std::vector<Patch> patches;
-  std::vector<std::vector<std::size_t>> members;
-  std::vector<PatchMoments> moments;
-};
-
-const Sorted& sortIntoPatches(const std::vector<SphereContact>& contacts, const btMatrix3x3& reference) {
-  static thread_local Sorted sorted;
+void sortIntoPatches(const std::vector<SphereContact>& contacts, const btMatrix3x3& reference,
+                     SortedContacts& sorted) {
   const PatchOptions options;
   buildPatches(contacts.data(), contacts.size(), options, sorted.patches);
   const std::size_t count = sorted.patches.size();
@@ -66,22 +86,20 @@ const Sorted& sortIntoPatches(const std::vector<SphereContact>& contacts, const 
   sorted.moments.clear();
   for (std::size_t p = 0; p < count; ++p)
     sorted.moments.push_back(patchMoments(contacts, sorted.members[p], reference));
-  return sorted;
 }
 
 /// Where the enlarged spheres of one solid are so large that those of the other vanish in them, their overlap
 /// has no direction. The way to the nearest surface takes its place.
-const std::vector<SphereContact>& aimed(const std::vector<SphereContact>& contacts, const Gauge& gauge) {
-  static thread_local std::vector<SphereContact> result;
-  result = contacts;
-  for (std::size_t i = 0; i < result.size(); ++i) {
+void aimAtSurface(const std::vector<SphereContact>& contacts, const SurfaceProbe& probe,
+                  std::vector<SphereContact>& aimed) {
+  aimed = contacts;
+  for (std::size_t i = 0; i < aimed.size(); ++i) {
     btVector3 direction(0, 0, 0);
-    Gap gap;
-    gauge.nearest(i, direction, gap);
-    result[i].area =
+    OpposedPoints points;
+    probe.nearest(i, direction, points);
+    aimed[i].area =
         toFloats(direction * btScalar(std::cbrt(contacts[i].volume) * std::cbrt(contacts[i].volume)));
   }
-  return result;
 }
 
 void collectIds(const std::vector<ContactPatch>& patches, std::vector<std::uint64_t>& ids) {
@@ -89,6 +107,54 @@ void collectIds(const std::vector<ContactPatch>& patches, std::vector<std::uint6
   for (const ContactPatch& patch : patches) {
     for (int i = 0; i < patch.count; ++i) ids.push_back(patch.points[i].id);
   }
+}
+
+void clear(Samples& samples) {
+  samples.indices.clear();
+  samples.indices.reserve(kUsualSamples);
+  samples.lines.clear();
+  samples.lines.reserve(kUsualSamples);
+  samples.patches.clear();
+  samples.patches.reserve(kUsualPatches);
+}
+
+/// filter(indices) drops contacts of a patch that are not worth probing.
+template <typename Probe, typename Filter>
+void selectFiltered(const std::vector<SphereContact>& contacts, const Probe& probe,
+                    const btMatrix3x3& reference, const std::vector<ContactPatch>& patches,
+                    const Filter& filter, Samples& samples) {
+  Scratch& scratch = scratchOfThread();
+  collectIds(patches, scratch.old_ids);
+  clear(samples);
+  sortIntoPatches(contacts, reference, scratch.sorted);
+  if (scratch.sorted.patches.empty() && !contacts.empty()) {
+    aimAtSurface(contacts, probe, scratch.aimed);
+    sortIntoPatches(scratch.aimed, reference, scratch.sorted);
+  }
+  for (std::size_t p = 0; p < scratch.sorted.moments.size(); ++p) {
+    const PatchMoments& moments = scratch.sorted.moments[p];
+    if (!(moments.area > 0)) continue;
+    scratch.indices = scratch.sorted.members[p];
+    filter(scratch.indices);
+    appendSamples({contacts, scratch.indices, moments, scratch.old_ids, probe}, scratch.selection, samples);
+  }
+}
+
+template <typename Probe>
+bool refine(Samples& samples, const Probe& probe, const ContactSettings& settings,
+            std::vector<ContactPatch>& patches) {
+  Scratch& scratch = scratchOfThread();
+  std::vector<WeightedPoint>& found = scratch.found;
+  collectIds(patches, scratch.old_ids);
+  found.clear();
+  const bool first_time = samples.lines.empty();
+  for (std::size_t p = 0; p < samples.patches.size(); ++p)
+    findContactPoints(probe, p, settings.separation, samples, scratch.sampling, found);
+  if (first_time) dropUnprobed(samples);
+  keepLeastWaysOut(settings.spacing, scratch.reduction, found);
+  reduceToManifolds(found, scratch.old_ids, settings.spacing, scratch.reduction, patches);
+  return std::any_of(found.begin(), found.end(),
+                     [&](const WeightedPoint& p) { return p.point.depth > -settings.spacing; });
 }
 
 void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vector<ContactPatch>& patches) {
@@ -104,47 +170,31 @@ void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vecto
 
 }  // namespace
 
-void findCandidates(const std::vector<SphereContact>& contacts, const Gauge& gauge, btScalar spacing,
-                    const btMatrix3x3& reference, const std::vector<ContactPatch>& patches,
-                    Candidates& candidates) {
-  static thread_local std::vector<std::uint64_t> old_ids;
-  collectIds(patches, old_ids);
-  candidates.indices.clear();
-  candidates.indices.reserve(kUsualCandidates);
-  candidates.lines.clear();
-  candidates.lines.reserve(kUsualCandidates);
-  candidates.patches.clear();
-  candidates.patches.reserve(kUsualPatches);
-  const Sorted* sorted = &sortIntoPatches(contacts, reference);
-  if (sorted->patches.empty() && !contacts.empty())
-    sorted = &sortIntoPatches(aimed(contacts, gauge), reference);
-  for (std::size_t p = 0; p < sorted->moments.size(); ++p) {
-    const PatchMoments& moments = sorted->moments[p];
-    if (moments.area > 0)
-      pickCandidates({contacts, sorted->members[p], moments, old_ids, gauge, spacing}, candidates);
-  }
+void selectSamples(const std::vector<SphereContact>& contacts, const PackingProbe& probe, btScalar,
+                   const btMatrix3x3& reference, const std::vector<ContactPatch>& patches, Samples& samples) {
+  selectFiltered(
+      contacts, probe, reference, patches, [](std::vector<std::size_t>&) {}, samples);
 }
 
-bool measurePatches(Candidates& candidates, const Gauge& gauge, const Measure& measure,
-                    std::vector<ContactPatch>& patches) {
-  static thread_local std::vector<std::uint64_t> old_ids;
-  static thread_local std::vector<MeasuredPoint> found;
-  collectIds(patches, old_ids);
-  found.clear();
-  found.reserve(2 * kUsualCandidates);
-  const bool first_time = candidates.lines.empty();
-  for (std::size_t p = 0; p < candidates.patches.size(); ++p)
-    measurePoints(candidates, p, gauge, measure.separation, found);
-  if (first_time) dropUnmeasured(candidates);
-  keepLeastWaysOut(measure.spacing, found);
-  selectPatches(found, old_ids, measure.spacing, patches);
-  return std::any_of(found.begin(), found.end(),
-                     [&](const MeasuredPoint& m) { return m.point.depth > -measure.spacing; });
+void selectSamples(const std::vector<SphereContact>& contacts, const ShapeProbe& probe, btScalar spacing,
+                   const btMatrix3x3& reference, const std::vector<ContactPatch>& patches, Samples& samples) {
+  const auto filter = [&](std::vector<std::size_t>& indices) { dropShallow(contacts, spacing, indices); };
+  selectFiltered(contacts, probe, reference, patches, filter, samples);
+}
+
+bool refinePatches(Samples& samples, const PackingProbe& probe, const ContactSettings& settings,
+                   std::vector<ContactPatch>& patches) {
+  return refine(samples, probe, settings, patches);
+}
+
+bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSettings& settings,
+                   std::vector<ContactPatch>& patches) {
+  return refine(samples, probe, settings, patches);
 }
 
 void gradientPatch(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,
                    std::vector<ContactPatch>& patches) {
-  static thread_local std::vector<std::size_t> all;
+  std::vector<std::size_t>& all = scratchOfThread().indices;
   all.resize(contacts.size());
   std::iota(all.begin(), all.end(), std::size_t(0));
   patches.clear();
@@ -153,9 +203,10 @@ void gradientPatch(const std::vector<SphereContact>& contacts, btScalar spacing,
 
 void volumePatches(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,
                    std::vector<ContactPatch>& patches) {
+  SortedContacts& sorted = scratchOfThread().sorted;
   patches.clear();
-  for (const PatchMoments& m : sortIntoPatches(contacts, reference).moments)
-    appendVolumePatch(m, spacing, patches);
+  sortIntoPatches(contacts, reference, sorted);
+  for (const PatchMoments& m : sorted.moments) appendVolumePatch(m, spacing, patches);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -6,24 +6,28 @@
 #include "innersphere/overlap.hpp"
 #include "narrow_phase/contact_point.hpp"
 #include "narrow_phase/contact_settings.hpp"
+#include "narrow_phase/packing_probe.hpp"
 #include "narrow_phase/sample_selection.hpp"
-#include "narrow_phase/surface_probe.hpp"
+#include "narrow_phase/shape_probe.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Replaces `candidates` by the contacts to measure. `patches` are those of the step before, whose points
-/// stay among them. `reference` are axes that turn with a body: points keep their places in them.
-void findCandidates(const std::vector<SphereContact>& contacts, const Gauge& gauge, btScalar spacing,
-                    const btMatrix3x3& reference, const std::vector<ContactPatch>& patches,
-                    Candidates& candidates);
+/// Replaces `samples` by the contacts to probe. `patches` are those of the step before, whose points stay
+/// among them. `reference` are axes that turn with a body: points keep their places in them.
+void selectSamples(const std::vector<SphereContact>& contacts, const PackingProbe& probe, btScalar spacing,
+                   const btMatrix3x3& reference, const std::vector<ContactPatch>& patches, Samples& samples);
+void selectSamples(const std::vector<SphereContact>& contacts, const ShapeProbe& probe, btScalar spacing,
+                   const btMatrix3x3& reference, const std::vector<ContactPatch>& patches, Samples& samples);
 
-/// Replaces `patches`, which hold those of the step before, by such whose depth is measured on the solids'
+/// Replaces `patches`, which hold those of the step before, by such whose depth is that of the solids'
 /// surfaces: points are contacts of spheres, the deepest and those that span the patch, the old ones by
 /// preference. False if none is near touching: the solids are apart, or so deep in each other that no surface
 /// is near.
-bool measurePatches(Candidates& candidates, const Gauge& gauge, const Measure& measure,
-                    std::vector<ContactPatch>& patches);
+bool refinePatches(Samples& samples, const PackingProbe& probe, const ContactSettings& settings,
+                   std::vector<ContactPatch>& patches);
+bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSettings& settings,
+                   std::vector<ContactPatch>& patches);
 
 /// Replaces `patches` by one in the direction in which the volume of overlap shrinks fastest, or by none: for
 /// bodies deep in each other, where single spheres push everywhere.

@@ -23,7 +23,7 @@ struct ContactPoint {
   btVector3 on_b{0, 0, 0};    ///< on the surface of B [m]
   btVector3 normal{0, 0, 0};  ///< unit, from A to B
   btScalar depth = 0;         ///< [m], negative where the bodies do not touch yet
-  std::uint64_t id = 0;       ///< of the sphere it was measured at, the same from step to step
+  std::uint64_t id = 0;       ///< of the sphere that it was found at, the same from step to step
   btScalar curvature_a = 0;   ///< of the surfaces there [1/m], positive where convex, 0 where flat
   btScalar curvature_b = 0;
   btScalar turn_a = btScalar(0.5);  ///< how much of A's turning the normal takes part in, the rest of B's

@@ -1,18 +1,19 @@
-// Contacts of a patch, measured on the solids' surfaces.
+// Contacts of a patch, found on the solids' surfaces.
 #pragma once
 
 #include <vector>
 
 #include "narrow_phase/contact_point.hpp"
+#include "narrow_phase/packing_probe.hpp"
 #include "narrow_phase/sample_selection.hpp"
-#include "narrow_phase/surface_probe.hpp"
+#include "narrow_phase/shape_probe.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A point and the part of a patch of spheres that it stands for.
-struct MeasuredPoint {
-  /// What it is measured between.
+/// A point of contact and the part of a patch of spheres that it stands for.
+struct WeightedPoint {
+  /// What it lies between.
   enum class Kind {
     faces,
     edge,      ///< and a face, somewhere along it
@@ -26,10 +27,28 @@ struct MeasuredPoint {
   btScalar radius;   ///< mean distance of the patch's area from there [m]
 };
 
-/// Appends those contacts of the candidates' patch `p` that are on, or near, both surfaces: not further apart
-/// than `separation` [m]. Leaves the lines that they were measured along in the candidates.
-void measurePoints(Candidates& candidates, std::size_t p, const Gauge& gauge, btScalar separation,
-                   std::vector<MeasuredPoint>& found);
+/// Room to work in.
+struct SampleScratch {
+  SampleScratch();
+  struct Tried {
+    ProbedSample sample;
+    bool found;
+  };
+  std::vector<Tried> tried;             ///< all samples of a patch
+  std::vector<ProbedSample> probed;     ///< those whose lines met both surfaces, then the deepest points
+  std::vector<std::size_t> places;      ///< of the former, among the samples
+  std::vector<ProbedSample> sideways;   ///< those whose line leaves A by its side
+  std::vector<EdgeContact> corners;     ///< at one sample
+  std::vector<EdgeContact> peaks;       ///< the same for corners that neither face lies flat at
+  std::vector<std::uint32_t> vertices;  ///< see EdgeProbe
+};
+
+/// Appends those contacts of the samples' patch `p` that are on, or near, both surfaces: not further apart
+/// than `separation` [m]. Leaves the lines that were probed in the samples.
+void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation, Samples& samples,
+                       SampleScratch& scratch, std::vector<WeightedPoint>& found);
+void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separation, Samples& samples,
+                       SampleScratch& scratch, std::vector<WeightedPoint>& found);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

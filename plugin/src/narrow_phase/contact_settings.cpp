@@ -7,8 +7,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-Measure::Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b,
-                 btScalar needed)
+ContactSettings::ContactSettings(const ContactOptions& options, const PackingShape& a,
+                                 const btCollisionShape& b, btScalar needed)
     : spacing(btMin(a.getContactBreakingThreshold(gContactBreakingThreshold),
                     b.getContactBreakingThreshold(gContactBreakingThreshold))),
       separation(btMax(spacing, needed + kSearchAgain * spacing)) {
@@ -23,8 +23,8 @@ Measure::Measure(const ContactOptions& options, const PackingShape& a, const btC
     estimator = options.estimator;
     return;
   }
-  slack_a = separation + prefix_a->recess() * a.getLocalScaling().x();
-  if (packing_b != nullptr) slack_b = prefix_b->recess() * b.getLocalScaling().x();
+  search_margin_a = separation + prefix_a->inset() * a.getLocalScaling().x();
+  if (packing_b != nullptr) search_margin_b = prefix_b->inset() * b.getLocalScaling().x();
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,4 +1,4 @@
-// How a pair measures its depth of contact.
+// How far is near, and on what depth is found.
 #pragma once
 
 #include "innersphere/contact_options.hpp"
@@ -7,22 +7,25 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-struct Measure {
-  /// `needed` [m]: bodies that are not further apart than this still have a contact, if the surfaces are
-  /// measured. They are looked for from a little further away, so that they are good for the next steps too,
-  /// and at least from the distance at which Bullet drops contacts: see separation.
-  Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b, btScalar needed);
+/// What the narrow phase needs to know of a pair, beside where its bodies are.
+struct ContactSettings {
+  /// Bodies that are not further apart than `needed` [m] still have a contact, if depth is found on the
+  /// surfaces. The search goes a little further, so that its contacts are good for the next steps too, and at
+  /// least as far as the distance at which Bullet drops contacts: see separation.
+  ContactSettings(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b,
+                  btScalar needed);
 
-  btScalar slack() const { return slack_a + slack_b; }
+  /// Of both bodies [m].
+  btScalar search_margin() const { return search_margin_a + search_margin_b; }
 
-  /// On the surfaces of the solids; else volume over area, which a given stiffness (force per volume) asks
-  /// for, and a packing without a surface.
+  /// Depth is found on the surfaces of the solids. Otherwise it is volume over area, which a given stiffness
+  /// (force per volume) asks for, and a packing without a surface.
   bool on_surfaces = false;
   Estimator estimator = Estimator::raw;  ///< radii of the spheres
   btScalar spacing;                      ///< points closer to each other are one [m]
-  btScalar separation;
-  btScalar slack_a = 0;  ///< how far beyond their radii spheres look for contacts [m]
-  btScalar slack_b = 0;
+  btScalar separation;                   ///< surfaces further apart than this have no contact [m]
+  btScalar search_margin_a = 0;          ///< how far beyond their radii spheres of A search for contacts [m]
+  btScalar search_margin_b = 0;
   const Prefix* prefix_a;            ///< spheres to use
   const Prefix* prefix_b = nullptr;  ///< null if B is no packing
 };

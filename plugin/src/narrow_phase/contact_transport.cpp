@@ -46,20 +46,20 @@ btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a,
                          : motionIn(before.b, before.a, now.b, now.a, size_a);
 }
 
-void ContactMemory::noteSearch(const Placed& now) {
+void ContactTransport::noteSearch(const Placed& now) {
   searched_at_ = now;
   enclosed_ = false;
-  for (const Candidates::OfPatch& patch : candidates.patches) {
-    for (const Candidates::OfPatch& other : candidates.patches)
+  for (const Samples::OfPatch& patch : samples.patches) {
+    for (const Samples::OfPatch& other : samples.patches)
       enclosed_ = enclosed_ || patch.normal.dot(other.normal) < kEnclosed;
   }
 }
 
-void ContactMemory::turnTo(const Placed& now) {
-  turn(now.a.getBasis() * measured_at_.a.getBasis().transpose(), candidates);
+void ContactTransport::turnTo(const Placed& now) {
+  turn(now.a.getBasis() * measured_at_.a.getBasis().transpose(), samples);
 }
 
-void ContactMemory::noteDepths(const Placed& now, btScalar found) {
+void ContactTransport::noteDepths(const Placed& now, btScalar found) {
   measured_at_ = now;
   measured_ = patches;
   gap_ = found;
@@ -68,7 +68,7 @@ void ContactMemory::noteDepths(const Placed& now, btScalar found) {
   }
 }
 
-void ContactMemory::carryTo(const Placed& now, const PackingShape& a, btScalar spacing) {
+void ContactTransport::carryTo(const Placed& now, const PackingShape& a, btScalar spacing) {
   const Placed& then = measured_at_;
   patches = measured_;
   if (patches.empty() || then == now) return;

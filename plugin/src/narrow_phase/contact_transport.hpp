@@ -32,9 +32,9 @@ btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a,
 
 /// While bodies do not move much against each other, the spheres that were found in contact are good for
 /// being measured again, and while they hardly move, the contacts themselves are, if they go along.
-class ContactMemory {
+class ContactTransport {
  public:
-  bool isEmpty() const { return candidates.indices.empty(); }
+  bool isEmpty() const { return samples.indices.empty(); }
   const Placed& searchedAt() const { return searched_at_; }
   const Placed& measuredAt() const { return measured_at_; }
   /// A nut on its thread, a peg, teeth that mesh: bodies that rattle in their clearance touch now here and
@@ -43,9 +43,9 @@ class ContactMemory {
   /// The narrowest one when depths were evaluated [m]; negative: overlap.
   btScalar gap() const { return gap_; }
 
-  /// candidates have been found anew.
+  /// samples have been found anew.
   void noteSearch(const Placed& now);
-  /// Turns the candidates along, to be measured again.
+  /// Turns the samples along, to be measured again.
   void turnTo(const Placed& now);
   /// patches have been measured, with all contacts up to `found` [m] apart.
   void noteDepths(const Placed& now, btScalar found);
@@ -53,7 +53,7 @@ class ContactMemory {
   /// on where surfaces are curved. A's is the packing that positions are relative to the origin of.
   void carryTo(const Placed& now, const PackingShape& a, btScalar spacing);
 
-  Candidates candidates;
+  Samples samples;
   std::vector<ContactPatch> patches;
 
  private:

@@ -5,129 +5,149 @@
 #include <iterator>
 
 #include "narrow_phase/contact_point.hpp"
+#include "narrow_phase/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Of the curvatures themselves.
-constexpr btScalar kUnlike = btScalar(0.3);
-constexpr int kSteps = 8;
-constexpr int kStepsBeside = 2;
-/// Of two steps, in fractions of the first.
-constexpr btScalar kSlowest = btScalar(0.1);
-/// Slopes of places beside a point that bears: those that a rolling body meets next, say [rad].
-constexpr btScalar kBeside = btScalar(0.1);
-/// A top that is guessed to be this near to one that was climbed is that one: in fractions of the way there,
-/// and of the separation.
-constexpr btScalar kSameHill = btScalar(0.5);
-constexpr btScalar kSameTop = btScalar(0.1);
-/// Slopes that say little about the top [rad].
-constexpr btScalar kSteep = btScalar(0.5);
-
-struct Place {
-  btScalar depth;   ///< along the direction
-  btVector3 slope;  ///< of the depth, in that plane
+/// The depth as a function of the place across the direction, at one place.
+struct Hillside {
+  btScalar depth;   ///< along the direction [m]
+  btVector3 slope;  ///< of the depth, across the direction
 };
 
-Place placeOf(const Gap& gap, const btVector3& direction) {
-  const btScalar a = gap.normal_a.dot(direction), b = gap.normal_b.dot(direction);
-  const btVector3 slope = gap.normal_b / b - gap.normal_a / a;
-  return {(gap.on_a - gap.on_b).dot(direction), slope};
+Hillside hillsideAt(const OpposedPoints& points, const btVector3& direction) {
+  const btScalar a = points.normal_a.dot(direction), b = points.normal_b.dot(direction);
+  const btVector3 slope = points.normal_b / b - points.normal_a / a;
+  return {points.depthAlong(direction), slope};
 }
 
-bool usable(const Gap& gap, const btVector3& direction) {
-  return gap.normal_a.dot(direction) > btScalar(0.5) && gap.normal_b.dot(direction) > btScalar(0.5);
+bool isUsable(const OpposedPoints& points, const btVector3& direction) {
+  return points.normal_a.dot(direction) > kUsableCosine && points.normal_b.dot(direction) > kUsableCosine;
 }
 
-btScalar depthOf(const Measured& m) {
-  return (m.gap.on_a - m.gap.on_b).dot(m.direction);
+bool isUsable(const ProbedSample& sample) {
+  return isUsable(sample.points, sample.direction);
 }
 
-/// Where the depth is greatest around a measurement, going by its slope and curvature: a guess, worth nothing
+/// Where the depth is greatest around a sample, going by its slope and curvature: a guess, worth nothing
 /// where it is steep.
 struct Top {
   btScalar depth;
-  btVector3 shift;  ///< from here
+  btVector3 shift;  ///< from the sample
 };
 
-Top topOf(const Measured& m) {
-  const Place place = placeOf(m.gap, m.direction);
-  if (fitTogether(m.gap.curvature_a, m.gap.curvature_b) || place.slope.length() > kSteep)
-    return {place.depth, btVector3(0, 0, 0)};
-  const btVector3 shift = place.slope / (m.gap.curvature_a + m.gap.curvature_b);
-  return {place.depth + place.slope.dot(shift) / 2, shift};
+Top guessedTop(const ProbedSample& sample) {
+  const Hillside here = hillsideAt(sample.points, sample.direction);
+  if (fitTogether(sample.points.curvature_a, sample.points.curvature_b) || here.slope.length() > kSteepSlope)
+    return {here.depth, btVector3(0, 0, 0)};
+  const btVector3 shift = here.slope / (sample.points.curvature_a + sample.points.curvature_b);
+  return {here.depth + here.slope.dot(shift) / 2, shift};
 }
 
-/// Moves a measurement uphill; not where slopes above `steepest` say that the top is far.
-void climb(const Gauge& gauge, btScalar steepest, int steps, Measured& m) {
-  Place place = placeOf(m.gap, m.direction);
-  // How fast the slope falls with distance. Nothing is to be climbed where faces are flat, or fit together.
-  const btScalar fastest = m.gap.curvature_a + m.gap.curvature_b;
+/// Moves a sample uphill; not where slopes above `steepest` say that the top is far.
+void ascend(const SurfaceProbe& probe, btScalar steepest, int steps, ProbedSample& sample) {
+  Hillside here = hillsideAt(sample.points, sample.direction);
+  // How fast the slope falls with distance. There is no top where faces are flat, or fit together.
+  const btScalar fastest = sample.points.curvature_a + sample.points.curvature_b;
   btScalar fall = fastest;
-  if (fitTogether(m.gap.curvature_a, m.gap.curvature_b) || place.slope.length() > steepest) return;
+  if (fitTogether(sample.points.curvature_a, sample.points.curvature_b) || here.slope.length() > steepest)
+    return;
   btVector3 shift(0, 0, 0);
   for (int i = 0; i < steps; ++i) {
-    Gap gap;
-    gap.triangle_a = m.gap.triangle_a;
-    gap.triangle_b = m.gap.triangle_b;
-    const btVector3 step = place.slope / fall;
-    if (!gauge.measure(m.index, m.direction, shift + step, gap) || !usable(gap, m.direction)) return;
-    const Place next = placeOf(gap, m.direction);
-    if (next.depth <= place.depth) {
+    OpposedPoints points;
+    points.triangle_a = sample.points.triangle_a;
+    points.triangle_b = sample.points.triangle_b;
+    const btVector3 step = here.slope / fall;
+    if (!probe.probeLine(sample.index, sample.direction, shift + step, points) ||
+        !isUsable(points, sample.direction))
+      return;
+    const Hillside next = hillsideAt(points, sample.direction);
+    if (next.depth <= here.depth) {
       if (fall >= fastest) return;
-      fall = fastest;  // too far
+      fall = fastest;  // the step was too long
       continue;
     }
     // From here on as fast as it fell along the step: surfaces may be less curved that way.
-    const btScalar fell = (place.slope - next.slope).dot(step) / step.length2();
-    if (fell > kSlowest * fall) fall = fell;
+    const btScalar fell = (here.slope - next.slope).dot(step) / step.length2();
+    if (fell > kSlowestFall * fall) fall = fell;
     shift += step;
-    m.gap = gap;
-    place = next;
+    sample.points = points;
+    here = next;
   }
+}
+
+/// The tops that were reached.
+class Tops {
+ public:
+  bool areAll() const { return count_ == kPatchPoints; }
+  bool areNone() const { return count_ == 0; }
+
+  /// Whether a top that is guessed from a place is one of those that were reached.
+  bool include(const Top& top, const btVector3& from, btScalar separation) const {
+    return std::any_of(tops_.begin(), tops_.begin() + count_, [&](const ProbedSample& reached) {
+      const btVector3 way = reached.points.on_b - from;
+      return (way - top.shift).length() < btMax(kSameHill * way.length(), kSameTop * separation);
+    });
+  }
+
+  void ascendFrom(const ProbedSample& start, const SurfaceProbe& probe) {
+    ProbedSample& top = tops_[count_];
+    top = start;
+    top.id = kDeepestId - static_cast<std::uint64_t>(count_++);
+    ascend(probe, BT_LARGE_FLOAT, kAscentSteps, top);
+  }
+
+  /// Only those of convex hills: elsewhere the sample itself is as deep.
+  void appendTo(std::vector<ProbedSample>& samples) const {
+    std::copy_if(tops_.begin(), tops_.begin() + count_, std::back_inserter(samples),
+                 [](const ProbedSample& top) { return top.points.curvature_a + top.points.curvature_b > 0; });
+  }
+
+ private:
+  std::array<ProbedSample, kPatchPoints> tops_;
+  int count_ = 0;
+};
+
+/// The sample with the deepest top that was not reached yet; null if there is none.
+ProbedSample* bestStart(const Tops& tops, btScalar separation, std::vector<ProbedSample>& samples) {
+  ProbedSample* best = nullptr;
+  btScalar most = tops.areNone() ? -BT_LARGE_FLOAT : -separation;
+  for (ProbedSample& sample : samples) {
+    if (sample.starts_ascent || !isUsable(sample)) continue;
+    const Top top = guessedTop(sample);
+    // The first is sure to be there.
+    const btScalar depth = tops.areNone() ? sample.points.depthAlong(sample.direction) : top.depth;
+    if (depth > most && !tops.include(top, sample.points.on_b, separation)) {
+      most = depth;
+      best = &sample;
+    }
+  }
+  return best;
 }
 
 }  // namespace
 
 bool fitTogether(btScalar curvature_a, btScalar curvature_b) {
-  return !(curvature_a + curvature_b > kUnlike * (btFabs(curvature_a) + btFabs(curvature_b)));
+  return !(curvature_a + curvature_b > kConforming * (btFabs(curvature_a) + btFabs(curvature_b)));
 }
 
-void climb(const Gauge& gauge, btScalar separation, std::vector<Measured>& measured) {
-  std::array<Measured, kPatchPoints> tops;
-  int count = 0;
-  const auto isClimbed = [&](const Top& top, const btVector3& from) {
-    return std::any_of(tops.begin(), tops.begin() + count, [&](const Measured& climbed) {
-      const btVector3 way = climbed.gap.on_b - from;
-      return (way - top.shift).length() < btMax(kSameHill * way.length(), kSameTop * separation);
-    });
-  };
-  while (count < kPatchPoints) {
-    Measured* best = nullptr;
-    btScalar most = count > 0 ? -separation : -BT_LARGE_FLOAT;
-    for (Measured& m : measured) {
-      if (m.starts_climb || !usable(m.gap, m.direction)) continue;
-      const Top top = topOf(m);
-      // The first is sure to be there.
-      const btScalar depth = count > 0 ? top.depth : depthOf(m);
-      if (depth > most && !isClimbed(top, m.gap.on_b)) {
-        most = depth;
-        best = &m;
-      }
-    }
-    if (best == nullptr) break;
-    best->starts_climb = true;
-    Measured& top = tops[count];
-    top = *best;
-    top.id = kDeepestId - static_cast<std::uint64_t>(count++);
-    climb(gauge, BT_LARGE_FLOAT, kSteps, top);
+void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::vector<ProbedSample>& samples) {
+  Tops tops;
+  while (!tops.areAll()) {
+    ProbedSample* start = bestStart(tops, separation, samples);
+    if (start == nullptr) break;
+    start->starts_ascent = true;
+    tops.ascendFrom(*start, probe);
   }
-  for (Measured& m : measured) {
-    if (gauge.exactB() && usable(m.gap, m.direction)) climb(gauge, kBeside, kStepsBeside, m);
+  tops.appendTo(samples);
+}
+
+void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (isUsable(samples[i])) ascend(probe, kSlopeBeside, kAscentStepsBeside, samples[i]);
   }
-  std::copy_if(tops.begin(), tops.begin() + count, std::back_inserter(measured),
-               [](const Measured& top) { return top.gap.curvature_a + top.gap.curvature_b > 0; });
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -2,58 +2,45 @@
 
 #include <cmath>
 
+#include "narrow_phase/contact_tolerances.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-constexpr std::uint64_t kCrossingId = std::uint64_t(1) << 61;
-/// How often edges are looked for, each time where those before would cross.
-constexpr int kLooks = 4;
-/// Edges within 5 degrees of each other do not cross, and faces that fall away from their edge by less are in
-/// contact themselves.
-constexpr btScalar kAcross = btScalar(0.087);
-constexpr btScalar kFalls = btScalar(0.087);
-/// How far beyond their ends edges still cross, in lengths: no rounding leaves a gap between two.
-constexpr btScalar kBeyond = btScalar(1e-4);
-/// A place on an edge does not show what is met along the edge: edges are looked for from this far towards
-/// the middle of its triangle, in lengths.
-constexpr btScalar kInwards = btScalar(0.01);
-/// In lengths of the edges: what is less deep in each other is near each other.
-constexpr btScalar kShallow = btScalar(0.01);
-
-/// Whether both faces of an edge do. `direction`: unit, out of the solid.
-bool fallsAway(const EdgedSolid::Edge& edge, const btVector3& direction) {
-  return edge.inwards[0].dot(direction) < -kFalls && edge.inwards[1].dot(direction) < -kFalls;
+/// Whether both faces of an edge fall away from it, seen along `direction` (unit, out of the solid).
+bool fallsAway(const SharpEdges::Edge& edge, const btVector3& direction) {
+  return edge.inwards[0].dot(direction) < -kFallingSine && edge.inwards[1].dot(direction) < -kFallingSine;
 }
 
 bool isOn(btScalar share) {
-  return share > -kBeyond && share < 1 + kBeyond;
+  return share > -kBeyondEnds && share < 1 + kBeyondEnds;
 }
 
-/// Two edges, each looked for from one side of the gap.
-class Pair {
+/// Two edges, each looked for from one of the opposed points.
+class EdgePair {
  public:
-  Pair(const EdgedSolid& a, const EdgedSolid& b, const Gap& gap, const btVector3& direction)
+  EdgePair(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& points, const btVector3& direction)
       : a_(a),
         b_(b),
-        gap_(gap),
-        out_of_a_(gap.normal_a + gap.normal_b + direction),
-        start_a_(lerp(gap.on_a, a.middle(gap.triangle_a), kInwards)),
-        start_b_(lerp(gap.on_b, b.middle(gap.triangle_b), kInwards)) {}
+        points_(points),
+        out_of_a_(points.normal_a + points.normal_b + direction),
+        start_a_(lerp(points.on_a, a.middle(points.triangle_a), kStartInside)),
+        start_b_(lerp(points.on_b, b.middle(points.triangle_b), kStartInside)) {}
 
   /// The edges that are met along these ways, and then towards where those would cross.
   bool find(const btVector3& towards_a, const btVector3& towards_b) {
     bool found = look(towards_a, towards_b);
-    for (int i = 1; i < kLooks && found && !(isOn(share_a_) && isOn(share_b_)); ++i)
+    for (int i = 1; i < kEdgeLooks && found && !(isOn(share_a_) && isOn(share_b_)); ++i)
       found = look(on_a() - start_a_, on_b() - start_b_);
     return found && isOn(share_a_) && isOn(share_b_) && isOutermost();
   }
 
-  void describe(Gauge::Corner& crossing) const {
-    crossing.gap = gap_;
-    crossing.gap.on_a = on_a() + normal_ * a_.margin;
-    crossing.gap.on_b = on_b() - normal_ * b_.margin;
-    crossing.gap.normal_a = crossing.gap.normal_b = normal_;
+  void describe(EdgeContact& crossing) const {
+    crossing.points = points_;
+    crossing.points.on_a = on_a() + normal_ * a_.margin;
+    crossing.points.on_b = on_b() - normal_ * b_.margin;
+    crossing.points.normal_a = crossing.points.normal_b = normal_;
     crossing.id = kCrossingId + (std::uint64_t(edge_a_.id) << 30) + edge_b_.id;
   }
 
@@ -62,12 +49,13 @@ class Pair {
   btVector3 on_b() const { return edge_b_.from + edge_b_.along * share_b_; }
 
   bool look(const btVector3& towards_a, const btVector3& towards_b) {
-    if (!a_.edgeTowards(gap_.triangle_a, start_a_, towards_a, edge_a_) ||
-        !b_.edgeTowards(gap_.triangle_b, start_b_, towards_b, edge_b_))
+    if (!a_.edgeTowards(points_.triangle_a, start_a_, towards_a, edge_a_) ||
+        !b_.edgeTowards(points_.triangle_b, start_b_, towards_b, edge_b_))
       return false;
     const btVector3 across = edge_a_.along.cross(edge_b_.along);
     const btScalar across2 = across.length2();
-    if (!(across2 > kAcross * kAcross * edge_a_.along.length2() * edge_b_.along.length2())) return false;
+    if (!(across2 > kCrossingSine * kCrossingSine * edge_a_.along.length2() * edge_b_.along.length2()))
+      return false;
     const btVector3 apart = edge_b_.from - edge_a_.from;
     share_a_ = apart.cross(edge_b_.along).dot(across) / across2;
     share_b_ = apart.cross(edge_a_.along).dot(across) / across2;
@@ -85,23 +73,24 @@ class Pair {
     return !(depth > kShallow * length) || (a_.isIn(middle, depth) && b_.isIn(middle, depth));
   }
 
-  const EdgedSolid& a_;
-  const EdgedSolid& b_;
-  const Gap& gap_;
+  const SharpEdges& a_;
+  const SharpEdges& b_;
+  const OpposedPoints& points_;
   const btVector3 out_of_a_;  ///< about
   const btVector3 start_a_, start_b_;
-  EdgedSolid::Edge edge_a_, edge_b_;
+  SharpEdges::Edge edge_a_, edge_b_;
   btScalar share_a_ = 0, share_b_ = 0;
   btVector3 normal_{0, 0, 0};
 };
 
 }  // namespace
 
-bool crossingEdges(const EdgedSolid& a, const EdgedSolid& b, const Gap& gap, const btVector3& direction,
-                   Gauge::Corner& crossing) {
-  Pair pair(a, b, gap, direction);
-  // To where the gap gets deeper; or, if it lies between the edges, to where each solid reaches further.
-  const btVector3 deeper = gap.normal_b - gap.normal_a;
+bool crossEdges(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& points,
+                const btVector3& direction, EdgeContact& crossing) {
+  EdgePair pair(a, b, points, direction);
+  // To where the contact gets deeper; or, if the points lie between the edges, to where each solid reaches
+  // further.
+  const btVector3 deeper = points.normal_b - points.normal_a;
   if (!pair.find(deeper, deeper) && !pair.find(direction, -direction) && !pair.find(direction, deeper) &&
       !pair.find(deeper, -direction))
     return false;

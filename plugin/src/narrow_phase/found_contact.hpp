@@ -15,8 +15,8 @@ struct FoundContact {
   /// Whether the shapes are as they were when it was asked last; asked once in each step. If not, what was
   /// found is forgotten.
   virtual bool hasSameShapes() { return true; }
-  /// Evaluates the depth at the samples again, for where the bodies are now and gaps up to `needed` [m]. False
-  /// if contact has to be searched for.
+  /// Evaluates the depth at the samples again, for where the bodies are now and gaps up to `needed` [m].
+  /// False if contact has to be searched for.
   virtual bool refine(const Placed& now, btScalar needed) = 0;
   /// The volume that both share where they were last. Its torque is about the origin of the other packing, or
   /// of the only one. Only for what was found by volumes.
@@ -31,9 +31,9 @@ struct FoundContact {
     memory.patches.clear();
   }
 
-  ContactMemory memory;
+  ContactTransport memory;
   /// Of the last search; nothing if there was none, or what it found does not hold any more.
-  std::optional<Measure> settings;
+  std::optional<ContactSettings> settings;
   /// Depth was evaluated on the surfaces. If not, contacts are only right where the bodies were.
   bool on_surfaces = false;
 };

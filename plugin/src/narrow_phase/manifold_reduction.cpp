@@ -6,28 +6,13 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// A point of the step before is kept until another one spans this much more, or is this fraction of the
-/// spacing deeper.
-constexpr btScalar kKeepSpan = btScalar(1.3);
-constexpr btScalar kKeepDepth = btScalar(1e-3);
-/// Part of that depth that a point at the rim of the patch may lack.
-constexpr btScalar kOutwards = btScalar(0.5);
-/// Points that are less deep than the deepest by this fraction of the spacing are worth 1/e of it.
-constexpr btScalar kTouching = btScalar(0.1);
-/// Normals within 15 degrees of that of a group's deepest point belong to the group.
-constexpr btScalar kSameGroup = btScalar(0.966);
-/// More groups than this are merged.
-constexpr std::size_t kMaxGroups = 8;
-
-/// How far around a crossing edges have sunk in, in units of the depth.
-constexpr btScalar kSunkAround = 3;
-
 /// Whether there is a better way out than the one that `point` is pushed, by `other`.
-bool isFreedBy(const MeasuredPoint& other, const MeasuredPoint& point, btScalar spacing) {
-  using Kind = MeasuredPoint::Kind;
+bool isFreedBy(const WeightedPoint& other, const WeightedPoint& point, btScalar spacing) {
+  using Kind = WeightedPoint::Kind;
   const bool crossing = point.kind == Kind::crossing;
   if (!crossing && (other.kind != Kind::crossing || point.kind == Kind::faces)) return false;
-  if (other.kind == Kind::edge || point.point.normal.dot(other.point.normal) > kSameGroup) return false;
+  if (other.kind == Kind::edge || point.point.normal.dot(other.point.normal) > kSameManifoldCosine)
+    return false;
   const auto middle = [](const ContactPoint& p) { return p.on_b + p.normal * (p.depth / 2); };
   const btScalar depth = crossing ? point.point.depth : other.point.depth;
   const btScalar around = kSunkAround * btMax(depth, btScalar(0)) + spacing;
@@ -35,21 +20,22 @@ bool isFreedBy(const MeasuredPoint& other, const MeasuredPoint& point, btScalar 
   return point.kind == Kind::edge || point.point.depth > other.point.depth;
 }
 
-class Selection {
+/// Chooses up to four of the points with one normal.
+class FourPoints {
  public:
   /// `worth`: room for a number of each point.
-  Selection(const std::vector<ContactPoint>& found, const std::vector<std::uint64_t>& old_ids,
-            btScalar spacing, ContactPatch& patch, std::vector<btScalar>& worth)
+  FourPoints(const std::vector<ContactPoint>& found, const std::vector<std::uint64_t>& old_ids,
+             btScalar spacing, ContactPatch& patch, std::vector<btScalar>& worth)
       : found_(found), old_ids_(old_ids), spacing_(spacing), patch_(patch), worth_(worth) {}
 
-  void run() {
+  void choose() {
     patch_.count = 0;
     // Flat faces are as deep everywhere; at their rim a point bears them best.
-    const btScalar rim = reach();
+    const btScalar rim = rimRadius();
     const auto deepest = [&](std::size_t i) {
       const ContactPoint& point = found_[i];
       const int steps = point.id == kDeepestId ? 2 : isOld(point) ? 1 : 0;
-      const btScalar outwards = rim > 0 ? kOutwards * point.on_b.distance(patch_.centre) / rim : btScalar(0);
+      const btScalar outwards = rim > 0 ? kPreferRim * point.on_b.distance(patch_.centre) / rim : btScalar(0);
       return point.depth + (btScalar(steps) + outwards) * kKeepDepth * spacing_;
     };
     const auto farthest = [&](std::size_t i) { return worth_[i] * found_[i].on_b.distance(at(0)); };
@@ -75,7 +61,7 @@ class Selection {
     const ContactPoint* best = nullptr;
     btScalar best_score = 0;
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (!apart(found_[i])) continue;
+      if (!isApart(found_[i])) continue;
       const btScalar s = score(i);
       if (best == nullptr || s > best_score) {
         best = &found_[i];
@@ -86,14 +72,15 @@ class Selection {
     patch_.points[patch_.count++] = *best;
     return true;
   }
-  bool apart(const ContactPoint& point) const {
+  /// From those that were chosen.
+  bool isApart(const ContactPoint& point) const {
     for (int i = 0; i < patch_.count; ++i) {
       if (point.on_b.distance2(at(i)) <= spacing_ * spacing_) return false;
     }
     return true;
   }
-  /// Farthest from the centre of the patch.
-  btScalar reach() const {
+  /// Distance of the farthest point from the centre of the patch.
+  btScalar rimRadius() const {
     btScalar most = 0;
     for (const ContactPoint& point : found_) most = btMax(most, point.on_b.distance2(patch_.centre));
     return btSqrt(most);
@@ -103,7 +90,7 @@ class Selection {
   }
   /// Of a point that widens the patch: less the farther it is from touching, compared with the deepest.
   btScalar worth(const ContactPoint& point) const {
-    const btScalar above = (patch_.points[0].depth - point.depth) / (kTouching * spacing_);
+    const btScalar above = (patch_.points[0].depth - point.depth) / (kWorthFalls * spacing_);
     return (isOld(point) ? kKeepSpan : btScalar(1)) * btExp(-above);
   }
   const btVector3& at(int i) const { return patch_.points[i].on_b; }
@@ -118,74 +105,75 @@ class Selection {
   std::vector<btScalar>& worth_;
 };
 
-/// How far the area of a group reaches from its centre: sums over the patches of spheres in it.
-struct Reach {
+/// How far the area of a group is spread from its centre: sums over the patches of spheres in it.
+struct Spread {
   btScalar area = 0;
   btVector3 centre{0, 0, 0};
   btScalar square = 0;
 
-  void add(const MeasuredPoint& m) {
-    area += m.area;
-    centre += m.centre * m.area;
-    square += (m.radius * m.radius + m.centre.length2()) * m.area;
+  void add(const WeightedPoint& p) {
+    area += p.area;
+    centre += p.centre * p.area;
+    square += (p.radius * p.radius + p.centre.length2()) * p.area;
   }
   btScalar radius() const { return btSqrt(btMax(btScalar(0), square / area - (centre / area).length2())); }
 };
 
-std::vector<std::vector<ContactPoint>> roomForGroups() {
-  constexpr std::size_t kUsualPoints = 64;
-  std::vector<std::vector<ContactPoint>> groups(kMaxGroups);
-  for (std::vector<ContactPoint>& group : groups) group.reserve(kUsualPoints);
-  return groups;
+/// The group whose normal is nearest, `count` if a new one is to begin.
+std::size_t groupFor(const ContactPoint& point, const ReductionScratch& scratch, std::size_t count) {
+  std::size_t best = count;
+  btScalar cosine = count < kMaxManifolds ? kSameManifoldCosine : btScalar(-2);
+  for (std::size_t g = 0; g < count; ++g) {
+    const btScalar c = scratch.groups[g].front().normal.dot(point.normal);
+    if (c > cosine) {
+      cosine = c;
+      best = g;
+    }
+  }
+  return best;
 }
 
 }  // namespace
 
-void keepLeastWaysOut(btScalar spacing, std::vector<MeasuredPoint>& found) {
-  static thread_local std::vector<MeasuredPoint> all;
-  const auto isCrossing = [](const MeasuredPoint& m) { return m.kind == MeasuredPoint::Kind::crossing; };
+ReductionScratch::ReductionScratch() {
+  constexpr std::size_t kUsualPoints = 64;
+  for (std::vector<ContactPoint>& group : groups) group.reserve(kUsualPoints);
+}
+
+void keepLeastWaysOut(btScalar spacing, ReductionScratch& scratch, std::vector<WeightedPoint>& found) {
+  const auto isCrossing = [](const WeightedPoint& p) { return p.kind == WeightedPoint::Kind::crossing; };
   if (std::none_of(found.begin(), found.end(), isCrossing)) return;
-  all = found;
-  const auto isFreed = [&](const MeasuredPoint& m) {
+  const std::vector<WeightedPoint>& all = scratch.all = found;
+  const auto isFreed = [&](const WeightedPoint& p) {
     return std::any_of(all.begin(), all.end(),
-                       [&](const MeasuredPoint& other) { return isFreedBy(other, m, spacing); });
+                       [&](const WeightedPoint& other) { return isFreedBy(other, p, spacing); });
   };
   found.erase(std::remove_if(found.begin(), found.end(), isFreed), found.end());
 }
 
-void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uint64_t>& old_ids,
-                   btScalar spacing, std::vector<ContactPatch>& patches) {
-  static thread_local std::vector<std::vector<ContactPoint>> groups = roomForGroups();
-  static thread_local std::vector<btScalar> worth;
-  std::array<Reach, kMaxGroups> reaches;
-  for (std::vector<ContactPoint>& group : groups) group.clear();
+void reduceToManifolds(std::vector<WeightedPoint>& found, const std::vector<std::uint64_t>& old_ids,
+                       btScalar spacing, ReductionScratch& scratch, std::vector<ContactPatch>& patches) {
+  std::array<Spread, kMaxManifolds> spreads;
+  for (std::vector<ContactPoint>& group : scratch.groups) group.clear();
   patches.clear();
-  std::sort(found.begin(), found.end(), [](const MeasuredPoint& a, const MeasuredPoint& b) {
+  std::sort(found.begin(), found.end(), [](const WeightedPoint& a, const WeightedPoint& b) {
     return a.point.depth != b.point.depth ? a.point.depth > b.point.depth : a.point.id < b.point.id;
   });
-  for (const MeasuredPoint& m : found) {
-    std::size_t best = patches.size();
-    btScalar cosine = patches.size() < kMaxGroups ? kSameGroup : btScalar(-2);
-    for (std::size_t g = 0; g < patches.size(); ++g) {
-      const btScalar c = groups[g].front().normal.dot(m.point.normal);
-      if (c > cosine) {
-        cosine = c;
-        best = g;
-      }
-    }
-    if (best == patches.size()) patches.emplace_back();
-    groups[best].push_back(m.point);
-    reaches[best].add(m);
-    ContactPatch& patch = patches[best];
-    patch.area += m.area;
-    patch.normal += m.point.normal * m.area;
-    patch.centre += m.point.on_b * m.area;
+  for (const WeightedPoint& p : found) {
+    const std::size_t g = groupFor(p.point, scratch, patches.size());
+    if (g == patches.size()) patches.emplace_back();
+    scratch.groups[g].push_back(p.point);
+    spreads[g].add(p);
+    ContactPatch& patch = patches[g];
+    patch.area += p.area;
+    patch.normal += p.point.normal * p.area;
+    patch.centre += p.point.on_b * p.area;
   }
   for (std::size_t g = 0; g < patches.size(); ++g) {
     patches[g].normal.normalize();
     patches[g].centre /= patches[g].area;
-    patches[g].radius = reaches[g].radius();
-    Selection(groups[g], old_ids, spacing, patches[g], worth).run();
+    patches[g].radius = spreads[g].radius();
+    FourPoints(scratch.groups[g], old_ids, spacing, patches[g], scratch.worth).choose();
   }
 }
 

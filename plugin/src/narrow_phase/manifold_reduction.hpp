@@ -1,25 +1,35 @@
-// Which measured contacts become points of manifolds.
+// Which points of contact become manifolds.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "narrow_phase/contact_point.hpp"
 #include "narrow_phase/contact_samples.hpp"
+#include "narrow_phase/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Room to work in.
+struct ReductionScratch {
+  ReductionScratch();
+  std::vector<WeightedPoint> all;
+  std::array<std::vector<ContactPoint>, kMaxManifolds> groups;
+  std::vector<btScalar> worth;
+};
+
 /// Crossing edges that have sunk into each other are apart again after the least of several ways out. Drops
 /// those that are longer, and pushes along other ways, from where they have sunk in; faces stay.
-void keepLeastWaysOut(btScalar spacing, std::vector<MeasuredPoint>& found);
+void keepLeastWaysOut(btScalar spacing, ReductionScratch& scratch, std::vector<WeightedPoint>& found);
 
 /// Groups points by their normals, wherever they are: rigid bodies feel only the wrench, and four points
 /// spread over everything that faces one way carry any load that all of them could. Each group becomes a
 /// patch with up to four points: the deepest, then those that span the largest area with it. Points with ids
 /// of the step before are preferred, so that the choice does not flicker; of points closer than `spacing` [m]
-/// to each other one is left. Reorders `found`.
-void selectPatches(std::vector<MeasuredPoint>& found, const std::vector<std::uint64_t>& old_ids,
-                   btScalar spacing, std::vector<ContactPatch>& patches);
+/// to each other one is left. Replaces `patches`, and reorders `found`.
+void reduceToManifolds(std::vector<WeightedPoint>& found, const std::vector<std::uint64_t>& old_ids,
+                       btScalar spacing, ReductionScratch& scratch, std::vector<ContactPatch>& patches);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

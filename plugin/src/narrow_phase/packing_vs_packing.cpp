@@ -8,11 +8,11 @@ namespace {
 
 /// By how much spheres without volume-true radii are enlarged to fill their solid [m].
 btScalar gapsOf(const PackingShape& shape, const Prefix& prefix) {
-  return prefix.volume_true == nullptr ? prefix.recess() * shape.getLocalScaling().x() : btScalar(0);
+  return prefix.volume_true == nullptr ? prefix.inset() * shape.getLocalScaling().x() : btScalar(0);
 }
 
 /// Keeps those of `contacts` that are samples. `count_a`: those of A come first, before and after.
-void keepSamples(const std::vector<SphereContact>& contacts, std::size_t count_a, Candidates& samples,
+void keepSamples(const std::vector<SphereContact>& contacts, std::size_t count_a, Samples& samples,
                  std::vector<SphereContact>& kept, std::size_t& kept_a) {
   constexpr std::size_t kNone = ~std::size_t(0);
   static thread_local std::vector<std::size_t> place;
@@ -44,11 +44,11 @@ void appendHalves(const QueryResult::Ranges<SphereContact>& ranges, std::size_t 
 }  // namespace
 
 struct PackingVsPacking::Bodies {
-  Bodies(const PackingVsPacking& pair, const Measure& measure)
-      : a(*pair.a_, pair.now_.a, Estimator::raw, measure.slack_a, measure.prefix_a),
-        b(*pair.b_, pair.now_.b, Estimator::raw, measure.slack_b, measure.prefix_b) {}
-  PackingBody a;
-  PackingBody b;
+  Bodies(const PackingVsPacking& pair, const ContactSettings& measure)
+      : a(*pair.a_, pair.now_.a, Estimator::raw, measure.search_margin_a, measure.prefix_a),
+        b(*pair.b_, pair.now_.b, Estimator::raw, measure.search_margin_b, measure.prefix_b) {}
+  PlacedPacking a;
+  PlacedPacking b;
 };
 
 QueryOptions queryOptionsOf(SearchPass pass, Estimator estimator) {
@@ -76,20 +76,22 @@ PairQuery PackingVsPacking::makeQuery(SearchPass pass) const {
 }
 
 PairQuery PackingVsPacking::makeVolumeQuery(const ContactOptions& options, const Placed& now) const {
-  return makeQuery(SearchPass::volumes, Measure(options, *a_, *b_, 0), now);
+  return makeQuery(SearchPass::volumes, ContactSettings(options, *a_, *b_, 0), now);
 }
 
-PairQuery PackingVsPacking::makeQuery(SearchPass pass, const Measure& measure, const Placed& now) const {
+PairQuery PackingVsPacking::makeQuery(SearchPass pass, const ContactSettings& measure,
+                                      const Placed& now) const {
   PairQuery query;
   query.a = &a_->model();
   query.b = &b_->model();
-  query.placement_a = PackingBody(*a_, now.a, Estimator::raw, 0).placement();
-  query.placement_b = PackingBody(*b_, now.b, Estimator::raw, 0).placement();
+  query.placement_a = PlacedPacking(*a_, now.a, Estimator::raw, 0).placement();
+  query.placement_b = PlacedPacking(*b_, now.b, Estimator::raw, 0).placement();
   query.margin = a_->getMargin() + b_->getMargin();
   query.prefix_a = static_cast<std::uint32_t>(measure.prefix_a->count);
   query.prefix_b = static_cast<std::uint32_t>(measure.prefix_b->count);
-  if (pass == SearchPass::surfaces) query.margin += measure.slack();
-  if (pass == SearchPass::deep) query.margin += gapsOf(*a_, *measure.prefix_a) + gapsOf(*b_, *measure.prefix_b);
+  if (pass == SearchPass::surfaces) query.margin += measure.search_margin();
+  if (pass == SearchPass::deep)
+    query.margin += gapsOf(*a_, *measure.prefix_a) + gapsOf(*b_, *measure.prefix_b);
   return query;
 }
 
@@ -109,9 +111,9 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
   SearchPass next = SearchPass::none;
   if (pass == SearchPass::surfaces) {
     const Bodies bodies(*this, *search_);
-    findCandidates(contacts, PackingGauge(bodies.a, bodies.b, contacts, count_a), search_->spacing, reference,
-                   memory.patches, memory.candidates);
-    keepSamples(contacts, count_a, memory.candidates, contacts_, count_a_);
+    selectSamples(contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), search_->spacing, reference,
+                  memory.patches, memory.samples);
+    keepSamples(contacts, count_a, memory.samples, contacts_, count_a_);
     const bool near = evaluateDepths(bodies);
     if (!contacts.empty() && !near) next = SearchPass::touch;
   } else if (pass == SearchPass::deep) {
@@ -138,8 +140,8 @@ bool PackingVsPacking::refine(const Placed& now, btScalar) {
 
 /// Whether surfaces are near each other at any of the samples.
 bool PackingVsPacking::evaluateDepths(const Bodies& bodies) {
-  const PackingGauge gauge(bodies.a, bodies.b, contacts_, count_a_);
-  return measurePatches(memory.candidates, gauge, *search_, memory.patches);
+  const PackingProbe probe(bodies.a, bodies.b, contacts_, count_a_);
+  return refinePatches(memory.samples, probe, *search_, memory.patches);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -45,15 +45,15 @@ class PackingVsPacking : public FoundContact {
  private:
   struct Bodies;
   bool evaluateDepths(const Bodies& bodies);
-  PairQuery makeQuery(SearchPass pass, const Measure& measure, const Placed& now) const;
+  PairQuery makeQuery(SearchPass pass, const ContactSettings& measure, const Placed& now) const;
 
   const PackingShape* a_;
   const PackingShape* b_;
   Placed now_;
-  std::optional<Measure> search_;        ///< settings of a search that is under way
-  std::vector<SphereContact> contacts_;  ///< the samples
-  std::size_t count_a_ = 0;              ///< of A's spheres, which come first
-  Overlap overlap_;                      ///< only where depth is not measured on the surfaces
+  std::optional<ContactSettings> search_;  ///< settings of a search that is under way
+  std::vector<SphereContact> contacts_;    ///< the samples
+  std::size_t count_a_ = 0;                ///< of A's spheres, which come first
+  Overlap overlap_;                        ///< only where depth is not measured on the surfaces
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

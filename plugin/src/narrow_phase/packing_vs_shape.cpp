@@ -13,10 +13,10 @@ namespace {
 
 /// The cap that a plane at signed distance `s` from its centre cuts from a ball. The ball is at `centre`, the
 /// plane's normal points to the side that is kept out.
-SphereContact cap(const Touch& touch, const btVector3& centre, double r) {
-  const double s = touch.distance;
+SphereContact cap(const NearSphere& near_sphere, const btVector3& centre, double r) {
+  const double s = near_sphere.distance;
   SphereContact contact;
-  contact.sphere = touch.sphere;
+  contact.sphere = near_sphere.sphere;
   if (s <= -r) {
     contact.volume = static_cast<float>(4.0 / 3.0 * M_PI * r * r * r);
     contact.centroid = toFloats(centre);
@@ -26,8 +26,8 @@ SphereContact cap(const Touch& touch, const btVector3& centre, double r) {
   contact.volume = static_cast<float>(M_PI * h * h * (3 * r - h) / 3);
   // The cap's centroid lies 3 (2r - h)^2 / (4 (3r - h)) from the centre of the ball.
   const double offset = 3 * (2 * r - h) * (2 * r - h) / (4 * (3 * r - h));
-  contact.centroid = toFloats(centre - touch.normal * btScalar(offset));
-  contact.area = toFloats(touch.normal * btScalar(-M_PI * (r * r - s * s)));
+  contact.centroid = toFloats(centre - near_sphere.normal * btScalar(offset));
+  contact.area = toFloats(near_sphere.normal * btScalar(-M_PI * (r * r - s * s)));
   return contact;
 }
 
@@ -39,22 +39,22 @@ double capEnergy(double s, double r) {
   return M_PI * (r * h * h * h / 3 - h * h * h * h / 12) + ball * std::max(0.0, -s - r);
 }
 
-Overlap sumOf(const PackingBody& a, const std::vector<Touch>& touches) {
+Overlap sumOf(const PlacedPacking& a, const std::vector<NearSphere>& near_spheres) {
   Overlap sum;
   btVector3 force(0, 0, 0), torque(0, 0, 0), area(0, 0, 0), moment(0, 0, 0);
-  for (const Touch& touch : touches) {
-    const btScalar r = a.radiusOf(touch.sphere) + a.margin;
-    if (!(touch.distance < r)) continue;
-    const btVector3 centre = a.centreOf(touch.sphere);
-    const SphereContact contact = cap(touch, centre, r);
-    const btVector3 push = touch.normal * btScalar(-contact.volume);
+  for (const NearSphere& near_sphere : near_spheres) {
+    const btScalar r = a.radiusOf(near_sphere.sphere) + a.margin;
+    if (!(near_sphere.distance < r)) continue;
+    const btVector3 centre = a.centreOf(near_sphere.sphere);
+    const SphereContact contact = cap(near_sphere, centre, r);
+    const btVector3 push = near_sphere.normal * btScalar(-contact.volume);
     force += push;
     torque += centre.cross(push);
     area += toBullet(contact.area);
     moment += toBullet(contact.centroid) * btScalar(contact.volume);
     sum.volume += contact.volume;
     sum.stiffness += toBullet(contact.area).length();
-    sum.energy += capEnergy(touch.distance, r);
+    sum.energy += capEnergy(near_sphere.distance, r);
     ++sum.pair_count;
   }
   sum.force = toDoubles(force);
@@ -67,7 +67,7 @@ Overlap sumOf(const PackingBody& a, const std::vector<Touch>& touches) {
 }  // namespace
 
 PackingVsShape::PackingVsShape(const PackingShape& packing, const btCollisionShape& other)
-    : packing_(packing), other_(other), surface_(makeOtherSurface(other)) {}
+    : packing_(packing), other_(other), surface_(makeShapeSurface(other)) {}
 
 void PackingVsShape::search(const ContactOptions& options, const Placed& now, btScalar needed) {
   static thread_local std::vector<SphereContact> contacts;
@@ -77,23 +77,23 @@ void PackingVsShape::search(const ContactOptions& options, const Placed& now, bt
     memory.patches.clear();
     return;
   }
-  const Measure measure(options, packing_, other_, needed);
-  const PackingBody a(packing_, now.a, measure.estimator, measure.slack_a, measure.prefix_a);
-  touches_.clear();
-  surface_->touch(a, now.b, touches_);
+  const ContactSettings measure(options, packing_, other_, needed);
+  const PlacedPacking a(packing_, now.a, measure.estimator, measure.search_margin_a, measure.prefix_a);
+  near_spheres_.clear();
+  surface_->findNearSpheres(a, now.b, near_spheres_);
   on_surfaces = measure.on_surfaces;
   if (measure.on_surfaces) {
-    capsOf(a, a.slack, contacts);
-    assert(contacts.size() == touches_.size());  // the gauge counts on it
-    const SurfaceGauge gauge(a, *surface_, now.b, touches_);
-    findCandidates(contacts, gauge, measure.spacing, now.a.getBasis(), memory.patches, memory.candidates);
-    const bool near = measurePatches(memory.candidates, gauge, measure, memory.patches);
+    capsOf(a, a.search_margin, contacts);
+    assert(contacts.size() == near_spheres_.size());  // the probe counts on it
+    const ShapeProbe probe(a, *surface_, now.b, near_spheres_);
+    selectSamples(contacts, probe, measure.spacing, now.a.getBasis(), memory.patches, memory.samples);
+    const bool near = refinePatches(memory.samples, probe, measure, memory.patches);
     // Spheres that overlap where no surface is near: the packing is too deep for them.
     if (!near) capsOf(a, 0, contacts);
     on_surfaces = near || contacts.empty();
   } else {
     capsOf(a, 0, contacts);
-    if (options.response == Response::penalty) overlap_ = sumOf(a, touches_);
+    if (options.response == Response::penalty) overlap_ = sumOf(a, near_spheres_);
   }
   if (!on_surfaces) volumePatches(contacts, measure.spacing, now.a.getBasis(), memory.patches);
   memory.noteSearch(now);
@@ -101,11 +101,13 @@ void PackingVsShape::search(const ContactOptions& options, const Placed& now, bt
   settings = measure;
 }
 
-void PackingVsShape::capsOf(const PackingBody& a, btScalar slack, std::vector<SphereContact>& caps) const {
+void PackingVsShape::capsOf(const PlacedPacking& a, btScalar search_margin,
+                            std::vector<SphereContact>& caps) const {
   caps.clear();
-  for (const Touch& touch : touches_) {
-    const btScalar reach = a.radiusOf(touch.sphere) + a.margin + slack;
-    if (touch.distance < reach) caps.push_back(cap(touch, a.centreOf(touch.sphere) + touch.aside, reach));
+  for (const NearSphere& near_sphere : near_spheres_) {
+    const btScalar reach = a.radiusOf(near_sphere.sphere) + a.margin + search_margin;
+    if (near_sphere.distance < reach)
+      caps.push_back(cap(near_sphere, a.centreOf(near_sphere.sphere) + near_sphere.aside, reach));
   }
 }
 
@@ -117,24 +119,27 @@ bool PackingVsShape::hasSameShapes() {
 
 bool PackingVsShape::refine(const Placed& now, btScalar needed) {
   const btScalar separation = btMax(settings->spacing, needed + kSearchAgain * settings->spacing);
-  const btScalar slack = separation + settings->prefix_a->recess() * packing_.getLocalScaling().x();
-  const PackingBody a(packing_, now.a, settings->estimator, slack, settings->prefix_a);
-  if (!surface_->touchAgain(a, now.b, touches_)) return false;
+  const btScalar search_margin = separation + settings->prefix_a->inset() * packing_.getLocalScaling().x();
+  const PlacedPacking a(packing_, now.a, settings->estimator, search_margin, settings->prefix_a);
+  if (!surface_->updateNearSpheres(a, now.b, near_spheres_)) return false;
   memory.turnTo(now);
-  const SurfaceGauge gauge(a, *surface_, now.b, touches_);
-  const bool near = measurePatches(memory.candidates, gauge, *settings, memory.patches);
-  const auto cuts = [&](const Touch& touch) { return touch.distance < a.radiusOf(touch.sphere) + a.margin; };
-  if (!near && std::any_of(touches_.begin(), touches_.end(), cuts)) return false;
+  const ShapeProbe probe(a, *surface_, now.b, near_spheres_);
+  const bool near = refinePatches(memory.samples, probe, *settings, memory.patches);
+  const auto cuts = [&](const NearSphere& near_sphere) {
+    return near_sphere.distance < a.radiusOf(near_sphere.sphere) + a.margin;
+  };
+  if (!near && std::any_of(near_spheres_.begin(), near_spheres_.end(), cuts)) return false;
   memory.noteDepths(now, settings->separation);
   return true;
 }
 
 Overlap PackingVsShape::volumesAt(const ContactOptions& options, const Placed& now) const {
-  static thread_local std::vector<Touch> touches;
-  const PackingBody a(packing_, now.a, options.estimator, 0, Measure(options, packing_, other_, 0).prefix_a);
-  touches.clear();
-  if (surface_) surface_->touch(a, now.b, touches);
-  return sumOf(a, touches);
+  static thread_local std::vector<NearSphere> near_spheres;
+  const PlacedPacking a(packing_, now.a, options.estimator, 0,
+                        ContactSettings(options, packing_, other_, 0).prefix_a);
+  near_spheres.clear();
+  if (surface_) surface_->findNearSpheres(a, now.b, near_spheres);
+  return sumOf(a, near_spheres);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

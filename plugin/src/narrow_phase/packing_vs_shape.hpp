@@ -31,12 +31,12 @@ class PackingVsShape : public FoundContact {
   Overlap volumesAt(const ContactOptions& options, const Placed& now) const;
 
  private:
-  void capsOf(const PackingBody& a, btScalar slack, std::vector<SphereContact>& caps) const;
+  void capsOf(const PlacedPacking& a, btScalar search_margin, std::vector<SphereContact>& caps) const;
 
   const PackingShape& packing_;
   const btCollisionShape& other_;
-  std::unique_ptr<OtherSurface> surface_;  ///< null for shapes without one
-  std::vector<Touch> touches_;             ///< of the last search: the samples
+  std::unique_ptr<ShapeSurface> surface_;  ///< null for shapes without one
+  std::vector<NearSphere> near_spheres_;   ///< of the last search: the samples
   std::optional<Overlap> overlap_;         ///< where forces need it
 };
 

@@ -1,6 +1,7 @@
 #include "narrow_phase/patch_moments.hpp"
 
 #include "common/bullet_vectors.hpp"
+#include "narrow_phase/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -53,7 +54,7 @@ PatchMoments patchMoments(const std::vector<SphereContact>& contacts, const std:
     const btScalar depth = m.volume / m.area;
     const btScalar det = m.spread[0] * m.spread[2] - m.spread[1] * m.spread[1];
     const btScalar trace = m.spread[0] + m.spread[2];
-    if (det > btScalar(1e-4) * trace * trace) {
+    if (det > kThinPatch * trace * trace) {
       m.slope[0] = depth * (m.spread[2] * u - m.spread[1] * v) / det;
       m.slope[1] = depth * (m.spread[0] * v - m.spread[1] * u) / det;
     }

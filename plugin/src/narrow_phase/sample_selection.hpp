@@ -1,25 +1,26 @@
-// Which contacts of spheres are worth measuring on the surfaces.
+// Which spheres in contact are worth probing on the surfaces.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "narrow_phase/contact_settings.hpp"
+#include <LinearMath/btMatrix3x3.h>
+
+#include "innersphere/overlap.hpp"
 #include "narrow_phase/patch_moments.hpp"
-#include "narrow_phase/surface_probe.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Contacts to measure, patch after patch.
-struct Candidates {
+/// Contacts of spheres to probe, patch after patch.
+struct Samples {
   struct OfPatch {
     btVector3 normal;  ///< unit, from A to B
     btScalar area;     ///< [m^2]
     btScalar radius;   ///< mean distance of the area from its centre [m]
     std::size_t end;   ///< behind its last index
   };
-  /// Where a contact was measured last. It is measured there again first.
+  /// Where a sample was probed last. It is probed there again first.
   struct Line {
     btVector3 direction{0, 0, 0};  ///< unit, from A to B; 0 if the line met no surfaces
     std::size_t triangle_a = 0;
@@ -30,24 +31,49 @@ struct Candidates {
   std::vector<OfPatch> patches;
 };
 
+/// The spheres behind a list of contacts.
+class ContactSpheres {
+ public:
+  virtual ~ContactSpheres() = default;
+  /// The same from step to step.
+  virtual std::uint64_t id(std::size_t index) const = 0;
+  /// How far a sphere stands out of its solid along `normal` (from A to B), or, where that is known, towards
+  /// the other surface. Only differences between spheres of one solid matter [m].
+  struct Protrusion {
+    bool of_a;
+    btScalar distance;
+  };
+  virtual Protrusion protrusion(std::size_t index, const btVector3& normal) const = 0;
+};
+
 struct PatchContacts {
   const std::vector<SphereContact>& contacts;
   const std::vector<std::size_t>& indices;  ///< those of the patch
   const PatchMoments& moments;
-  const std::vector<std::uint64_t>& old_ids;  ///< points of the step before
-  const Gauge& gauge;
-  btScalar spacing;  ///< see Measure
+  const std::vector<std::uint64_t>& old_ids;  ///< of the points of the step before
+  const ContactSpheres& spheres;
+};
+
+/// Room to work in.
+struct SelectionScratch {
+  std::vector<std::size_t> indices;
+  std::vector<std::size_t> picked;
 };
 
 /// Turns all directions.
-void turn(const btMatrix3x3& by, Candidates& candidates);
+void turn(const btMatrix3x3& by, Samples& samples);
 
-/// Leaves those that have been measured once, and were near enough to be measured again.
-void dropUnmeasured(Candidates& candidates);
+/// Leaves those whose lines met the surfaces, and that were near enough to be probed again.
+void dropUnprobed(Samples& samples);
+
+/// Drops contacts that are far less deep than the deepest of them: these only touch because they were
+/// enlarged. `spacing`: see ContactSettings.
+void dropShallow(const std::vector<SphereContact>& contacts, btScalar spacing,
+                 std::vector<std::size_t>& indices);
 
 /// Appends some contacts of a patch: those of the step before, those that span the patch, those that stand
-/// out or face the other body most, and some of the others.
-void pickCandidates(const PatchContacts& from, Candidates& candidates);
+/// out or face the other body most, and some of the others. All of them if they are few.
+void appendSamples(const PatchContacts& from, SelectionScratch& scratch, Samples& samples);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -1,20 +1,22 @@
-// Depth of contact, measured on the surfaces of the solids.
+// Depth of contact, probed on the surfaces of the solids.
 //
-// Spheres find a contact, but they end a little inside of the surface, or, with volume-true radii, bulge out
-// of it. So the depth at a contact is measured along a line: where it leaves A and where it enters B.
+// Spheres find a contact, but they end a little inside of the surface, or, with volume-true radii, stand out
+// of it. So the depth at a contact is found along a line: where it leaves A and where it enters B.
 #pragma once
 
-#include <vector>
+#include <cstddef>
+#include <cstdint>
 
-#include "innersphere/overlap.hpp"
-#include "narrow_phase/shapes/shape_surface.hpp"
-#include "shape/placed_packing.hpp"
+#include <LinearMath/btVector3.h>
+
+#include "innersphere/bullet_precision.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Two opposed points of the surfaces. Axes of the world, positions relative to the origin of A's packing.
-struct Gap {
+/// Two opposed points of the surfaces. Axes are those of the world, positions are relative to the origin of
+/// A's packing.
+struct OpposedPoints {
   btVector3 on_a{0, 0, 0};
   btVector3 on_b{0, 0, 0};
   btVector3 normal_a{0, 0, 0};  ///< unit, out of A
@@ -25,115 +27,37 @@ struct Gap {
   std::size_t triangle_b = kNone;  ///< of B's, if B is a packing
 
   static constexpr std::size_t kNone = ~std::size_t(0);
+
+  /// How deep the solids are in each other along a unit vector from A to B [m].
+  btScalar depthAlong(const btVector3& direction) const { return (on_a - on_b).dot(direction); }
+  /// Both surfaces are flat there.
+  bool areFlat() const { return curvature_a == 0 && curvature_b == 0; }
 };
 
-/// Measures along a line through the centre of a sphere in contact.
-class Gauge {
- public:
-  virtual ~Gauge() = default;
-  /// At contact `index` of the list that the gauge was made for, along `direction` from A to B (a shape that
-  /// is no packing chooses its own), with the line moved sideways by `shift`. False if the line does not pass
-  /// both surfaces near there. The triangles that `gap` comes with, or those around them, are taken if the
-  /// line passes them; all are looked at only where they are kNone, or missed. Where B is no packing, the gap
-  /// then holds a face of A all the same: that by which the line leaves A sideways, or one near the sphere.
-  virtual bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
-                       Gap& gap) const = 0;
-  /// The direction from A to B in which the sphere of a contact is nearest to the other solid's surface.
-  /// False if it is too far away to tell. Leaves the triangles near the sphere in `gap`.
-  virtual bool nearest(std::size_t index, btVector3& direction, Gap& gap) const = 0;
-  /// How far the faces at a gap go on in direction `towards` (unit), until they end in a sharp edge [m].
-  struct Reach {
-    btScalar a;
-    btScalar b;
-  };
-  virtual Reach reach(const Gap& gap, const btVector3& towards) const = 0;
-  /// Appends the corners near a gap where A (or else B) reaches furthest along `normal` (from A to B) and
-  /// that are over the face of the other solid; also the far end of an edge that is level. Each with the
-  /// point of the face that it is over.
-  struct Corner {
-    Gap gap;
-    std::uint64_t id = 0;   ///< no sphere has it
-    bool is_peak = true;    ///< the surface does not rise on from it
-    bool is_alone = false;  ///< a crossing, and the gap that it was found from lies at an edge of B: its
-                            ///< corners are over no face
-  };
-  virtual void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
-                       std::vector<Corner>& corners) const = 0;
-  /// Where, not far from a gap between two flat faces, an edge of A crosses one of B, and both solids have
-  /// nothing further out along the normal to both nearby. False if none is found. `direction`: about that in
-  /// which the solids are in contact, from A to B.
-  virtual bool crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const = 0;
-  /// How far the sphere of a contact stands out of its solid along `normal` (from A to B), or, where that is
-  /// known, towards the other surface. Only differences between spheres of one solid matter [m].
-  struct Forward {
-    bool of_a;
-    btScalar distance;
-  };
-  virtual Forward forward(std::size_t index, const btVector3& normal) const = 0;
-  /// Of the sphere behind a contact: the same from step to step.
-  virtual std::uint64_t id(std::size_t index) const = 0;
-  /// The normals of B do not come from triangles.
-  virtual bool exactB() const = 0;
+/// A sphere in contact that was chosen as a sample, and what was found along its line.
+struct ProbedSample {
+  OpposedPoints points;
+  btVector3 direction{0, 0, 0};  ///< of the line, unit, from A to B
+  std::size_t index = 0;         ///< of the contact
+  std::uint64_t id = 0;          ///< of the sphere
+  bool starts_ascent = false;    ///< an ascent to a deepest point began here
 };
 
-/// Contacts of a packing with a shape of another kind; `touches` are parallel to the contacts.
-class SurfaceGauge : public Gauge {
+/// Finds opposed points along lines through the spheres in contact. `index` is that of a contact in the list
+/// that the probe was made for.
+class SurfaceProbe {
  public:
-  /// `world`: where the other shape is.
-  SurfaceGauge(const PackingBody& a, OtherSurface& other, const btTransform& world,
-               const std::vector<Touch>& touches)
-      : a_(a), other_(other), world_(world), touches_(touches) {}
-  bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
-               Gap& gap) const override;
-  bool nearest(std::size_t index, btVector3& direction, Gap& gap) const override;
-  /// Of the other shape only its distance is known: it is taken as large.
-  Reach reach(const Gap&, const btVector3&) const override { return {0, BT_LARGE_FLOAT}; }
-  void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
-               std::vector<Corner>& corners) const override;
-  bool crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const override;
-  Forward forward(std::size_t index, const btVector3& normal) const override;
-  std::uint64_t id(std::size_t index) const override { return touches_[index].sphere; }
-  bool exactB() const override { return true; }
-
- private:
-  /// Whether the plane of a touch is still the surface of B at `place` of it.
-  bool goesOn(const Touch& touch, const btVector3& place) const;
-
-  const PackingBody& a_;
-  OtherSurface& other_;
-  const btTransform& world_;
-  const std::vector<Touch>& touches_;
-};
-
-/// Contacts of two packings: the first `count_a` are of A's spheres, the others of B's.
-class PackingGauge : public Gauge {
- public:
-  PackingGauge(const PackingBody& a, const PackingBody& b, const std::vector<SphereContact>& contacts,
-               std::size_t count_a)
-      : a_(a), b_(b), contacts_(contacts), count_a_(count_a) {}
-  bool measure(std::size_t index, const btVector3& direction, const btVector3& shift,
-               Gap& gap) const override;
-  bool nearest(std::size_t index, btVector3& direction, Gap& gap) const override;
-  Reach reach(const Gap& gap, const btVector3& towards) const override;
-  void corners(std::size_t index, const Gap& gap, const btVector3& normal, bool of_a,
-               std::vector<Corner>& corners) const override;
-  bool crossing(const Gap& gap, const btVector3& direction, Corner& crossing) const override;
-  Forward forward(std::size_t index, const btVector3& normal) const override;
-  std::uint64_t id(std::size_t index) const override;
-  bool exactB() const override { return false; }
-
- private:
-  btVector3 apart() const { return b_.origin() - a_.origin(); }
-  /// How far away the solid of a contact's sphere may end [m].
-  btScalar reachOf(std::size_t index) const {
-    const PackingBody& own = index < count_a_ ? a_ : b_;
-    return own.ownRadius(contacts_[index].sphere) + own.slack;
-  }
-
-  const PackingBody& a_;
-  const PackingBody& b_;
-  const std::vector<SphereContact>& contacts_;
-  std::size_t count_a_;
+  virtual ~SurfaceProbe() = default;
+  /// Probes along `direction` from A to B (a shape that is no packing chooses its own), with the line moved
+  /// sideways by `shift` [m]. False if the line does not pass both surfaces near there. The triangles that
+  /// `points` comes with, or those around them, are taken if the line passes them; all are looked at only
+  /// where they are kNone, or missed. Where B is no packing, `points` then holds a face of A all the same:
+  /// that by which the line leaves A sideways, or one near the sphere.
+  virtual bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
+                         OpposedPoints& points) const = 0;
+  /// The direction from A to B in which the sphere is nearest to the other solid's surface. False if it is
+  /// too far away to tell. Leaves the triangles near the sphere in `points`.
+  virtual bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const = 0;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -31,8 +31,8 @@ Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot
       !at_b)
     return Reuse::search;
   const Placed now{*at_a, *at_b};
-  const ContactMemory& memory = pair.found->memory;
-  const Measure& settings = *pair.found->settings;
+  const ContactTransport& memory = pair.found->memory;
+  const ContactSettings& settings = *pair.found->settings;
   if (!pair.found->on_surfaces && !(memory.measuredAt() == now)) return Reuse::search;
   const btScalar size_a = sizeOf(*pair.a.shape), size_b = sizeOf(*pair.b.shape);
   const btScalar needed = neededSeparation(pair, a, b, time_step);

@@ -22,29 +22,29 @@ class Prefix {
  public:
   Prefix(const Packing& packing, std::size_t count);
 
-  const SphereTree& tree() const;
+  const SphereBvh& tree() const;
   bool hasTree() const { return tree_.made(); }
   /// How far the spheres may end inside of the surface; 0 if the packing has none.
-  btScalar recess() const;
+  btScalar inset() const;
 
   const std::size_t count;
   const VolumeTrueRadii* const volume_true;  ///< the longest list that is not longer, or null
-  const btScalar largest_bulge;              ///< largest of them minus the sphere's own radius; 0 if none
+  const btScalar largest_overshoot;          ///< largest of them minus the sphere's own radius; 0 if none
   const btScalar median_radius;
 
  private:
   const Packing& packing_;
-  Lazy<SphereTree> tree_;
-  Lazy<btScalar> recess_;
+  Lazy<SphereBvh> tree_;
+  Lazy<btScalar> inset_;
 };
 
 /// Trees are built when they are first asked for. Const members are safe to call from several threads at
 /// once.
-class PackedSolid {
+class PackedModel {
  public:
-  explicit PackedSolid(std::shared_ptr<const CollisionModel> collision_model);
+  explicit PackedModel(std::shared_ptr<const CollisionModel> collision_model);
   /// The one of a model: the same as long as somebody holds it.
-  static std::shared_ptr<const PackedSolid> of(std::shared_ptr<const CollisionModel> model);
+  static std::shared_ptr<const PackedModel> of(std::shared_ptr<const CollisionModel> model);
 
   const Packing& packing() const { return model->packing(); }
   bool hasSurface() const { return !packing().surface.triangles.empty(); }
@@ -54,13 +54,13 @@ class PackedSolid {
   /// from the surface; `most` if there is none, or no surface.
   const Prefix& prefixWithin(btScalar gap, const Prefix& most) const;
   /// Only if hasSurface(). In the packing's frame.
-  const SurfaceTree& surfaceTree() const;
+  const SurfaceQueries& surfaceQueries() const;
   /// The triangle that is nearest to the centre of a sphere.
   std::size_t triangleNear(std::size_t sphere) const;
-  const VertexClimb& vertexClimb() const;
+  const VertexHillClimb& vertexHillClimb() const;
   /// What has been built so far.
   struct Built {
-    bool sphere_tree, surface_tree, vertex_climb;
+    bool sphere_bvh, surface_queries, vertex_hill_climb;
   };
   Built built() const;
 
@@ -71,11 +71,11 @@ class PackedSolid {
  private:
   mutable std::mutex mutex_;
   mutable std::map<std::size_t, Prefix> prefixes_;
-  Lazy<SurfaceTree> surface_tree_;
+  Lazy<SurfaceQueries> surface_queries_;
   /// Plus one; 0 until it is asked for.
   using Triangles = std::unique_ptr<std::atomic<std::uint32_t>[]>;
   Lazy<Triangles> triangles_near_;
-  Lazy<VertexClimb> vertex_climb_;
+  Lazy<VertexHillClimb> vertex_hill_climb_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

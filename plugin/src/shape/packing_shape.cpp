@@ -28,11 +28,11 @@ struct ToShapeFrame : btTriangleCallback {
   btTriangleCallback* user = nullptr;
 };
 
-std::shared_ptr<const PackedSolid> solidOf(std::shared_ptr<const CollisionModel> model) {
+std::shared_ptr<const PackedModel> solidOf(std::shared_ptr<const CollisionModel> model) {
   if (!model) {
     throw Error(ErrorCode::bad_argument, "PackingShape needs a CollisionModel; it was given a null pointer.");
   }
-  return PackedSolid::of(std::move(model));
+  return PackedModel::of(std::move(model));
 }
 
 const btTransform& checkedFrame(const btTransform& mesh_to_body) {
@@ -60,12 +60,12 @@ btTransform translation(const btVector3& by) {
 
 }  // namespace
 
-PackingShape::Impl::Impl(std::shared_ptr<const PackedSolid> packed_solid)
+PackingShape::Impl::Impl(std::shared_ptr<const PackedModel> packed_solid)
     : solid(std::move(packed_solid)),
       frame(solid->in_principal),
       prefix(&solid->prefix(packing().spheres.size())) {}
 
-PackingShape::Impl::Impl(std::shared_ptr<const PackedSolid> packed_solid, const btTransform& mesh_to_body)
+PackingShape::Impl::Impl(std::shared_ptr<const PackedModel> packed_solid, const btTransform& mesh_to_body)
     : solid(std::move(packed_solid)),
       frame(packing(), mesh_to_body * translation(toBullet(packing().origin))),
       prefix(&solid->prefix(packing().spheres.size())) {}
@@ -160,12 +160,12 @@ void PackingShape::getAabb(const btTransform& t, btVector3& min, btVector3& max)
   noticeBox();
   const btScalar scale = impl_->scaling.x();
   btTransformAabb(impl_->frame.box_min * scale, impl_->frame.box_max * scale,
-                  impl_->bulge() * scale + getMargin(), t, min, max);
+                  impl_->overshoot() * scale + getMargin(), t, min, max);
 }
 
 void PackingShape::getBoundingSphere(btVector3& centre, btScalar& radius) const {
   centre = impl_->frame.sphere_centre * impl_->scaling.x();
-  radius = (impl_->frame.sphere_radius + impl_->bulge()) * impl_->scaling.x() + getMargin();
+  radius = (impl_->frame.sphere_radius + impl_->overshoot()) * impl_->scaling.x() + getMargin();
 }
 
 btScalar PackingShape::getAngularMotionDisc() const {
@@ -186,8 +186,8 @@ void PackingShape::noteChange() {
   impl_->disc = radius + centre.length();
   const ShapeFrame& frame = impl_->solid->in_principal;
   const btScalar scale = impl_->scaling.x();
-  impl_->size =
-      (frame.sphere_radius + impl_->bulge()) * scale + getMargin() + (frame.sphere_centre * scale).length();
+  impl_->size = (frame.sphere_radius + impl_->overshoot()) * scale + getMargin() +
+                (frame.sphere_centre * scale).length();
 }
 
 btScalar PackingShape::getContactBreakingThreshold(btScalar factor) const {
@@ -233,7 +233,7 @@ void PackingShape::processAllTriangles(btTriangleCallback* callback, const btVec
   btVector3 packing_min, packing_max;
   btTransformAabb(min / to_shape.scale, max / to_shape.scale, 0, to_shape.from_packing.inverse(), packing_min,
                   packing_max);
-  impl_->surfaceTree().processTriangles(&to_shape, packing_min, packing_max);
+  impl_->surfaceQueries().processTriangles(&to_shape, packing_min, packing_max);
 }
 
 int PackingShape::calculateSerializeBufferSize() const {

@@ -17,15 +17,15 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 constexpr int kPackingShapeType = FAST_CONCAVE_MESH_PROXYTYPE;
 
 struct PackingShape::Impl {
-  explicit Impl(std::shared_ptr<const PackedSolid> packed_solid);
-  Impl(std::shared_ptr<const PackedSolid> packed_solid, const btTransform& mesh_to_body);
+  explicit Impl(std::shared_ptr<const PackedModel> packed_solid);
+  Impl(std::shared_ptr<const PackedModel> packed_solid, const btTransform& mesh_to_body);
 
   const Packing& packing() const { return solid->packing(); }
   bool hasSurface() const { return solid->hasSurface(); }
-  const SurfaceTree& surfaceTree() const { return solid->surfaceTree(); }
-  const VertexClimb& vertexClimb() const { return solid->vertexClimb(); }
+  const SurfaceQueries& surfaceQueries() const { return solid->surfaceQueries(); }
+  const VertexHillClimb& vertexHillClimb() const { return solid->vertexHillClimb(); }
   /// By how much volume-true spheres reach out of the boxes below: without a surface they are what collides.
-  btScalar bulge() const { return hasSurface() ? btScalar(0) : prefix->largest_bulge; }
+  btScalar overshoot() const { return hasSurface() ? btScalar(0) : prefix->largest_overshoot; }
   /// The spheres to use where gaps of `accuracy` [m] at the surface are allowed; 0: those the user chose.
   const Prefix& prefixFor(btScalar accuracy) const {
     return accuracy > 0 ? solid->prefixWithin(accuracy / scaling.x(), *prefix) : *prefix;
@@ -36,7 +36,7 @@ struct PackingShape::Impl {
   /// The moments for mass 1 and scale 1 in the shape's frame [m^2].
   btVector3 moments() const;
 
-  const std::shared_ptr<const PackedSolid> solid;
+  const std::shared_ptr<const PackedModel> solid;
   const ShapeFrame frame;
   const Prefix* prefix;  ///< that the user chose
   btVector3 scaling{1, 1, 1};
@@ -44,7 +44,7 @@ struct PackingShape::Impl {
   /// The same in the principal frame: how large the solid is, wherever the origin lies [m].
   btScalar size = 0;
   std::optional<ContactOptions> options;  ///< of its own
-  std::uint64_t version = 0;                ///< another one after each change, and for each shape
+  std::uint64_t version = 0;              ///< another one after each change, and for each shape
   mutable SerializedSpheres serialized;
   mutable RegistrationCheck check;
 };

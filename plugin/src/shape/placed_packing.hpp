@@ -9,16 +9,16 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-struct PackingBody {
-  /// `slack` [m]: how far beyond its radius and the shape's margin a sphere looks for contacts. `prefix`: the
-  /// spheres to use, null for those the shape uses; with Estimator::volume_true as many of them as there are
-  /// such radii for.
-  PackingBody(const PackingShape& packing_shape, const btTransform& body, Estimator estimator, btScalar slack,
-              const Prefix* prefix = nullptr);
+struct PlacedPacking {
+  /// `search_margin` [m]: how far beyond its radius and the shape's margin a sphere looks for contacts.
+  /// `prefix`: the spheres to use, null for those the shape uses; with Estimator::volume_true as many of them
+  /// as there are such radii for.
+  PlacedPacking(const PackingShape& packing_shape, const btTransform& body, Estimator estimator,
+                btScalar search_margin, const Prefix* prefix = nullptr);
 
   const PackingShape::Impl& shape() const { return *impl; }
   std::size_t count() const { return prefix->count; }
-  const SphereTree& sphereTree() const { return prefix->tree(); }
+  const SphereBvh& sphereBvh() const { return prefix->tree(); }
   btScalar scale() const { return impl->scaling.x(); }
   const btVector3& origin() const { return world.getOrigin(); }
 
@@ -33,22 +33,22 @@ struct PackingBody {
     return radii == nullptr ? ownRadius(i) : btScalar(radii[i]) * scale();
   }
   /// How close to the other surface its centre must be to be reported.
-  btScalar reach(std::size_t i) const { return radiusOf(i) + margin + slack; }
+  btScalar searchRadius(std::size_t i) const { return radiusOf(i) + margin + search_margin; }
   /// No sphere reaches further beyond its own radius than this.
-  btScalar largestExcess() const { return slack + margin + excess; }
+  btScalar largestExcess() const { return search_margin + margin + excess; }
 
   Placement placement() const;
 
   /// Of the solid's surface, without the margin: `place` relative to origin(), axes of the world, and the
-  /// normal of the result, too. False if the surface is further away than `reach` [m].
-  bool nearest(const btVector3& place, btScalar reach, SurfaceTree::Nearest& nearest) const;
+  /// normal of the result, too. False if the surface is further away than `max_distance` [m].
+  bool nearest(const btVector3& place, btScalar max_distance, SurfaceQueries::Nearest& nearest) const;
 
   const PackingShape::Impl* impl;
   const Prefix* prefix;
   btTransform world;             ///< from the packing's frame, scaled, to the world
   const float* radii = nullptr;  ///< volume-true radii, or null for the spheres' own
   btScalar margin;               ///< of the shape: the solid is this much larger on all sides [m]
-  btScalar slack;
+  btScalar search_margin;
   btScalar excess = 0;  ///< largest volume-true radius minus own radius [m]
 };
 

@@ -3,7 +3,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-bool EdgedSolid::edgeTowards(std::size_t triangle, const btVector3& point, const btVector3& towards,
+bool SharpEdges::edgeTowards(std::size_t triangle, const btVector3& point, const btVector3& towards,
                              Edge& edge) const {
   SmoothNormals::SharpEdge found;
   if (!surface->sharpEdge(triangle, ((point - origin) * axes) / scale, towards * axes, found)) return false;
@@ -14,24 +14,25 @@ bool EdgedSolid::edgeTowards(std::size_t triangle, const btVector3& point, const
   return true;
 }
 
-bool EdgedSolid::nearestFace(const btVector3& place, btScalar reach, SurfaceTree::Nearest& nearest) const {
-  return surface->nearest(((place - origin) * axes) / scale, reach / scale, nearest);
+bool SharpEdges::nearestFace(const btVector3& place, btScalar max_distance,
+                             SurfaceQueries::Nearest& nearest) const {
+  return surface->nearest(((place - origin) * axes) / scale, max_distance / scale, nearest);
 }
 
-bool EdgedSolid::isIn(const btVector3& place, btScalar reach) const {
-  SurfaceTree::Nearest nearest;
-  return nearestFace(place, reach, nearest) && (nearest.distance < 0) != inside_out;
+bool SharpEdges::isIn(const btVector3& place, btScalar max_distance) const {
+  SurfaceQueries::Nearest nearest;
+  return nearestFace(place, max_distance, nearest) && (nearest.distance < 0) != inside_out;
 }
 
-bool EdgedSolid::nearestTriangle(const btVector3& place, std::size_t& triangle) const {
-  SurfaceTree::Nearest nearest;
+bool SharpEdges::nearestTriangle(const btVector3& place, std::size_t& triangle) const {
+  SurfaceQueries::Nearest nearest;
   if (!nearestFace(place, BT_LARGE_FLOAT, nearest)) return false;
   triangle = nearest.triangle;
   return true;
 }
 
-bool EdgedSolid::distanceOf(const btVector3& place, btScalar& distance) const {
-  SurfaceTree::Nearest nearest;
+bool SharpEdges::distanceOf(const btVector3& place, btScalar& distance) const {
+  SurfaceQueries::Nearest nearest;
   if (!nearestFace(place, BT_LARGE_FLOAT, nearest)) return false;
   distance = btFabs(nearest.distance) * scale;
   return true;

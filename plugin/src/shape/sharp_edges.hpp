@@ -7,15 +7,15 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Faces that meet in sharp edges, placed in the world. Positions are relative to the origin of some packing.
-struct EdgedSolid {
+struct SharpEdges {
   /// Of a packing, whose own origin is at `at`.
-  EdgedSolid(const PackingBody& body, const btVector3& at)
-      : surface(&body.shape().surfaceTree()),
+  SharpEdges(const PlacedPacking& body, const btVector3& at)
+      : surface(&body.shape().surfaceQueries()),
         axes(body.world.getBasis()),
         origin(at),
         scale(body.scale()),
         margin(body.margin) {}
-  EdgedSolid() = default;
+  SharpEdges() = default;
 
   /// The sharp edge that is met from a point of a triangle.
   struct Edge {
@@ -32,16 +32,16 @@ struct EdgedSolid {
   /// Its normal: unit, out of the solid unless that is inside out.
   btVector3 face(std::size_t triangle) const { return axes * surface->normals().face(triangle); }
   /// The face that is nearest to a place, in the frame and the lengths of the surface. False if none is
-  /// within `reach` [m].
-  bool nearestFace(const btVector3& place, btScalar reach, SurfaceTree::Nearest& nearest) const;
-  /// Whether the faces enclose a place that is no further away from them than `reach` [m].
-  bool isIn(const btVector3& place, btScalar reach) const;
+  /// within `max_distance` [m].
+  bool nearestFace(const btVector3& place, btScalar max_distance, SurfaceQueries::Nearest& nearest) const;
+  /// Whether the faces enclose a place that is no further away from them than `max_distance` [m].
+  bool isIn(const btVector3& place, btScalar max_distance) const;
   /// The triangle that is nearest to a place. False if there is none.
   bool nearestTriangle(const btVector3& place, std::size_t& triangle) const;
   /// How far away from the faces a place is, on either side. False if there are none.
   bool distanceOf(const btVector3& place, btScalar& distance) const;
 
-  const SurfaceTree* surface = nullptr;
+  const SurfaceQueries* surface = nullptr;
   btMatrix3x3 axes = btMatrix3x3::getIdentity();
   btVector3 origin{0, 0, 0};
   btScalar scale = 1;

@@ -5,7 +5,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-SphereTree::SphereTree(const std::vector<Sphere>& spheres, std::size_t count) {
+SphereBvh::SphereBvh(const std::vector<Sphere>& spheres, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     btDbvtNode* leaf =
         tree_.insert(btDbvtVolume::FromCR(centre(spheres[i]), btScalar(spheres[i].radius)), nullptr);

@@ -14,12 +14,12 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Bullet's own box tree over the spheres, in the packing's frame. Const members are safe to call from
 /// several threads at once.
-class SphereTree {
+class SphereBvh {
  public:
   /// Of the first `count` spheres.
-  SphereTree(const std::vector<Sphere>& spheres, std::size_t count);
-  SphereTree(const SphereTree&) = delete;
-  SphereTree& operator=(const SphereTree&) = delete;
+  SphereBvh(const std::vector<Sphere>& spheres, std::size_t count);
+  SphereBvh(const SphereBvh&) = delete;
+  SphereBvh& operator=(const SphereBvh&) = delete;
 
   /// Calls visit(index) for every sphere whose box, and those above it in the tree, enter(min, max) accepts.
   template <typename Enter, typename Visit>

@@ -6,19 +6,23 @@
 #include <limits>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
 #include "common/bullet_vectors.hpp"
-#include "surface/nearest_triangle.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-using Lanes = TriangleTree::Lanes;
+using Lanes = TriangleBvh::Lanes;
 constexpr float kFar = std::numeric_limits<float>::infinity();
-/// Rays that are flatter to a triangle meet it itself, not the curved surface that it stands for.
+/// Ratio: hits whose distances differ by less lie on an edge that both triangles share.
 constexpr btScalar kShared = btScalar(1e-5);
+/// Cosine, 84 degrees: rays that are flatter to a triangle meet it itself, not the curved surface that it
+/// stands for.
 constexpr btScalar kGrazing = btScalar(0.1);
+/// Cosine, 15 degrees: a nearest point that is seen from further aside lies on an edge.
+constexpr btScalar kOver = btScalar(0.966);
 
 /// How far along a ray its parts inside of boxes begin.
 class EntersAt {
@@ -31,12 +35,12 @@ class EntersAt {
           static_cast<float>(1 / std::copysign(btMax(btFabs(direction[k]), btScalar(1e-20)), direction[k]));
     }
   }
-  Lanes operator()(const TriangleTree::Boxes& boxes) const {
+  Lanes operator()(const TriangleBvh::Boxes& boxes) const {
     Lanes enter{}, leave = enter + kFar;
     for (int k = 0; k < 3; ++k) {
       const Lanes a = (boxes.min[k] - from_[k]) * inverse_[k], b = (boxes.max[k] - from_[k]) * inverse_[k];
-      enter = TriangleTree::greater(enter, TriangleTree::lesser(a, b));
-      leave = TriangleTree::lesser(leave, TriangleTree::greater(a, b));
+      enter = TriangleBvh::greater(enter, TriangleBvh::lesser(a, b));
+      leave = TriangleBvh::lesser(leave, TriangleBvh::greater(a, b));
     }
     return enter <= leave ? enter : Lanes{} + kFar;
   }
@@ -47,7 +51,7 @@ class EntersAt {
 
 /// What the curved surface is like where its triangle is hit.
 void complete(const SmoothNormals& normals, const SmoothNormals::Crossing& crossing, const btVector3& from,
-              const btVector3& direction, SurfaceTree::Hit& hit) {
+              const btVector3& direction, SurfaceQueries::Hit& hit) {
   hit.distance = crossing.distance;
   hit.face = normals.face(hit.triangle);
   hit.curvature = normals.curvature(hit.triangle);
@@ -61,15 +65,104 @@ void complete(const SmoothNormals& normals, const SmoothNormals::Crossing& cross
   hit.distance = further;
 }
 
+/// The nearest of the triangles that it is shown to a point.
+class NearestTriangle {
+ public:
+  /// Triangles further away from `point` than `max_distance` do not count.
+  NearestTriangle(const SmoothNormals& triangles, const btVector3& point, btScalar max_distance)
+      : triangles_(triangles), point_(point), best2_(max_distance * max_distance) {}
+
+  /// Squares of distances from the point: of boxes, and that beyond which nothing is looked for.
+  Lanes distances2(const TriangleBvh::Boxes& boxes) const;
+  btScalar farthest2() const { return best2_ * (1 + kSame); }
+  /// Shows it a triangle; farthest2() thereafter.
+  btScalar test(std::size_t triangle);
+
+  bool found() const { return found_; }
+  /// Only if found(): of the point from the surface [m], negative inside the solid.
+  btScalar distance() const;
+  /// Unit, out of the solid, along the line from the nearest point.
+  btVector3 normal() const;
+  /// Of those that share the nearest point, the one seen from the steepest angle.
+  std::size_t triangle() const { return triangle_; }
+  /// It is seen from 15 degrees or more.
+  bool beside() const;
+
+ private:
+  /// Triangles whose nearest points differ by less than this fraction of the distance share them.
+  static constexpr btScalar kSame = btScalar(1e-5);
+
+  const SmoothNormals& triangles_;
+  const btVector3 point_;
+  btScalar best2_;
+  bool found_ = false;
+  btScalar height_ = 0;
+  btVector3 face_{0, 0, 0};
+  std::size_t triangle_ = 0;
+  btVector3 offset_{0, 0, 0};
+  btVoronoiSimplexSolver solver_;
+};
+
+Lanes NearestTriangle::distances2(const TriangleBvh::Boxes& boxes) const {
+  Lanes sum{};
+  for (int k = 0; k < 3; ++k) {
+    const float at = static_cast<float>(point_[k]);
+    const Lanes outside = TriangleBvh::greater(boxes.min[k] - at, at - boxes.max[k]);
+    const Lanes gap = TriangleBvh::greater(outside, Lanes{});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+btScalar NearestTriangle::test(std::size_t t) {
+  const btVector3& face = triangles_.face(t);
+  if (face.isZero()) return farthest2();
+  const btVector3* const corners = triangles_.corners(t);
+  btSubSimplexClosestResult closest;
+  closest.reset();
+  solver_.closestPtPointTriangle(point_, corners[0], corners[1], corners[2], closest);
+  const btVector3 offset = point_ - closest.m_closestPointOnSimplex;
+  const btScalar length2 = offset.length2();
+  if (length2 > farthest2()) return farthest2();
+  // Of those that share the nearest point, the one seen from the steepest angle tells inside from outside.
+  const btScalar height = offset.dot(face);
+  const bool shared = found_ && length2 >= best2_ * (1 - kSame);
+  const bool steeper =
+      btFabs(height) > btFabs(height_) || (btFabs(height) == btFabs(height_) && t < triangle_);
+  if (!shared || steeper) {
+    height_ = height;
+    face_ = face;
+    triangle_ = t;
+  }
+  if (length2 < best2_ || !found_) {
+    best2_ = length2;
+    offset_ = offset;
+  }
+  found_ = true;
+  return farthest2();
+}
+
+btScalar NearestTriangle::distance() const {
+  return height_ < 0 ? -btSqrt(best2_) : btSqrt(best2_);
+}
+
+btVector3 NearestTriangle::normal() const {
+  return btSqrt(best2_) > SIMD_EPSILON ? offset_ / distance() : face_;
+}
+
+bool NearestTriangle::beside() const {
+  return btFabs(height_) < kOver * btSqrt(best2_);
+}
+
 }  // namespace
 
-SurfaceTree::SurfaceTree(const Surface& surface) : surface_(surface), tree_(surface) {}
+SurfaceQueries::SurfaceQueries(const Surface& surface) : surface_(surface), tree_(surface) {}
 
-void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3& min,
-                                   const btVector3& max) const {
-  const auto apart = [&](const TriangleTree::Boxes& boxes) {
+void SurfaceQueries::processTriangles(btTriangleCallback* callback, const btVector3& min,
+                                      const btVector3& max) const {
+  const auto apart = [&](const TriangleBvh::Boxes& boxes) {
     Lanes distances{};
-    for (std::size_t lane = 0; lane < TriangleTree::kWidth; ++lane) {
+    for (std::size_t lane = 0; lane < TriangleBvh::kWidth; ++lane) {
       for (int k = 0; k < 3; ++k) {
         if (boxes.max[k][lane] < min[k] || boxes.min[k][lane] > max[k]) distances[lane] = kFar;
       }
@@ -84,8 +177,8 @@ void SurfaceTree::processTriangles(btTriangleCallback* callback, const btVector3
   });
 }
 
-bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScalar length,
-                       const btVector3& towards, Hit& hit) const {
+bool SurfaceQueries::cast(const btVector3& from, const btVector3& direction, btScalar length,
+                          const btVector3& towards, Hit& hit) const {
   const SmoothNormals& normals = this->normals();
   SmoothNormals::Crossing nearest;
   nearest.distance = length;
@@ -107,8 +200,8 @@ bool SurfaceTree::cast(const btVector3& from, const btVector3& direction, btScal
   return found;
 }
 
-bool SurfaceTree::castNear(std::size_t triangle, const btVector3& from, const btVector3& direction,
-                           btScalar length, Hit& hit) const {
+bool SurfaceQueries::castNear(std::size_t triangle, const btVector3& from, const btVector3& direction,
+                              btScalar length, Hit& hit) const {
   const SmoothNormals& normals = this->normals();
   SmoothNormals::Crossing crossing;
   if (!normals.crossNear(triangle, from, direction, crossing) || !(btFabs(crossing.distance) < length))
@@ -118,29 +211,29 @@ bool SurfaceTree::castNear(std::size_t triangle, const btVector3& from, const bt
   return true;
 }
 
-btScalar SurfaceTree::untilSharpEdge(std::size_t triangle, const btVector3& point,
-                                     const btVector3& towards) const {
+btScalar SurfaceQueries::untilSharpEdge(std::size_t triangle, const btVector3& point,
+                                        const btVector3& towards) const {
   return normals().untilSharpEdge(triangle, point, towards).distance;
 }
 
-bool SurfaceTree::sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
-                            SmoothNormals::SharpEdge& edge) const {
+bool SurfaceQueries::sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
+                               SmoothNormals::SharpEdge& edge) const {
   const SmoothNormals::Ending ending = normals().untilSharpEdge(triangle, point, towards);
   if (ending.found()) edge = normals().sharpEdge(ending);
   return ending.found();
 }
 
-bool SurfaceTree::nearest(const btVector3& point, btScalar reach, Nearest& result) const {
-  NearestTriangle search(normals(), point, reach);
+bool SurfaceQueries::nearest(const btVector3& point, btScalar max_distance, Nearest& result) const {
+  NearestTriangle search(normals(), point, max_distance);
   tree_.search(
-      search.farthest2(), [&](const TriangleTree::Boxes& boxes) { return search.distances2(boxes); },
+      search.farthest2(), [&](const TriangleBvh::Boxes& boxes) { return search.distances2(boxes); },
       [&](std::uint32_t t) { return search.test(t); });
   if (!search.found()) return false;
   result = {search.distance(), search.normal(), search.triangle(), search.beside()};
   return true;
 }
 
-const SmoothNormals& SurfaceTree::normals() const {
+const SmoothNormals& SurfaceQueries::normals() const {
   return normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
 }
 

@@ -16,9 +16,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// In the surface's frame. Refers to the surface: it must stay. Const members are safe to call from several
 /// threads at once.
-class SurfaceTree {
+class SurfaceQueries {
  public:
-  explicit SurfaceTree(const Surface& surface);
+  explicit SurfaceQueries(const Surface& surface);
 
   /// All triangles that meet a box, and some near it.
   void processTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const;
@@ -51,14 +51,14 @@ class SurfaceTree {
     std::size_t triangle;
     bool beside;  ///< the nearest point is on an edge, which the triangle shares with another face
   };
-  /// False if the surface is further away from `point` than `reach`.
-  bool nearest(const btVector3& point, btScalar reach, Nearest& result) const;
+  /// False if the surface is further away from `point` than `max_distance`.
+  bool nearest(const btVector3& point, btScalar max_distance, Nearest& result) const;
 
   const SmoothNormals& normals() const;
 
  private:
   const Surface& surface_;
-  TriangleTree tree_;
+  TriangleBvh tree_;
   Lazy<SmoothNormals> normals_;
 };
 

@@ -32,7 +32,7 @@ float middle(const Surface& surface, std::uint32_t triangle, int axis) {
 
 }  // namespace
 
-TriangleTree::TriangleTree(const Surface& surface) : triangles_(surface.triangles.size()) {
+TriangleBvh::TriangleBvh(const Surface& surface) : triangles_(surface.triangles.size()) {
   std::iota(triangles_.begin(), triangles_.end(), std::uint32_t(0));
   if (triangles_.empty()) return;
   build(surface, 0, triangles_.size());
@@ -45,7 +45,7 @@ TriangleTree::TriangleTree(const Surface& surface) : triangles_(surface.triangle
 }
 
 /// Appends the node of triangles [first, end) and all below it.
-std::uint32_t TriangleTree::build(const Surface& surface, std::size_t first, std::size_t end) {
+std::uint32_t TriangleBvh::build(const Surface& surface, std::size_t first, std::size_t end) {
   const std::size_t index = nodes_.size();
   nodes_.emplace_back();
   const std::size_t half = halve(surface, first, end);
@@ -63,7 +63,7 @@ std::uint32_t TriangleTree::build(const Surface& surface, std::size_t first, std
 }
 
 /// Sorts triangles [first, end) into two halves, across the axis along which they are spread most.
-std::size_t TriangleTree::halve(const Surface& surface, std::size_t first, std::size_t end) {
+std::size_t TriangleBvh::halve(const Surface& surface, std::size_t first, std::size_t end) {
   int axis = 0;
   float widest = 0;
   for (int k = 0; k < 3; ++k) {
@@ -87,8 +87,8 @@ std::size_t TriangleTree::halve(const Surface& surface, std::size_t first, std::
 }
 
 /// The box of triangles [first, end); of none it is infinitely far from everything.
-void TriangleTree::enclose(const Surface& surface, std::size_t first, std::size_t end, std::size_t child,
-                           Boxes& boxes) const {
+void TriangleBvh::enclose(const Surface& surface, std::size_t first, std::size_t end, std::size_t child,
+                          Boxes& boxes) const {
   for (std::size_t k = 0; k < 3; ++k) {
     float least = kFar, most = -kFar;
     for (std::size_t i = first; i < end; ++i) {

@@ -16,9 +16,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// A tree of boxes in the surface's frame, which one walk searches: for the first triangle on a ray, the
 /// nearest to a point, or all in a box. Const members are safe to call from several threads at once.
-class TriangleTree {
+class TriangleBvh {
  public:
-  explicit TriangleTree(const Surface& surface);
+  explicit TriangleBvh(const Surface& surface);
 
   /// One number of each of a node's children, side by side: one instruction looks at all of them.
   static constexpr std::size_t kWidth = 4;
@@ -57,7 +57,7 @@ class TriangleTree {
 };
 
 template <typename Bound, typename Visit>
-void TriangleTree::search(btScalar farthest, const Bound& bound, const Visit& visit) const {
+void TriangleBvh::search(btScalar farthest, const Bound& bound, const Visit& visit) const {
   struct Entry {
     Child child;
     btScalar distance;

@@ -11,7 +11,7 @@ constexpr btScalar kLevel = btScalar(5e-3);
 
 }  // namespace
 
-VertexClimb::VertexClimb(const Surface& surface)
+VertexHillClimb::VertexHillClimb(const Surface& surface)
     : surface_(surface), first_(surface.vertices.size() + 1), neighbours_(6 * surface.triangles.size()) {
   // Each corner of a triangle has two neighbours in it; inner edges come twice, which does not matter.
   for (const auto& triangle : surface.triangles) {
@@ -27,15 +27,15 @@ VertexClimb::VertexClimb(const Surface& surface)
   }
 }
 
-bool VertexClimb::from(std::size_t triangle, const btVector3& direction, const btVector3& start,
-                       btScalar reach, std::vector<std::uint32_t>& vertices) const {
+bool VertexHillClimb::from(std::size_t triangle, const btVector3& direction, const btVector3& start,
+                           btScalar max_distance, std::vector<std::uint32_t>& vertices) const {
   const auto at = [&](std::uint32_t v) { return toBullet(surface_.vertices[v]); };
   constexpr std::uint32_t kNone = ~std::uint32_t(0);
   std::uint32_t top = kNone;
   btScalar highest = -BT_LARGE_FLOAT;
   const auto climb = [&](std::uint32_t v) {
     const btScalar height = at(v).dot(direction);
-    if (!(height > highest) || !(at(v).distance2(start) < reach * reach)) return;
+    if (!(height > highest) || !(at(v).distance2(start) < max_distance * max_distance)) return;
     top = v;
     highest = height;
   };

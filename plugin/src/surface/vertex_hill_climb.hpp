@@ -14,15 +14,15 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Walks from triangle to triangle. Refers to the surface: it must stay. Const members are safe to call from
 /// several threads at once.
-class VertexClimb {
+class VertexHillClimb {
  public:
-  explicit VertexClimb(const Surface& surface);
+  explicit VertexHillClimb(const Surface& surface);
 
   /// Appends the vertex that is furthest along `direction` (unit) among its neighbours, uphill from a
-  /// triangle and no further than `reach` from `start`, and the other ends of edges that are level with it,
-  /// wherever they are: those of an edge that lies on a face, say. None if no vertex is near. True if the
-  /// surface does not rise on beyond `reach`.
-  bool from(std::size_t triangle, const btVector3& direction, const btVector3& start, btScalar reach,
+  /// triangle and no further than `max_distance` from `start`, and the other ends of edges that are level
+  /// with it, wherever they are: those of an edge that lies on a face, say. None if no vertex is near. True
+  /// if the surface does not rise on beyond `max_distance`.
+  bool from(std::size_t triangle, const btVector3& direction, const btVector3& start, btScalar max_distance,
             std::vector<std::uint32_t>& vertices) const;
 
  private:

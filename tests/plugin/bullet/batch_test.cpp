@@ -1,8 +1,8 @@
 // How often the overlaps of packings are queried.
 #include <gtest/gtest.h>
 
-#include "innersphere/contact_statistics.hpp"
 #include "innersphere/batched_dispatcher.hpp"
+#include "innersphere/contact_statistics.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 

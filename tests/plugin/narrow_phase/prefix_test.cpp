@@ -83,14 +83,14 @@ TEST(SphereCount, BelongsToAShapeAndDataToTheModel) {
   const_cast<PackingShape&>(coarse).setSphereCount(8);
   EXPECT_EQ(fine.sphereCount(), 64u);
   EXPECT_EQ(coarse.impl().solid, fine.impl().solid);
-  EXPECT_EQ(&coarse.impl().surfaceTree(), &fine.impl().surfaceTree());
+  EXPECT_EQ(&coarse.impl().surfaceQueries(), &fine.impl().surfaceQueries());
   EXPECT_EQ(&coarse.impl().solid->prefix(64).tree(), &fine.impl().prefix->tree());
   EXPECT_NE(makeShape(latticeBox({1, 1, 1}, 4))->impl().solid, fine.impl().solid);
 }
 
 TEST(SphereCount, SharedDataGoesWithTheLastShape) {
   const auto model = modelOf(latticeBox({1, 1, 1}, 4));
-  std::weak_ptr<const PackedSolid> solid;
+  std::weak_ptr<const PackedModel> solid;
   {
     const PackingShape shape(model);
     solid = shape.impl().solid;
@@ -136,7 +136,7 @@ TEST(Accuracy, TakesTheFewestSpheresThatMeetIt) {
   const auto countFor = [&](double accuracy, const btCollisionShape& other) {
     ContactOptions options;
     options.accuracy = accuracy;
-    const Measure measure(options, *shape, other, 0);
+    const ContactSettings measure(options, *shape, other, 0);
     return measure.prefix_a->count;
   };
   EXPECT_EQ(countFor(0, box), packing.spheres.size());
@@ -184,16 +184,16 @@ TEST(OnlyWhatIsAskedFor, ABodyThatMeetsNothingHasNoTrees) {
   world.add(shape, 1, btVector3(0, 0, 0));
   world.add(shape, 1, btVector3(5, 0, 0));
   world.run(0.1);
-  const PackedSolid::Built none = shape->impl().solid->built();
-  EXPECT_FALSE(none.sphere_tree || none.surface_tree || none.vertex_climb);
+  const PackedModel::Built none = shape->impl().solid->built();
+  EXPECT_FALSE(none.sphere_bvh || none.surface_queries || none.vertex_hill_climb);
 
   // A ray needs the triangles and nothing else.
   btCollisionWorld::ClosestRayResultCallback ray(btVector3(0, 0, 5), btVector3(0, 0, -5));
   world.world.rayTest(ray.m_rayFromWorld, ray.m_rayToWorld, ray);
   EXPECT_TRUE(ray.hasHit());
-  const PackedSolid::Built rays = shape->impl().solid->built();
-  EXPECT_TRUE(rays.surface_tree);
-  EXPECT_FALSE(rays.sphere_tree || rays.vertex_climb);
+  const PackedModel::Built rays = shape->impl().solid->built();
+  EXPECT_TRUE(rays.surface_queries);
+  EXPECT_FALSE(rays.sphere_bvh || rays.vertex_hill_climb);
 }
 
 TEST(OnlyWhatIsAskedFor, PackingsAmongThemselvesNeedNoTreeOfSpheres) {
@@ -203,7 +203,7 @@ TEST(OnlyWhatIsAskedFor, PackingsAmongThemselvesNeedNoTreeOfSpheres) {
   world.add(shape, 1, btVector3(0, 0, 1));
   world.run(0.1);
   EXPECT_GT(world.contactCount(), 0);
-  EXPECT_FALSE(shape->impl().solid->built().sphere_tree);
+  EXPECT_FALSE(shape->impl().solid->built().sphere_bvh);
 }
 
 }  // namespace

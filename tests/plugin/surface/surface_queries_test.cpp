@@ -34,9 +34,9 @@ double boxDistance(const btVector3& p, double normal[3]) {
   return length2 > 0 ? std::sqrt(length2) : deepest;
 }
 
-TEST(SurfaceTree, IsTheDistanceOfABox) {
+TEST(SurfaceQueries, IsTheDistanceOfABox) {
   const Packing box = latticeBox(kSize, 1);
-  const SurfaceTree tree(box.surface);
+  const SurfaceQueries tree(box.surface);
   std::mt19937 rng(5);
   std::uniform_real_distribution<double> uniform(-2, 2);
   for (int i = 0; i < 2000; ++i) {
@@ -44,7 +44,7 @@ TEST(SurfaceTree, IsTheDistanceOfABox) {
     double normal[3];
     const double distance = boxDistance(p, normal);
     if (std::fabs(distance) < 1e-3) continue;  // too near for a direction
-    SurfaceTree::Nearest found;
+    SurfaceQueries::Nearest found;
     ASSERT_TRUE(tree.nearest(p, 10, found));
     EXPECT_NEAR(found.distance, distance, 1e-5);
     // Inside there are places between two faces; there any of the two will do.
@@ -57,17 +57,17 @@ TEST(SurfaceTree, IsTheDistanceOfABox) {
   }
 }
 
-TEST(SurfaceTree, LooksNoFurtherThanItsReach) {
+TEST(SurfaceQueries, LooksNoFurtherThanItsReach) {
   const Packing box = latticeBox(kSize, 1);
-  const SurfaceTree tree(box.surface);
-  SurfaceTree::Nearest found;
+  const SurfaceQueries tree(box.surface);
+  SurfaceQueries::Nearest found;
   EXPECT_FALSE(tree.nearest(btVector3(btScalar(0.8), 0, 0), btScalar(0.29), found));
   EXPECT_TRUE(tree.nearest(btVector3(btScalar(0.8), 0, 0), btScalar(0.31), found));
 }
 
-TEST(VertexClimb, FindsTheHighestVertexOfAConvexSolid) {
+TEST(VertexHillClimb, FindsTheHighestVertexOfAConvexSolid) {
   const Packing box = latticeBox(kSize, 1);
-  const VertexClimb climb(box.surface);
+  const VertexHillClimb climb(box.surface);
   std::mt19937 rng(6);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 200; ++i) {
@@ -85,9 +85,9 @@ TEST(VertexClimb, FindsTheHighestVertexOfAConvexSolid) {
   }
 }
 
-TEST(VertexClimb, StaysNear) {
+TEST(VertexHillClimb, StaysNear) {
   const Packing ball = singleBall(1);
-  const VertexClimb climb(ball.surface);
+  const VertexHillClimb climb(ball.surface);
   const auto& start = ball.surface.vertices[ball.surface.triangles[1000][0]];
   std::vector<std::uint32_t> found;
   const btVector3 at(start[0], start[1], start[2]);
@@ -100,9 +100,9 @@ TEST(VertexClimb, StaysNear) {
   EXPECT_TRUE(found.empty());
 }
 
-TEST(VertexClimb, BringsBothEndsOfALevelEdge) {
+TEST(VertexHillClimb, BringsBothEndsOfALevelEdge) {
   const Packing box = latticeBox({1, 1, 1}, 1);
-  const VertexClimb climb(box.surface);
+  const VertexHillClimb climb(box.surface);
   const btVector3 down = btVector3(0, -1, -1).normalized();
   for (std::size_t t = 0; t < box.surface.triangles.size(); ++t) {
     std::vector<std::uint32_t> found;

@@ -7,7 +7,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-void DistanceSurface::touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) {
+void DistanceSurface::findNearSpheres(const PlacedPacking& body, const btTransform& world,
+                                      std::vector<NearSphere>& near_spheres) {
   facets_.expire();
   const btTransform to_shape = world.inverseTimes(body.world);
   const btScalar scale = body.scale();
@@ -16,32 +17,34 @@ void DistanceSurface::touch(const PackingBody& body, const btTransform& world, s
     return lowerBound(to_shape((min + max) * (btScalar(0.5) * scale))) <= radius + body.largestExcess();
   };
   const auto test = [&](std::size_t i) {
-    Touch found;
+    NearSphere found;
     found.sphere = static_cast<std::uint32_t>(i);
-    if (touchOne(body, world, to_shape, found) && found.distance < body.reach(i)) touches.push_back(found);
+    if (updateNearSphere(body, world, to_shape, found) && found.distance < body.searchRadius(i))
+      near_spheres.push_back(found);
   };
-  body.sphereTree().forEach(near, test);
+  body.sphereBvh().forEach(near, test);
 }
 
-bool DistanceSurface::touchAgain(const PackingBody& body, const btTransform& world,
-                                 std::vector<Touch>& touches) {
+bool DistanceSurface::updateNearSpheres(const PlacedPacking& body, const btTransform& world,
+                                        std::vector<NearSphere>& near_spheres) {
   const btTransform to_shape = world.inverseTimes(body.world);
-  return std::all_of(touches.begin(), touches.end(),
-                     [&](Touch& touch) { return touchOne(body, world, to_shape, touch); });
+  return std::all_of(near_spheres.begin(), near_spheres.end(), [&](NearSphere& near_sphere) {
+    return updateNearSphere(body, world, to_shape, near_sphere);
+  });
 }
 
-/// Of the sphere that `touch` names.
-bool DistanceSurface::touchOne(const PackingBody& body, const btTransform& world, const btTransform& to_shape,
-                               Touch& touch) const {
+/// Of the sphere that `near_sphere` names.
+bool DistanceSurface::updateNearSphere(const PlacedPacking& body, const btTransform& world,
+                                       const btTransform& to_shape, NearSphere& near_sphere) const {
   Nearest found;
-  const Sphere& sphere = body.shape().packing().spheres[touch.sphere];
+  const Sphere& sphere = body.shape().packing().spheres[near_sphere.sphere];
   if (!nearest(to_shape(centre(sphere) * body.scale()), found)) return false;
-  touch.distance = found.distance;
-  touch.normal = world.getBasis() * found.normal;
-  touch.curvature = found.curvature;
-  touch.aside.setZero();
+  near_sphere.distance = found.distance;
+  near_sphere.normal = world.getBasis() * found.normal;
+  near_sphere.curvature = found.curvature;
+  near_sphere.aside.setZero();
   if (found.edged != nullptr && found.distance > 0) {
-    layFaceOn(body, touch, [&](const btVector3& edge, const btVector3& out, btScalar tolerance) {
+    layFaceOn(body, near_sphere, [&](const btVector3& edge, const btVector3& out, btScalar tolerance) {
       const btTransform from_world = world.inverse();
       const btVector3 direction = from_world.getBasis() * out;
       const btVector3 outermost = found.edged->localGetSupportingVertex(direction);
@@ -51,7 +54,7 @@ bool DistanceSurface::touchOne(const PackingBody& body, const btTransform& world
   return true;
 }
 
-bool DistanceSurface::distanceOf(const PackingBody& body, const btTransform& world, const btVector3& place,
+bool DistanceSurface::distanceOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
                                  btScalar& distance) {
   Nearest found;
   if (!nearest(world.invXform(body.origin() + place), found)) return false;
@@ -59,7 +62,7 @@ bool DistanceSurface::distanceOf(const PackingBody& body, const btTransform& wor
   return true;
 }
 
-bool DistanceSurface::facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) {
+bool DistanceSurface::facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) {
   const btPolyhedralConvexShape* const shape = polyhedron();
   if (shape == nullptr) return false;
   if (facets_.isExpired()) facets_.setHull(*shape);

@@ -9,13 +9,15 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-class DistanceSurface : public OtherSurface {
+class DistanceSurface : public ShapeSurface {
  public:
-  void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override;
-  bool touchAgain(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) final;
-  bool distanceOf(const PackingBody& body, const btTransform& world, const btVector3& place,
+  void findNearSpheres(const PlacedPacking& body, const btTransform& world,
+                       std::vector<NearSphere>& near_spheres) override;
+  bool updateNearSpheres(const PlacedPacking& body, const btTransform& world,
+                         std::vector<NearSphere>& near_spheres) final;
+  bool distanceOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
                   btScalar& distance) final;
-  bool facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) final;
+  bool facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) final;
 
  protected:
   struct Nearest {
@@ -38,23 +40,23 @@ class DistanceSurface : public OtherSurface {
   static btScalar boxDistance(const btCollisionShape& shape, const btVector3& p);
 
  private:
-  bool touchOne(const PackingBody& body, const btTransform& world, const btTransform& to_shape,
-                Touch& touch) const;
+  bool updateNearSphere(const PlacedPacking& body, const btTransform& world, const btTransform& to_shape,
+                        NearSphere& near_sphere) const;
 
   btVector3 box_min_{0, 0, 0};
   btVector3 box_max_{0, 0, 0};
   Facets facets_;
 };
 
-// One maker a kind; each in its own file.
-std::unique_ptr<OtherSurface> makePlaneSurface(const btCollisionShape& shape);
-std::unique_ptr<OtherSurface> makeSphereSurface(const btCollisionShape& shape);
-std::unique_ptr<OtherSurface> makeBoxSurface(const btCollisionShape& shape);
-std::unique_ptr<OtherSurface> makeCapsuleSurface(const btCollisionShape& shape);
-std::unique_ptr<OtherSurface> makeConvexSurface(const btCollisionShape& shape);
+// One maker for each kind.
+std::unique_ptr<ShapeSurface> makePlaneSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeSphereSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeBoxSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeCapsuleSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeConvexSurface(const btCollisionShape& shape);
 /// Null if the shape is no btSdfCollisionShape.
-std::unique_ptr<OtherSurface> makeSdfSurface(const btCollisionShape& shape);
-std::unique_ptr<OtherSurface> makeTriangleSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeSdfSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeTriangleSurface(const btCollisionShape& shape);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -6,13 +6,11 @@
 #include <LinearMath/btConvexHullComputer.h>
 
 #include "common/bullet_vectors.hpp"
+#include "narrow_phase/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
-
-/// Of the size of a contact: how far around it the triangles of a mesh are looked at.
-constexpr btScalar kAround = btScalar(0.1);
 
 class CornerCollector : public btTriangleCallback {
  public:
@@ -86,7 +84,7 @@ void Facets::setMesh(const btConcaveShape& mesh, const btVector3& min, const btV
   high.setMax(max_);
   if (low != min_ || high != max_) {
     // A body that moves on stays among the same triangles for a while.
-    const btScalar around = kAround * (max - min).length();
+    const btScalar around = kKeptAround * (max - min).length();
     min_ = min - btVector3(around, around, around);
     max_ = max + btVector3(around, around, around);
   }
@@ -109,7 +107,7 @@ void Facets::setHull(const btPolyhedralConvexShape& shape) {
   margin_ = shape.localGetSupportingVertex(x).x() - furthest;
 }
 
-bool Facets::place(const btTransform& world, const btVector3& relative_to, EdgedSolid& solid) const {
+bool Facets::place(const btTransform& world, const btVector3& relative_to, SharpEdges& solid) const {
   if (!tree_) return false;
   solid.surface = tree_.get();
   solid.margin = margin_;
@@ -123,7 +121,7 @@ void Facets::set(const std::vector<btVector3>& points, Surface (*make)(const std
   if (points == points_) return;
   points_ = points;
   surface_ = make(points_);
-  tree_ = surface_.triangles.empty() ? nullptr : std::make_unique<SurfaceTree>(surface_);
+  tree_ = surface_.triangles.empty() ? nullptr : std::make_unique<SurfaceQueries>(surface_);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -24,7 +24,7 @@ class Facets {
   void setHull(const btPolyhedralConvexShape& shape);
 
   /// Relative to a place, axes of the world. False if there are none.
-  bool place(const btTransform& world, const btVector3& relative_to, EdgedSolid& solid) const;
+  bool place(const btTransform& world, const btVector3& relative_to, SharpEdges& solid) const;
 
  private:
   void set(const std::vector<btVector3>& points, Surface (*make)(const std::vector<btVector3>&));
@@ -34,7 +34,7 @@ class Facets {
   btVector3 min_{0, 0, 0};         ///< where a mesh's come from
   btVector3 max_{0, 0, 0};
   Surface surface_;
-  std::unique_ptr<SurfaceTree> tree_;
+  std::unique_ptr<SurfaceQueries> tree_;
   btScalar margin_ = 0;  ///< [m]
 };
 

@@ -18,7 +18,8 @@ class PlaneSurface : public DistanceSurface {
   }
 
   /// In the packing's frame, where the plane's distance of a box is known.
-  void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override {
+  void findNearSpheres(const PlacedPacking& body, const btTransform& world,
+                       std::vector<NearSphere>& near_spheres) override {
     const btTransform to_shape = world.inverseTimes(body.world);
     const btVector3& normal = plane_.getPlaneNormal();
     const btVector3 across = normal * to_shape.getBasis() * body.scale();
@@ -29,10 +30,10 @@ class PlaneSurface : public DistanceSurface {
     };
     const auto test = [&](std::size_t i) {
       const btScalar distance = across.dot(centre(body.shape().packing().spheres[i])) + offset;
-      if (!(distance < body.reach(i))) return;
-      touches.push_back({static_cast<std::uint32_t>(i), distance, world.getBasis() * normal});
+      if (!(distance < body.searchRadius(i))) return;
+      near_spheres.push_back({static_cast<std::uint32_t>(i), distance, world.getBasis() * normal});
     };
-    body.sphereTree().forEach(near, test);
+    body.sphereBvh().forEach(near, test);
   }
 
  private:
@@ -49,7 +50,7 @@ class PlaneSurface : public DistanceSurface {
 
 }  // namespace
 
-std::unique_ptr<OtherSurface> makePlaneSurface(const btCollisionShape& shape) {
+std::unique_ptr<ShapeSurface> makePlaneSurface(const btCollisionShape& shape) {
   return std::make_unique<PlaneSurface>(static_cast<const btStaticPlaneShape&>(shape));
 }
 

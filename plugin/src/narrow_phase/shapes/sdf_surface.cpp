@@ -28,7 +28,7 @@ class SdfSurface : public DistanceSurface {
 
 }  // namespace
 
-std::unique_ptr<OtherSurface> makeSdfSurface(const btCollisionShape& shape) {
+std::unique_ptr<ShapeSurface> makeSdfSurface(const btCollisionShape& shape) {
   const auto* sdf = dynamic_cast<const btSdfCollisionShape*>(&shape);
   return sdf != nullptr ? std::make_unique<SdfSurface>(*sdf) : nullptr;
 }

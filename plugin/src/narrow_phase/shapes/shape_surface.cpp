@@ -7,7 +7,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-std::unique_ptr<OtherSurface> makeOtherSurface(const btCollisionShape& shape) {
+std::unique_ptr<ShapeSurface> makeShapeSurface(const btCollisionShape& shape) {
   switch (shape.getShapeType()) {
     case STATIC_PLANE_PROXYTYPE:
       return makePlaneSurface(shape);
@@ -18,7 +18,7 @@ std::unique_ptr<OtherSurface> makeOtherSurface(const btCollisionShape& shape) {
     case CAPSULE_SHAPE_PROXYTYPE:
       return makeCapsuleSurface(shape);
     case SDF_SHAPE_PROXYTYPE:
-      if (std::unique_ptr<OtherSurface> sdf = makeSdfSurface(shape)) return sdf;
+      if (std::unique_ptr<ShapeSurface> sdf = makeSdfSurface(shape)) return sdf;
       return makeTriangleSurface(shape);
     default:
       if (shape.isConvex()) return makeConvexSurface(shape);

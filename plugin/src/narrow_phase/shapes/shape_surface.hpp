@@ -12,7 +12,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// A sphere near the other solid. A sphere in a concave corner has several.
-struct Touch {
+struct NearSphere {
   std::uint32_t sphere = 0;
   btScalar distance = 0;      ///< of its centre from the other surface [m], negative inside the other solid
   btVector3 normal{0, 0, 0};  ///< unit, out of the other solid at the nearest point; axes of the world
@@ -26,33 +26,37 @@ struct Touch {
 
 /// One implementation for each kind of shape. An object belongs to one pair of bodies and may remember things
 /// of it.
-class OtherSurface {
+class ShapeSurface {
  public:
-  virtual ~OtherSurface() = default;
+  virtual ~ShapeSurface() = default;
 
-  /// Appends the spheres of `body` whose centre is closer than their reach (body.reach) to this shape placed
-  /// at `world`.
-  virtual void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) = 0;
+  /// Appends the spheres of `body` whose centre is closer than their search radius (body.searchRadius) to
+  /// this shape placed at `world`.
+  virtual void findNearSpheres(const PlacedPacking& body, const btTransform& world,
+                               std::vector<NearSphere>& near_spheres) = 0;
 
   /// Whether the shape is as it was when it was asked last. False if that cannot be told.
   virtual bool isAsBefore() { return false; }
-  /// Renews touches, of the same spheres, for where the bodies are now; they may be beyond reach by then.
-  /// False if that cannot be done.
-  virtual bool touchAgain(const PackingBody&, const btTransform&, std::vector<Touch>&) { return false; }
-
-  /// How far away from it a place outside is, relative to body.origin(), near the last touches [m]. False if
-  /// that is not known.
-  virtual bool distanceOf(const PackingBody&, const btTransform&, const btVector3&, btScalar&) {
+  /// Renews the distances of near spheres for where the bodies are now; they may be further away by
+  /// then. False if that cannot be done.
+  virtual bool updateNearSpheres(const PlacedPacking&, const btTransform&, std::vector<NearSphere>&) {
     return false;
   }
 
-  /// Its flat faces, those near the last touches at least, relative to body.origin(). False if it has none.
-  virtual bool facets(const PackingBody&, const btTransform&, EdgedSolid&) { return false; }
+  /// How far away from it a place outside is, relative to body.origin(), near the spheres found last [m].
+  /// False if that is not known.
+  virtual bool distanceOf(const PlacedPacking&, const btTransform&, const btVector3&, btScalar&) {
+    return false;
+  }
+
+  /// Its flat faces, those near the spheres found last at least, relative to body.origin(). False if it has
+  /// none.
+  virtual bool facets(const PlacedPacking&, const btTransform&, SharpEdges&) { return false; }
 };
 
 /// The surface of `shape`, or null for a shape without one (fluids, invalid types). The shape must outlive
 /// it.
-std::unique_ptr<OtherSurface> makeOtherSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeShapeSurface(const btCollisionShape& shape);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

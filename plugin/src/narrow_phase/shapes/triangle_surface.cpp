@@ -15,6 +15,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 #include <LinearMath/btAabbUtil2.h>
 
+#include "narrow_phase/contact_tolerances.hpp"
 #include "narrow_phase/shapes/distance_surface.hpp"
 #include "narrow_phase/shapes/face_on_edge.hpp"
 
@@ -22,11 +23,8 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Directions of contact of one sphere closer than this are one contact.
-constexpr btScalar kSameDirection = btScalar(0.866);  // cos 30 degrees
-
 /// Nearest point of one triangle to the centre of one sphere, lengths in the packing's frame.
-struct Candidate {
+struct TrianglePoint {
   std::uint32_t sphere;
   std::uint32_t order;  ///< in which it was found
   bool interior;        ///< not on an edge or corner
@@ -40,8 +38,8 @@ struct Candidate {
 
 class Collector : public btTriangleCallback {
  public:
-  Collector(const PackingBody& body, const btTransform& to_packing, std::vector<Candidate>& candidates)
-      : body_(body), to_packing_(to_packing), candidates_(candidates) {}
+  Collector(const PlacedPacking& body, const btTransform& to_packing, std::vector<TrianglePoint>& points)
+      : body_(body), to_packing_(to_packing), points_(points) {}
 
   void processTriangle(btVector3* triangle, int, int) override {
     std::array<btVector3, 3> v;
@@ -62,7 +60,7 @@ class Collector : public btTriangleCallback {
     const auto near = [&](const btVector3& low, const btVector3& high) {
       return TestAabbAgainstAabb2(low, high, min, max);
     };
-    body_.sphereTree().forEach(near, [&](std::size_t i) { test(i, v, normal); });
+    body_.sphereBvh().forEach(near, [&](std::size_t i) { test(i, v, normal); });
   }
 
  private:
@@ -73,25 +71,25 @@ class Collector : public btTriangleCallback {
     solver_.closestPtPointTriangle(c, v[0], v[1], v[2], result);
     const btVector3 offset = c - result.m_closestPointOnSimplex;
     const btScalar distance = offset.length();
-    const btScalar reach = body_.reach(i) / body_.scale();
-    if (!(distance < reach)) return;
+    const btScalar search_radius = body_.searchRadius(i) / body_.scale();
+    if (!(distance < search_radius)) return;
     const btUsageBitfield& used = result.m_usedVertices;
     const bool interior = used.usedVertexA && used.usedVertexB && used.usedVertexC;
-    const auto order = static_cast<std::uint32_t>(candidates_.size());
-    Candidate candidate{
+    const auto order = static_cast<std::uint32_t>(points_.size());
+    TrianglePoint point{
         static_cast<std::uint32_t>(i),  order, interior, distance, normal.dot(c - v[0]), normal,
         result.m_closestPointOnSimplex, v};
-    if (distance > SIMD_EPSILON * reach) {
-      candidate.direction = offset / distance;
+    if (distance > SIMD_EPSILON * search_radius) {
+      point.direction = offset / distance;
     } else {
-      candidate.height = SIMD_EPSILON * reach;  // a centre on the surface counts as in front of it
+      point.height = SIMD_EPSILON * search_radius;  // a centre on the surface counts as in front of it
     }
-    candidates_.push_back(candidate);
+    points_.push_back(point);
   }
 
-  const PackingBody& body_;
+  const PlacedPacking& body_;
   const btTransform& to_packing_;
-  std::vector<Candidate>& candidates_;
+  std::vector<TrianglePoint>& points_;
   btVoronoiSimplexSolver solver_;
 };
 
@@ -109,37 +107,38 @@ bool isSharable(const btConcaveShape& mesh) {
   }
 }
 
-class TriangleSurface : public OtherSurface {
+class TriangleSurface : public ShapeSurface {
  public:
   explicit TriangleSurface(const btConcaveShape& mesh) : mesh_(mesh), sharable_(isSharable(mesh)) {}
 
-  void touch(const PackingBody& body, const btTransform& world, std::vector<Touch>& touches) override {
-    static thread_local std::vector<Candidate> candidates;
+  void findNearSpheres(const PlacedPacking& body, const btTransform& world,
+                       std::vector<NearSphere>& near_spheres) override {
+    static thread_local std::vector<TrianglePoint> points;
     facets_.expire();
-    candidates.clear();
-    collect(body, world, candidates);
-    if (candidates.empty()) return;
-    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    points.clear();
+    collect(body, world, points);
+    if (points.empty()) return;
+    std::sort(points.begin(), points.end(), [](const TrianglePoint& a, const TrianglePoint& b) {
       return std::tie(a.sphere, a.distance, a.order) < std::tie(b.sphere, b.distance, b.order);
     });
-    if (side_ == 0) side_ = sideOf(body, candidates);
-    setNear(body, world, candidates);
+    if (side_ == 0) side_ = sideOf(body, points);
+    setNear(body, world, points);
 
-    for (auto first = candidates.begin(); first != candidates.end();) {
-      auto last = std::find_if(first, candidates.end(),
-                               [&](const Candidate& c) { return c.sphere != first->sphere; });
-      resolve(body, &*first, &*first + (last - first), touches);
+    for (auto first = points.begin(); first != points.end();) {
+      auto last = std::find_if(first, points.end(),
+                               [&](const TrianglePoint& c) { return c.sphere != first->sphere; });
+      resolve(body, &*first, &*first + (last - first), near_spheres);
       first = last;
     }
   }
 
-  bool distanceOf(const PackingBody& body, const btTransform& world, const btVector3& place,
+  bool distanceOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
                   btScalar& distance) override {
-    EdgedSolid faces;
+    SharpEdges faces;
     return facets(body, world, faces) && faces.distanceOf(place, distance);
   }
 
-  bool facets(const PackingBody& body, const btTransform& world, EdgedSolid& solid) override {
+  bool facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) override {
     if (facets_.isExpired()) {
       const std::unique_lock<std::mutex> lock = turnToRead();
       facets_.setMesh(mesh_, near_min_, near_max_);
@@ -156,55 +155,59 @@ class TriangleSurface : public OtherSurface {
     return lock;
   }
 
-  void collect(const PackingBody& body, const btTransform& world, std::vector<Candidate>& candidates) const {
-    const btVector3 slack(body.largestExcess(), body.largestExcess(), body.largestExcess());
+  void collect(const PlacedPacking& body, const btTransform& world,
+               std::vector<TrianglePoint>& points) const {
+    const btVector3 search_margin(body.largestExcess(), body.largestExcess(), body.largestExcess());
     const ShapeFrame& frame = body.shape().frame;
     // The shape's box in the mesh's frame, through the packing's placement.
     const btTransform packing_to_mesh = world.inverseTimes(body.world);
     btVector3 min, max;
     btTransformAabb(frame.box_min, frame.box_max, 0, frame.from_packing.inverse(), min, max);
-    btTransformAabb(min * body.scale() - slack, max * body.scale() + slack, 0, packing_to_mesh, min, max);
+    btTransformAabb(min * body.scale() - search_margin, max * body.scale() + search_margin, 0,
+                    packing_to_mesh, min, max);
     const btTransform mesh_to_packing = packing_to_mesh.inverse();
-    Collector collector(body, mesh_to_packing, candidates);
+    Collector collector(body, mesh_to_packing, points);
     const std::unique_lock<std::mutex> lock = turnToRead();
     mesh_.processAllTriangles(&collector, min, max);
   }
 
-  void setNear(const PackingBody& body, const btTransform& world, const std::vector<Candidate>& candidates) {
-    btVector3 min = candidates[0].point, max = min;
-    btScalar reach = 0;
-    for (const Candidate& c : candidates) {
+  void setNear(const PlacedPacking& body, const btTransform& world,
+               const std::vector<TrianglePoint>& points) {
+    btVector3 min = points[0].point, max = min;
+    btScalar search_radius = 0;
+    for (const TrianglePoint& c : points) {
       min.setMin(c.point);
       max.setMax(c.point);
-      reach = btMax(reach, body.reach(c.sphere));
+      search_radius = btMax(search_radius, body.searchRadius(c.sphere));
     }
-    btTransformAabb(min * body.scale(), max * body.scale(), reach, world.inverseTimes(body.world), near_min_,
-                    near_max_);
+    btTransformAabb(min * body.scale(), max * body.scale(), search_radius, world.inverseTimes(body.world),
+                    near_min_, near_max_);
     near_min_[3] = near_max_[3] = 0;  // == compares it
   }
 
   /// +1 if the body is on the side that the triangles' winding calls outside, -1 on the other. Large spheres
   /// decide.
-  static int sideOf(const PackingBody& body, const std::vector<Candidate>& candidates) {
+  static int sideOf(const PlacedPacking& body, const std::vector<TrianglePoint>& points) {
     double sum = 0;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (i > 0 && candidates[i].sphere == candidates[i - 1].sphere) continue;  // nearest triangle only
-      const double r = body.ownRadius(candidates[i].sphere);
-      sum += (candidates[i].height >= 0 ? 1 : -1) * r * r * r;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i > 0 && points[i].sphere == points[i - 1].sphere) continue;  // nearest triangle only
+      const double r = body.ownRadius(points[i].sphere);
+      sum += (points[i].height >= 0 ? 1 : -1) * r * r * r;
     }
     return sum >= 0 ? 1 : -1;
   }
 
-  /// Candidates of one sphere, nearest first, to its contacts.
-  void resolve(const PackingBody& body, const Candidate* first, const Candidate* last,
-               std::vector<Touch>& touches) const {
-    const std::size_t start = touches.size();
+  /// Samples of one sphere, nearest first, to its contacts.
+  void resolve(const PlacedPacking& body, const TrianglePoint* first, const TrianglePoint* last,
+               std::vector<NearSphere>& near_spheres) const {
+    const std::size_t start = near_spheres.size();
     const auto known = [&](const btVector3& normal) {
-      return std::any_of(touches.begin() + static_cast<std::ptrdiff_t>(start), touches.end(),
-                         [&](const Touch& t) { return btFabs(t.normal.dot(normal)) > kSameDirection; });
+      return std::any_of(
+          near_spheres.begin() + static_cast<std::ptrdiff_t>(start), near_spheres.end(),
+          [&](const NearSphere& t) { return btFabs(t.normal.dot(normal)) > kSameDirectionCosine; });
     };
-    const btScalar same = btScalar(1e-4) * body.prefix->median_radius;
-    for (const Candidate* c = first; c != last; ++c) {
+    const btScalar same = kSamePlace * body.prefix->median_radius;
+    for (const TrianglePoint* c = first; c != last; ++c) {
       const btVector3 direction = body.world.getBasis() * c->direction;
       if (known(direction) || (!c->interior && isNearerBeside(c, first, same))) continue;
       const Corner corner = cornerAt(c, first, last, same);
@@ -213,38 +216,38 @@ class TriangleSurface : public OtherSurface {
       // Nothing lies behind the rim of an open mesh.
       const bool inside = corner.height * side_ < 0 && !rim;
       const btScalar distance = c->distance * body.scale();
-      Touch touch{c->sphere, inside ? -distance : distance, inside ? -direction : direction};
-      if (!c->interior && touch.distance > 0) {
-        layFaceOn(body, touch, [&](const btVector3&, const btVector3& out, btScalar tolerance) {
+      NearSphere near_sphere{c->sphere, inside ? -distance : distance, inside ? -direction : direction};
+      if (!c->interior && near_sphere.distance > 0) {
+        layFaceOn(body, near_sphere, [&](const btVector3&, const btVector3& out, btScalar tolerance) {
           return isOutermost(c, first, last, same, out * body.world.getBasis(), tolerance / body.scale());
         });
-        if (touch.isOnEdge() && known(touch.normal)) continue;
+        if (near_sphere.isOnEdge() && known(near_sphere.normal)) continue;
       }
-      touches.push_back(touch);
+      near_spheres.push_back(near_sphere);
     }
   }
 
   /// Visits the triangles that share the nearest point of `c`.
   template <typename Visit>
-  static void forEachSharing(const Candidate* c, const Candidate* first, const Candidate* last,
+  static void forEachSharing(const TrianglePoint* c, const TrianglePoint* first, const TrianglePoint* last,
                              btScalar tolerance, const Visit& visit) {
-    const auto test = [&](const Candidate& other) {
+    const auto test = [&](const TrianglePoint& other) {
       if (!(other.point.distance2(c->point) > tolerance * tolerance)) visit(other);
     };
     visit(*c);
-    for (const Candidate* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o)
+    for (const TrianglePoint* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o)
       test(*(o - 1));
-    for (const Candidate* o = c + 1; o != last && o->distance - c->distance <= tolerance; ++o) test(*o);
+    for (const TrianglePoint* o = c + 1; o != last && o->distance - c->distance <= tolerance; ++o) test(*o);
   }
 
-  static bool hasCorner(const Candidate& c, const btVector3& point, btScalar same) {
+  static bool hasCorner(const TrianglePoint& c, const btVector3& point, btScalar same) {
     return std::any_of(c.corners.begin(), c.corners.end(),
                        [&](const btVector3& corner) { return corner.distance2(point) < same * same; });
   }
 
   /// Whether a nearest point is a corner of a triangle that comes nearer elsewhere.
-  static bool isNearerBeside(const Candidate* c, const Candidate* first, btScalar same) {
-    return std::any_of(first, c, [&](const Candidate& other) {
+  static bool isNearerBeside(const TrianglePoint* c, const TrianglePoint* first, btScalar same) {
+    return std::any_of(first, c, [&](const TrianglePoint& other) {
       return c->distance - other.distance > same && hasCorner(other, c->point, same);
     });
   }
@@ -255,10 +258,10 @@ class TriangleSurface : public OtherSurface {
   };
   /// Of the heights of the triangles that share the nearest point of `c`, the largest in size tells inside
   /// from outside.
-  static Corner cornerAt(const Candidate* c, const Candidate* first, const Candidate* last,
+  static Corner cornerAt(const TrianglePoint* c, const TrianglePoint* first, const TrianglePoint* last,
                          btScalar tolerance) {
     Corner corner{0, 0};
-    forEachSharing(c, first, last, tolerance, [&](const Candidate& sharing) {
+    forEachSharing(c, first, last, tolerance, [&](const TrianglePoint& sharing) {
       if (corner.triangles++ == 0 || btFabs(sharing.height) > btFabs(corner.height))
         corner.height = sharing.height;
     });
@@ -267,10 +270,10 @@ class TriangleSurface : public OtherSurface {
 
   /// Whether the triangles that share the nearest point of `c` have nothing further out than it, up to
   /// `tolerance`.
-  static bool isOutermost(const Candidate* c, const Candidate* first, const Candidate* last, btScalar same,
-                          const btVector3& direction, btScalar tolerance) {
+  static bool isOutermost(const TrianglePoint* c, const TrianglePoint* first, const TrianglePoint* last,
+                          btScalar same, const btVector3& direction, btScalar tolerance) {
     bool outermost = true;
-    forEachSharing(c, first, last, same, [&](const Candidate& sharing) {
+    forEachSharing(c, first, last, same, [&](const TrianglePoint& sharing) {
       for (const btVector3& v : sharing.corners)
         outermost = outermost && (v - c->point).dot(direction) < tolerance;
     });
@@ -287,7 +290,7 @@ class TriangleSurface : public OtherSurface {
 
 }  // namespace
 
-std::unique_ptr<OtherSurface> makeTriangleSurface(const btCollisionShape& shape) {
+std::unique_ptr<ShapeSurface> makeTriangleSurface(const btCollisionShape& shape) {
   return std::make_unique<TriangleSurface>(static_cast<const btConcaveShape&>(shape));
 }
 

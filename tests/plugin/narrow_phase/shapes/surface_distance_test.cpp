@@ -13,24 +13,24 @@ namespace {
 
 constexpr double kRadius = 0.3;
 
-std::vector<Touch> touchesAt(const btCollisionShape& shape, const btVector3& p) {
+std::vector<NearSphere> touchesAt(const btCollisionShape& shape, const btVector3& p) {
   Packing packing;
   packing.spheres = {{0, 0, 0, static_cast<float>(kRadius)}};
   const auto ball = makeShape(packing);
-  const PackingBody body(*ball, btTransform(btQuaternion::getIdentity(), p), Estimator::raw, 0);
-  std::vector<Touch> touches;
-  makeOtherSurface(shape)->touch(body, btTransform::getIdentity(), touches);
-  return touches;
+  const PlacedPacking body(*ball, btTransform(btQuaternion::getIdentity(), p), Estimator::raw, 0);
+  std::vector<NearSphere> near_spheres;
+  makeShapeSurface(shape)->findNearSpheres(body, btTransform::getIdentity(), near_spheres);
+  return near_spheres;
 }
 
 void expectDistance(const btCollisionShape& shape, const btVector3& p, double distance,
                     const btVector3& normal) {
-  const std::vector<Touch> touches = touchesAt(shape, p);
-  ASSERT_EQ(touches.size(), distance < kRadius ? 1u : 0u)
+  const std::vector<NearSphere> near_spheres = touchesAt(shape, p);
+  ASSERT_EQ(near_spheres.size(), distance < kRadius ? 1u : 0u)
       << shape.getName() << " at " << p.x() << " " << p.z();
-  if (touches.empty()) return;
-  EXPECT_NEAR(touches[0].distance, distance, 2e-3) << shape.getName();
-  EXPECT_GT(touches[0].normal.dot(normal.normalized()), 0.999) << shape.getName();
+  if (near_spheres.empty()) return;
+  EXPECT_NEAR(near_spheres[0].distance, distance, 2e-3) << shape.getName();
+  EXPECT_GT(near_spheres[0].normal.dot(normal.normalized()), 0.999) << shape.getName();
 }
 
 TEST(SurfaceDistance, Plane) {
@@ -117,20 +117,21 @@ TEST_F(MeshDistance, FaceFromTheFront) {
 }
 
 TEST_F(MeshDistance, CornerTouchesFloorAndWall) {
-  std::vector<Touch> touches = touchesAt(*shape_, btVector3(btScalar(0.2), 0, btScalar(0.1)));
-  ASSERT_EQ(touches.size(), 2u);
-  EXPECT_NEAR(touches[0].distance, 0.1, 1e-5);
-  EXPECT_GT(touches[0].normal.z(), 0.999);
-  EXPECT_NEAR(touches[1].distance, 0.2, 1e-5);
-  EXPECT_GT(touches[1].normal.x(), 0.999);
+  std::vector<NearSphere> near_spheres = touchesAt(*shape_, btVector3(btScalar(0.2), 0, btScalar(0.1)));
+  ASSERT_EQ(near_spheres.size(), 2u);
+  EXPECT_NEAR(near_spheres[0].distance, 0.1, 1e-5);
+  EXPECT_GT(near_spheres[0].normal.z(), 0.999);
+  EXPECT_NEAR(near_spheres[1].distance, 0.2, 1e-5);
+  EXPECT_GT(near_spheres[1].normal.x(), 0.999);
 }
 
 TEST_F(MeshDistance, BesideTheRimIsOutside) {
   // Below the level of the floor, but beyond its end.
-  const std::vector<Touch> touches = touchesAt(*shape_, btVector3(btScalar(4.1), 0, btScalar(-0.1)));
-  ASSERT_EQ(touches.size(), 1u);
-  EXPECT_NEAR(touches[0].distance, 0.1 * std::sqrt(2.0), 1e-5);
-  EXPECT_GT(touches[0].normal.dot(btVector3(1, 0, -1).normalized()), 0.999);
+  const std::vector<NearSphere> near_spheres =
+      touchesAt(*shape_, btVector3(btScalar(4.1), 0, btScalar(-0.1)));
+  ASSERT_EQ(near_spheres.size(), 1u);
+  EXPECT_NEAR(near_spheres[0].distance, 0.1 * std::sqrt(2.0), 1e-5);
+  EXPECT_GT(near_spheres[0].normal.dot(btVector3(1, 0, -1).normalized()), 0.999);
 }
 
 TEST_F(MeshDistance, TheSideOfFirstContactIsKept) {
@@ -139,25 +140,25 @@ TEST_F(MeshDistance, TheSideOfFirstContactIsKept) {
   packing.spheres = {{0, 0, 0.5f, 0.65f}, {0, 0, -0.15f, 0.05f}};
   const auto shape = makeShape(packing);
   const btTransform frame = shape->principalTransform().inverse();
-  const std::unique_ptr<OtherSurface> surface = makeOtherSurface(*shape_);
+  const std::unique_ptr<ShapeSurface> surface = makeShapeSurface(*shape_);
   const auto at = [&](double z) {
     const btTransform place(btQuaternion::getIdentity(), btVector3(2, 0, btScalar(z)));
-    std::vector<Touch> touches;
-    surface->touch(PackingBody(*shape, place * frame, Estimator::raw, 0), btTransform::getIdentity(),
-                   touches);
-    return touches;
+    std::vector<NearSphere> near_spheres;
+    surface->findNearSpheres(PlacedPacking(*shape, place * frame, Estimator::raw, 0),
+                             btTransform::getIdentity(), near_spheres);
+    return near_spheres;
   };
-  std::vector<Touch> touches = at(0.12);
-  ASSERT_EQ(touches.size(), 1u + 1u);
-  EXPECT_NEAR(touches[1].distance, -0.03, 1e-5);
-  EXPECT_GT(touches[1].normal.z(), 0.999);
+  std::vector<NearSphere> near_spheres = at(0.12);
+  ASSERT_EQ(near_spheres.size(), 1u + 1u);
+  EXPECT_NEAR(near_spheres[1].distance, -0.03, 1e-5);
+  EXPECT_GT(near_spheres[1].normal.z(), 0.999);
 }
 
 TEST(SurfaceDistance, ShapesWithoutASurfaceHaveNone) {
   struct Fluid : btSphereShape {
     Fluid() : btSphereShape(1) { m_shapeType = HFFLUID_SHAPE_PROXYTYPE; }
   } fluid;
-  EXPECT_EQ(makeOtherSurface(fluid), nullptr);
+  EXPECT_EQ(makeShapeSurface(fluid), nullptr);
 }
 
 }  // namespace

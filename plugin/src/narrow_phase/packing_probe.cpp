@@ -1,0 +1,147 @@
+#include "narrow_phase/packing_probe.hpp"
+
+#include "narrow_phase/contact_tolerances.hpp"
+#include "narrow_phase/edge_edge.hpp"
+#include "narrow_phase/surface_rays.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+bool PackingProbe::probe(const btVector3& patch_normal, ProbedSample& sample) const {
+  OpposedPoints start;
+  const auto probeAlong = [&](const btVector3& direction) {
+    sample.direction = direction;
+    sample.points = start;
+    return probeLine(sample.index, direction, btVector3(0, 0, 0), sample.points);
+  };
+  btVector3 to_nearest;
+  bool found = nearest(sample.index, to_nearest, start) && probeAlong(to_nearest);
+  const bool fits = found && opposed(sample.points) && to_nearest.dot(patch_normal) > kPatchCosine;
+  if (!fits) found = probeAlong(patch_normal);
+  if (found) align(sample);
+  return found;
+}
+
+bool PackingProbe::probeAgain(const Samples::Line& line, ProbedSample& sample) const {
+  if (line.direction.isZero()) return false;
+  sample.direction = line.direction;
+  sample.points.triangle_a = line.triangle_a;
+  sample.points.triangle_b = line.triangle_b;
+  if (!probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points)) return false;
+  align(sample);
+  return true;
+}
+
+void PackingProbe::align(ProbedSample& sample) const {
+  const btVector3 normal = normalAlone(sample.points, sample.direction);
+  const bool parallel = sample.points.normal_a.dot(sample.points.normal_b) > kParallelCosine;
+  if (normal.dot(sample.direction) > (parallel ? kAlignedOnFacesCosine : kParallelCosine)) return;
+  OpposedPoints points;
+  points.triangle_a = sample.points.triangle_a;
+  points.triangle_b = sample.points.triangle_b;
+  if (!probeLine(sample.index, normal, btVector3(0, 0, 0), points)) return;
+  sample.direction = normal;
+  sample.points = points;
+}
+
+bool PackingProbe::probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
+                             OpposedPoints& points) const {
+  const bool of_a = index < count_a_;
+  const PlacedPacking& own = of_a ? a_ : b_;
+  const PlacedPacking& other = of_a ? b_ : a_;
+  const std::size_t sphere = contacts_[index].sphere;
+  const btScalar radius = own.ownRadius(sphere);
+  if (shift.length() > surfaceDistance(index)) return false;
+  const btVector3 way = of_a ? direction : -direction;
+  const btVector3 from = own.centreOf(sphere) + shift;
+  const btVector3 to_other = other.origin() - own.origin();
+  const btScalar length = 2 * (radius + a_.search_margin + b_.search_margin);
+  SurfacePoint left, entered;
+  if (!leaveSolid(own, from, way, length, of_a ? points.triangle_a : points.triangle_b, left) ||
+      !enterSolid(other, from - to_other, way, length, of_a ? points.triangle_b : points.triangle_a,
+                  left.normal, entered))
+    return false;
+  const btVector3 offset = own.origin() - a_.origin();
+  left.at += offset;
+  entered.at += offset + to_other;
+  points.on_a = of_a ? left.at : entered.at;
+  points.on_b = of_a ? entered.at : left.at;
+  points.normal_a = of_a ? left.normal : entered.normal;
+  points.normal_b = -(of_a ? entered.normal : left.normal);
+  points.curvature_a = of_a ? left.curvature : entered.curvature;
+  points.curvature_b = of_a ? entered.curvature : left.curvature;
+  points.triangle_a = of_a ? left.triangle : entered.triangle;
+  points.triangle_b = of_a ? entered.triangle : left.triangle;
+  return true;
+}
+
+bool PackingProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const {
+  const bool of_a = index < count_a_;
+  const PlacedPacking& own = of_a ? a_ : b_;
+  const PlacedPacking& other = of_a ? b_ : a_;
+  const std::size_t sphere = contacts_[index].sphere;
+  const btVector3 centre = own.origin() + own.centreOf(sphere) - other.origin();
+  const btScalar distance = 2 * (own.ownRadius(sphere) + a_.search_margin + b_.search_margin);
+  (of_a ? points.triangle_a : points.triangle_b) = own.shape().solid->triangleNear(sphere);
+  SurfaceQueries::Nearest nearest;
+  if (!other.nearest(centre, distance, nearest)) return false;
+  if (!nearest.beside) (of_a ? points.triangle_b : points.triangle_a) = nearest.triangle;
+  direction = nearest.normal * btScalar(of_a ? -1 : 1);
+  return true;
+}
+
+void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
+                           std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const {
+  const btScalar size = surfaceDistance(index);
+  const PlacedPacking& own = of_a ? a_ : b_;
+  const PlacedPacking& other = of_a ? b_ : a_;
+  // All of this is relative to the solid whose corners are looked for; `way` leads out of it.
+  const btVector3 offset = of_a ? btVector3(0, 0, 0) : apart();
+  const btVector3 to_other = of_a ? apart() : -apart();
+  const btVector3 way = of_a ? normal : -normal;
+  const btVector3 start = (of_a ? points.on_a : points.on_b) - offset;
+  const btVector3 face = (of_a ? points.on_b : points.on_a) - offset;
+  const bool is_peak =
+      cornersUphill(own, of_a ? points.triangle_a : points.triangle_b, way, start, size, vertices);
+  for (const std::uint32_t vertex : vertices) {
+    const btVector3 at = cornerAt(own, vertex, way);
+    SurfacePoint under;
+    const btVector3 place = at - way * (at - face).dot(way) - to_other;
+    if (!faceUnder(other, place, -way, size, under)) continue;
+    EdgeContact corner{points, kCornerId + (of_a ? 0 : 1) + 2 * std::uint64_t(vertex), is_peak};
+    (of_a ? corner.points.on_a : corner.points.on_b) = at + offset;
+    (of_a ? corner.points.on_b : corner.points.on_a) = under.at + to_other + offset;
+    (of_a ? corner.points.normal_b : corner.points.normal_a) = under.normal * btScalar(of_a ? -1 : 1);
+    corners.push_back(corner);
+  }
+}
+
+bool PackingProbe::crossing(const OpposedPoints& points, const btVector3& direction,
+                            EdgeContact& crossing) const {
+  return crossEdges({a_, {0, 0, 0}}, {b_, apart()}, points, direction, crossing);
+}
+
+FaceExtents::EdgeDistances PackingProbe::edgeDistances(const OpposedPoints& points,
+                                                       const btVector3& towards) const {
+  const auto distance = [&](const PlacedPacking& body, std::size_t triangle, const btVector3& at) {
+    const btMatrix3x3& axes = body.world.getBasis();
+    return body.scale() *
+           body.shape().surfaceQueries().untilSharpEdge(triangle, (at * axes) / body.scale(), towards * axes);
+  };
+  return {distance(a_, points.triangle_a, points.on_a),
+          distance(b_, points.triangle_b, points.on_b - apart())};
+}
+
+std::uint64_t PackingProbe::id(std::size_t index) const {
+  return 2 * std::uint64_t(contacts_[index].sphere) + (index < count_a_ ? 0 : 1);
+}
+
+ContactSpheres::Protrusion PackingProbe::protrusion(std::size_t index, const btVector3& normal) const {
+  const bool of_a = index < count_a_;
+  const PlacedPacking& own = of_a ? a_ : b_;
+  const std::size_t sphere = contacts_[index].sphere;
+  return {of_a, (of_a ? 1 : -1) * own.centreOf(sphere).dot(normal) + own.ownRadius(sphere)};
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

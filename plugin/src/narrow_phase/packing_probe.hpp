@@ -1,0 +1,57 @@
+// The surfaces of two packings, probed at the spheres in contact.
+#pragma once
+
+#include <vector>
+
+#include "narrow_phase/contact_normal.hpp"
+#include "narrow_phase/edge_contacts.hpp"
+#include "narrow_phase/sample_selection.hpp"
+#include "narrow_phase/surface_probe.hpp"
+#include "shape/placed_packing.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Of the contacts the first `count_a` are of A's spheres, the others of B's.
+class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExtents, public ContactSpheres {
+ public:
+  PackingProbe(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
+               std::size_t count_a)
+      : a_(a), b_(b), contacts_(contacts), count_a_(count_a) {}
+
+  /// Probes a sample for the first time: towards the nearest point of the other surface, or, where the
+  /// surfaces do not oppose each other there, in the direction of the patch. False if the line met no
+  /// surfaces.
+  bool probe(const btVector3& patch_normal, ProbedSample& sample) const;
+  /// Probes a sample where it was probed before.
+  bool probeAgain(const Samples::Line& line, ProbedSample& sample) const;
+
+  bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
+                 OpposedPoints& points) const override;
+  bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const override;
+  void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
+               std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
+  bool crossing(const OpposedPoints& points, const btVector3& direction,
+                EdgeContact& crossing) const override;
+  EdgeDistances edgeDistances(const OpposedPoints& points, const btVector3& towards) const override;
+  std::uint64_t id(std::size_t index) const override;
+  Protrusion protrusion(std::size_t index, const btVector3& normal) const override;
+
+ private:
+  btVector3 apart() const { return b_.origin() - a_.origin(); }
+  /// How far away the solid of a contact's sphere may end [m].
+  btScalar surfaceDistance(std::size_t index) const {
+    const PlacedPacking& own = index < count_a_ ? a_ : b_;
+    return own.ownRadius(contacts_[index].sphere) + own.search_margin;
+  }
+  /// Draws the line again along the normal that the surfaces show.
+  void align(ProbedSample& sample) const;
+
+  const PlacedPacking& a_;
+  const PlacedPacking& b_;
+  const std::vector<SphereContact>& contacts_;
+  std::size_t count_a_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,121 @@
+#include "narrow_phase/shape_probe.hpp"
+
+#include "narrow_phase/contact_tolerances.hpp"
+#include "narrow_phase/edge_edge.hpp"
+#include "narrow_phase/surface_rays.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+bool ShapeProbe::probe(ProbedSample& sample) const {
+  nearest(sample.index, sample.direction, sample.points);
+  return probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points);
+}
+
+bool ShapeProbe::probeAgain(const Samples::Line& line, ProbedSample& sample) const {
+  if (line.direction.isZero()) return false;
+  nearest(sample.index, sample.direction, sample.points);
+  sample.points.triangle_a = line.triangle_a;
+  sample.points.triangle_b = line.triangle_b;
+  return probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points);
+}
+
+bool ShapeProbe::probeLine(std::size_t index, const btVector3&, const btVector3& shift,
+                           OpposedPoints& points) const {
+  const NearSphere& near_sphere = near_spheres_[index];
+  const btScalar size = surfaceDistance(near_sphere);
+  // Only of a flat surface it is known what it is like beside the nearest point.
+  const bool flat = near_sphere.curvature == 0 && !near_sphere.isOnEdge();
+  if (shift.length2() > 0 && (!flat || shift.length() > size)) return false;
+  const btVector3 from = a_.centreOf(near_sphere.sphere) + near_sphere.aside + shift;
+  const btVector3 towards_b = -near_sphere.normal;
+  points.on_b = from + towards_b * near_sphere.distance;
+  if (shift.length2() > 0 && !goesOn(near_sphere, points.on_b)) return false;
+  SurfacePoint on_a;
+  const bool leaves = leaveSolid(a_, from, towards_b, 2 * size, points.triangle_a, on_a);
+  if (on_a.triangle == OpposedPoints::kNone && points.triangle_a != OpposedPoints::kNone) {
+    // Deep in A: it is some other face that is near.
+    const SharpEdges a(a_, {0, 0, 0});
+    on_a.triangle = points.triangle_a;
+    on_a.at = a.middle(points.triangle_a);
+    on_a.normal = a.face(points.triangle_a);
+    on_a.curvature = a.surface->normals().curvature(points.triangle_a) / a.scale;
+  }
+  points.on_a = on_a.at;
+  points.normal_a = on_a.normal;
+  points.curvature_a = on_a.curvature;
+  points.triangle_a = on_a.triangle;
+  points.normal_b = towards_b;
+  points.curvature_b = near_sphere.curvature;
+  return leaves;
+}
+
+bool ShapeProbe::goesOn(const NearSphere& near_sphere, const btVector3& place) const {
+  // A little above a face it is that far away; beyond its edge it is further.
+  const btScalar radius = a_.searchRadius(near_sphere.sphere);
+  const btVector3 above = place + near_sphere.normal * (kAboveFace * radius);
+  // On a large ground.
+  const btScalar rounding = 4 * SIMD_EPSILON * (a_.origin() + above - world_.getOrigin()).length();
+  btScalar distance = 0;
+  return !other_.distanceOf(a_, world_, above, distance) ||
+         distance < (kAboveFace + kBeyondFace) * radius + rounding;
+}
+
+bool ShapeProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const {
+  points.triangle_a = a_.shape().solid->triangleNear(near_spheres_[index].sphere);
+  direction = -near_spheres_[index].normal;
+  return true;
+}
+
+const NearSphere* ShapeProbe::sphereOver(const btVector3& corner, const btVector3& normal) const {
+  const NearSphere* over = nullptr;
+  btScalar least = BT_LARGE_FLOAT;
+  for (const NearSphere& near_sphere : near_spheres_) {
+    const btScalar size = surfaceDistance(near_sphere);
+    const btScalar distance2 = a_.centreOf(near_sphere.sphere).distance2(corner);
+    if (near_sphere.isOnEdge() || !(distance2 < size * size)) continue;
+    if (!(near_sphere.normal.dot(-normal) > kSameFaceCosine)) continue;
+    if (!(distance2 < least)) continue;
+    least = distance2;
+    over = &near_sphere;
+  }
+  return over;
+}
+
+void ShapeProbe::corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
+                         std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const {
+  if (!of_a) return;
+  const bool is_peak = cornersUphill(a_, points.triangle_a, normal, points.on_a,
+                                     surfaceDistance(near_spheres_[index]), vertices);
+  for (const std::uint32_t vertex : vertices) {
+    const btVector3 at = cornerAt(a_, vertex, normal);
+    // The face is known where spheres are near it.
+    const NearSphere* over = sphereOver(at, normal);
+    if (over == nullptr) continue;
+    EdgeContact corner{points, kCornerId + 2 * std::uint64_t(vertex), is_peak};
+    const btScalar height = (at - a_.centreOf(over->sphere)).dot(over->normal) + over->distance;
+    corner.points.on_a = at;
+    corner.points.on_b = at - over->normal * height;
+    corner.points.normal_b = -over->normal;
+    if (goesOn(*over, corner.points.on_b)) corners.push_back(corner);
+  }
+}
+
+bool ShapeProbe::crossing(const OpposedPoints& points, const btVector3& direction,
+                          EdgeContact& crossing) const {
+  SharpEdges b;
+  OpposedPoints start = points;
+  // Seen from outside.
+  const btVector3 place = points.on_b - points.normal_b * a_.search_margin;
+  if (!other_.facets(a_, world_, b) || !b.nearestTriangle(place, start.triangle_b)) return false;
+  crossing.is_alone = btFabs(b.face(start.triangle_b).dot(points.normal_b)) < kSameFaceCosine;
+  return crossEdges({a_, {0, 0, 0}}, b, start, direction, crossing);
+}
+
+ContactSpheres::Protrusion ShapeProbe::protrusion(std::size_t index, const btVector3&) const {
+  const NearSphere& near_sphere = near_spheres_[index];
+  return {true, a_.ownRadius(near_sphere.sphere) - near_sphere.distance};
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

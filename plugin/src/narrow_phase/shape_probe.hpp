@@ -1,0 +1,56 @@
+// The surfaces of a packing and of a shape of another kind, probed at the spheres near it.
+#pragma once
+
+#include <vector>
+
+#include "narrow_phase/edge_contacts.hpp"
+#include "narrow_phase/sample_selection.hpp"
+#include "narrow_phase/shapes/shape_surface.hpp"
+#include "narrow_phase/surface_probe.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Of the other shape, B, only the nearest point of each sphere is known, with a normal that does not come
+/// from triangles. `near_spheres` are parallel to the contacts.
+class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSpheres {
+ public:
+  /// `world`: where the other shape is.
+  ShapeProbe(const PlacedPacking& a, ShapeSurface& other, const btTransform& world,
+             const std::vector<NearSphere>& near_spheres)
+      : a_(a), other_(other), world_(world), near_spheres_(near_spheres) {}
+
+  /// Probes a sample for the first time, towards the nearest point of the other shape. False if the line does
+  /// not leave A.
+  bool probe(ProbedSample& sample) const;
+  /// Probes a sample again, where the nearest point is now.
+  bool probeAgain(const Samples::Line& line, ProbedSample& sample) const;
+
+  bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
+                 OpposedPoints& points) const override;
+  bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const override;
+  void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
+               std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
+  bool crossing(const OpposedPoints& points, const btVector3& direction,
+                EdgeContact& crossing) const override;
+  std::uint64_t id(std::size_t index) const override { return near_spheres_[index].sphere; }
+  Protrusion protrusion(std::size_t index, const btVector3& normal) const override;
+
+ private:
+  /// How far away the solid of a sphere may end [m].
+  btScalar surfaceDistance(const NearSphere& near_sphere) const {
+    return a_.ownRadius(near_sphere.sphere) + a_.search_margin;
+  }
+  /// Whether the plane that a sphere is nearest to is still the surface of B at `place` of it.
+  bool goesOn(const NearSphere& near_sphere, const btVector3& place) const;
+  /// The sphere nearest to a corner that knows the face under it; null if there is none.
+  const NearSphere* sphereOver(const btVector3& corner, const btVector3& normal) const;
+
+  const PlacedPacking& a_;
+  ShapeSurface& other_;
+  const btTransform& world_;
+  const std::vector<NearSphere>& near_spheres_;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,111 @@
+#include "narrow_phase/surface_rays.hpp"
+
+#include "narrow_phase/contact_tolerances.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// In the frame of a surface.
+struct Ray {
+  Ray(const PlacedPacking& body, const btVector3& start, const btVector3& way, btScalar distance)
+      : from((start * body.world.getBasis()) / body.scale()),
+        direction(way * body.world.getBasis()),
+        length(distance / body.scale()) {}
+  btVector3 from;
+  btVector3 direction;
+  btScalar length;
+};
+
+SurfacePoint pointOf(const PlacedPacking& body, const SurfaceQueries::Hit& hit, const btVector3& from,
+                     const btVector3& direction) {
+  const btMatrix3x3& axes = body.world.getBasis();
+  SurfacePoint point;
+  point.normal = axes * hit.normal;
+  point.curvature = hit.curvature / body.scale();
+  point.triangle = hit.triangle;
+  point.facing = (axes * hit.face).dot(direction);
+  point.at = from + direction * (hit.distance * body.scale());
+  return point;
+}
+
+/// Whether a face with this normal is at a place.
+bool isFaceAt(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar size) {
+  // A little inside, where the direction to the face is well defined.
+  const btVector3 place = at - normal * (kSunk * size + body.margin);
+  SurfaceQueries::Nearest nearest;
+  return body.nearest(place, size, nearest) && nearest.distance < 0 &&
+         nearest.normal.dot(normal) > kSameBentFaceCosine;
+}
+
+}  // namespace
+
+bool leaveSolid(const PlacedPacking& body, const btVector3& from, const btVector3& direction, btScalar length,
+                std::size_t known, SurfacePoint& point) {
+  const SurfaceQueries& surface = body.shape().surfaceQueries();
+  const Ray ray(body, from, direction, length);
+  SurfaceQueries::Hit hit;
+  const auto leaves = [&] {
+    point = pointOf(body, hit, from, direction);
+    return !(point.facing < kFrontCosine);
+  };
+  const bool near = known != OpposedPoints::kNone &&
+                    surface.castNear(known, ray.from, ray.direction, ray.length, hit) && hit.distance > 0 &&
+                    leaves();
+  if (!near && !(surface.cast(ray.from, ray.direction, ray.length, ray.direction, hit) && leaves()))
+    return false;
+  point.at += direction * body.margin;
+  return true;
+}
+
+bool enterSolid(const PlacedPacking& body, const btVector3& from, const btVector3& direction, btScalar length,
+                std::size_t known, const btVector3& opposed, SurfacePoint& point) {
+  const SurfaceQueries& surface = body.shape().surfaceQueries();
+  const Ray ray(body, from, direction, length);
+  const btVector3 towards = -opposed * body.world.getBasis();
+  SurfaceQueries::Hit hit;
+  const auto enters = [&] {
+    point = pointOf(body, hit, from, direction);
+    return !(point.facing > -kFrontCosine);
+  };
+  const bool near = known != OpposedPoints::kNone &&
+                    surface.castNear(known, ray.from, ray.direction, ray.length, hit) && enters();
+  if (!near) {
+    if (!surface.cast(ray.from, ray.direction, ray.length, towards, hit)) return false;
+    point = pointOf(body, hit, from, direction);
+    if (point.facing > 0) {
+      // A line along a face may miss the edge where it enters.
+      SurfaceQueries::Nearest nearest;
+      const bool inside = surface.nearest(ray.from, ray.length, nearest) && nearest.distance < 0;
+      if (!inside || !surface.cast(ray.from, -ray.direction, ray.length, towards, hit)) return false;
+      point = pointOf(body, hit, from, -direction);
+      point.facing = -point.facing;
+    }
+  }
+  if (point.facing > -kFrontCosine) return false;
+  point.at -= direction * body.margin;
+  return true;
+}
+
+bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar size,
+               SurfacePoint& point) {
+  const btVector3 inside = at - normal * (kSunk * size + body.margin);
+  return isFaceAt(body, at, normal, size) &&
+         leaveSolid(body, inside, normal, size, OpposedPoints::kNone, point);
+}
+
+bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,
+                   const btVector3& start, btScalar distance, std::vector<std::uint32_t>& vertices) {
+  const btMatrix3x3& axes = body.world.getBasis();
+  vertices.clear();
+  return body.shape().vertexHillClimb().from(triangle, direction * axes, (start * axes) / body.scale(),
+                                             distance / body.scale(), vertices);
+}
+
+btVector3 cornerAt(const PlacedPacking& body, std::uint32_t vertex, const btVector3& direction) {
+  const btVector3 in_packing = toBullet(body.shape().packing().surface.vertices[vertex]) * body.scale();
+  return body.world.getBasis() * in_packing + direction * body.margin;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,161 @@
+// A packing and shapes of Bullet's, probed where the distances of their surfaces are known in closed form.
+#include "narrow_phase/shape_probe.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <btBulletCollisionCommon.h>
+
+#include "test_packings.hpp"
+
+namespace innersphere::test {
+namespace {
+
+constexpr double kRounding = 2e-5;
+constexpr double kTessellation = 6e-4;  ///< of a ball of 1 m: see singleBall
+
+/// A packing near another shape, and the spheres near it.
+struct Near {
+  Near(const btCollisionShape& other_shape, std::shared_ptr<PackingShape> packing, const btTransform& place)
+      : shape(std::move(packing)),
+        a(*shape, place, Estimator::raw, btScalar(0.3)),
+        surface(makeShapeSurface(other_shape)) {
+    surface->findNearSpheres(a, world, spheres);
+  }
+  ShapeProbe probe() const { return ShapeProbe(a, *surface, world, spheres); }
+  std::size_t indexOf(std::uint32_t sphere) const {
+    std::size_t i = 0;
+    while (spheres[i].sphere != sphere) ++i;
+    return i;
+  }
+
+  const btTransform world = btTransform::getIdentity();
+  std::shared_ptr<PackingShape> shape;
+  PlacedPacking a;
+  std::unique_ptr<ShapeSurface> surface;
+  std::vector<NearSphere> spheres;
+};
+
+std::shared_ptr<PackingShape> withoutMargin(Packing packing) {
+  auto shape = makeShape(std::move(packing));
+  shape->setMargin(0);
+  return shape;
+}
+
+TEST(ShapeProbe, FindsTheDepthOfABallInAPlane) {
+  const btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  const Near near(plane, withoutMargin(singleBall(1)),
+                  btTransform(btQuaternion::getIdentity(), btVector3(2, 3, btScalar(0.97))));
+  ASSERT_EQ(near.spheres.size(), 1u);
+  ProbedSample sample;
+  ASSERT_TRUE(near.probe().probe(sample));
+  const btVector3 down(0, 0, -1);
+  EXPECT_NEAR(sample.direction.distance(down), 0, 1e-6);
+  EXPECT_NEAR(sample.points.depthAlong(down), 0.03, kTessellation);
+  EXPECT_NEAR(sample.points.on_b.distance(btVector3(0, 0, btScalar(-0.97))), 0, kRounding);
+  EXPECT_NEAR(sample.points.curvature_a, 1, 0.02);
+  EXPECT_EQ(sample.points.curvature_b, 0);
+  // Beside it the plane goes on, and the ball is higher.
+  OpposedPoints points;
+  ASSERT_TRUE(near.probe().probeLine(0, down, btVector3(btScalar(0.3), 0, 0), points));
+  EXPECT_NEAR(points.depthAlong(down), std::sqrt(1 - 0.09) - 0.97, kTessellation);
+}
+
+TEST(ShapeProbe, FindsTheDepthOfTwoBalls) {
+  const btSphereShape ball(2);
+  const btVector3 direction = btVector3(-2, 1, 2) / 3;  // from A to B
+  const Near near(ball, withoutMargin(singleBall(1)),
+                  btTransform(btQuaternion::getIdentity(), direction * btScalar(-2.95)));
+  ProbedSample sample;
+  ASSERT_TRUE(near.probe().probe(sample));
+  EXPECT_NEAR(sample.direction.distance(direction), 0, 1e-6);
+  EXPECT_NEAR(sample.points.depthAlong(direction), 0.05, kTessellation);
+  EXPECT_NEAR(sample.points.curvature_b, 0.5, 1e-6);
+  // Of a curved surface only the nearest point is known.
+  OpposedPoints points;
+  const btVector3 sideways = direction.cross(btVector3(1, 0, 0)).normalized();
+  EXPECT_FALSE(near.probe().probeLine(0, direction, sideways * btScalar(0.1), points));
+}
+
+TEST(ShapeProbe, KnowsWhereAFaceEnds) {
+  const btBoxShape table(btVector3(1, 1, 1));
+  // Over the face, 0.2 m from its edge.
+  const Near near(table, withoutMargin(singleBall(0.5)),
+                  btTransform(btQuaternion::getIdentity(), btVector3(btScalar(0.8), 0, btScalar(1.49))));
+  ASSERT_EQ(near.spheres.size(), 1u);
+  const btVector3 down(0, 0, -1);
+  OpposedPoints points;
+  EXPECT_TRUE(near.probe().probeLine(0, down, btVector3(btScalar(0.15), 0, 0), points));
+  EXPECT_FALSE(near.probe().probeLine(0, down, btVector3(btScalar(0.25), 0, 0), points));
+  EXPECT_TRUE(near.probe().probeLine(0, down, btVector3(btScalar(-0.25), 0, 0), points));
+}
+
+TEST(ShapeProbe, FindsTheLowestCornerOfACube) {
+  const btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  const btQuaternion turn(btVector3(1, btScalar(0.3), 0).normalized(), btScalar(0.6));
+  const btMatrix3x3 axes(turn);
+  btVector3 corner;
+  for (int k = 0; k < 3; ++k) corner[k] = axes[2][k] > 0 ? btScalar(-0.5) : btScalar(0.5);
+  const btVector3 lowest = axes * corner;
+  const Near near(plane, withoutMargin(latticeBox({1, 1, 1}, 4)),
+                  btTransform(turn, btVector3(0, 0, -lowest.z() - btScalar(0.01))));
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < near.spheres.size(); ++i) {
+    if (near.spheres[i].distance < near.spheres[index].distance) index = i;
+  }
+  const btVector3 down(0, 0, -1);
+  OpposedPoints points;
+  btVector3 direction;
+  ASSERT_TRUE(near.probe().nearest(index, direction, points));
+  near.probe().probeLine(index, direction, btVector3(0, 0, 0), points);
+  std::vector<std::uint32_t> vertices;
+  std::vector<EdgeContact> corners;
+  near.probe().corners(index, points, down, true, vertices, corners);
+  ASSERT_EQ(corners.size(), 1u);
+  EXPECT_NEAR(corners[0].points.on_a.distance(lowest), 0, kRounding);
+  EXPECT_NEAR(corners[0].points.depthAlong(down), 0.01, kRounding);
+  EXPECT_TRUE(corners[0].is_peak);
+  // The plane has none.
+  corners.clear();
+  near.probe().corners(index, points, down, false, vertices, corners);
+  EXPECT_TRUE(corners.empty());
+}
+
+TEST(ShapeProbe, FindsWhereACubesEdgeCrossesThatOfABox) {
+  // The cube's lower edge lies along y, the box's upper edge along x.
+  const btScalar half = btSqrt(btScalar(0.5));
+  btBoxShape box(btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5)));
+  box.setMargin(0);
+  const btTransform below(btQuaternion(btVector3(1, 0, 0), SIMD_HALF_PI / 2), btVector3(0, 0, -half));
+  const btTransform above(btQuaternion(btVector3(0, 1, 0), SIMD_HALF_PI / 2),
+                          btVector3(btScalar(0.1), btScalar(0.05), half - btScalar(0.01)));
+  const auto cube = withoutMargin(latticeBox({1, 1, 1}, 4));
+  const PlacedPacking a(*cube, above, Estimator::raw, btScalar(0.3));
+  const auto surface = makeShapeSurface(box);
+  std::vector<NearSphere> spheres;
+  surface->findNearSpheres(a, below, spheres);
+  const ShapeProbe probe(a, *surface, below, spheres);
+  const btVector3 down(0, 0, -1);
+  int found = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    ProbedSample sample;
+    sample.index = i;
+    probe.probe(sample);
+    EdgeContact crossing;
+    if (sample.points.triangle_a == OpposedPoints::kNone || !probe.crossing(sample.points, down, crossing))
+      continue;
+    ++found;
+    EXPECT_NEAR(crossing.points.depthAlong(down), 0.01, 1e-4);
+    EXPECT_NEAR(crossing.points.normal_a.distance(down), 0, 1e-4);
+    // In the world it is over x = 0.1, y = 0.
+    EXPECT_NEAR(crossing.points.on_a.x(), 0, 1e-4);
+    EXPECT_NEAR(crossing.points.on_a.y(), -0.05, 1e-4);
+    EXPECT_GE(crossing.id, kCrossingId);
+    EXPECT_LT(crossing.id, kCornerId);
+  }
+  EXPECT_GT(found, 0);
+}
+
+}  // namespace
+}  // namespace innersphere::test

@@ -1,0 +1,210 @@
+// Where lines leave and enter boxes and balls, which is known in closed form.
+#include "narrow_phase/surface_rays.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "test_packings.hpp"
+
+namespace innersphere::test {
+namespace {
+
+/// Vertices are kept in single precision, and so are the boxes of the tree.
+constexpr double kRounding = 2e-5;
+/// Of the ball of 1 m: its triangles are at most 0.07 m long, so that they cut 0.07^2 / 8 off, and the curved
+/// surface that they stand for is much nearer.
+constexpr double kTessellation = 6e-4;
+constexpr double kFar = 100;
+
+const Vec3d kHalf{0.5, 1, 1.5};
+
+btTransform somewhere() {
+  return btTransform(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(0.7)),
+                     btVector3(btScalar(0.3), btScalar(-2), 5));
+}
+
+/// A turned box, twice as large as its packing.
+struct TurnedBox {
+  TurnedBox() : shape(makeShape(latticeBox({kHalf[0], kHalf[1], kHalf[2]}, 2))) {
+    shape->setLocalScaling(btVector3(2, 2, 2));
+    shape->setMargin(0);
+  }
+  PlacedPacking placed() const { return PlacedPacking(*shape, somewhere(), Estimator::raw, 0); }
+  std::shared_ptr<PackingShape> shape;
+};
+
+/// How far the line p + t d is inside of the box: from enter to leave, and the axes of the faces there.
+struct Slab {
+  double enter = -1e9, leave = 1e9;
+  int enter_axis = 0, leave_axis = 0;
+};
+
+Slab slabOf(const btVector3& p, const btVector3& d) {
+  Slab slab;
+  for (int k = 0; k < 3; ++k) {
+    double first = (-kHalf[k] - p[k]) / d[k], last = (kHalf[k] - p[k]) / d[k];
+    if (first > last) std::swap(first, last);
+    if (first > slab.enter) {
+      slab.enter = first;
+      slab.enter_axis = k;
+    }
+    if (last < slab.leave) {
+      slab.leave = last;
+      slab.leave_axis = k;
+    }
+  }
+  return slab;
+}
+
+class RandomLines {
+ public:
+  btVector3 direction() {
+    std::normal_distribution<double> normal;
+    return btVector3(btScalar(normal(rng_)), btScalar(normal(rng_)), btScalar(normal(rng_))).normalized();
+  }
+  btVector3 inside() {
+    std::uniform_real_distribution<double> u(-0.9, 0.9);
+    return btVector3(btScalar(u(rng_) * kHalf[0]), btScalar(u(rng_) * kHalf[1]),
+                     btScalar(u(rng_) * kHalf[2]));
+  }
+
+ private:
+  std::mt19937 rng_{11};
+};
+
+TEST(SurfaceRays, LeaveABoxByTheFaceInTheirWay) {
+  TurnedBox box;
+  const PlacedPacking body = box.placed();
+  const btMatrix3x3& axes = body.world.getBasis();
+  RandomLines lines;
+  int left = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const btVector3 p = lines.inside(), d = lines.direction();
+    const Slab slab = slabOf(p, d);
+    const double cosine = std::fabs(d[slab.leave_axis]);
+    if (std::fabs(cosine - 0.5) < 1e-3) continue;
+    SurfacePoint point;
+    const bool leaves = leaveSolid(body, axes * p, axes * d, btScalar(kFar), OpposedPoints::kNone, point);
+    // At a flat angle it is the side of the solid.
+    ASSERT_EQ(leaves, cosine > 0.5);
+    EXPECT_NEAR(point.facing, cosine, 1e-4);
+    if (!leaves) continue;
+    ++left;
+    EXPECT_NEAR(point.at.distance(axes * (p + d * btScalar(slab.leave))), 0, kRounding);
+    EXPECT_NEAR(std::fabs(point.normal.dot(axes.getColumn(slab.leave_axis))), 1, 1e-6);
+    EXPECT_EQ(point.curvature, 0);
+    // The same from the triangle that is known.
+    SurfacePoint again;
+    ASSERT_TRUE(leaveSolid(body, axes * p, axes * d, btScalar(kFar), point.triangle, again));
+    EXPECT_NEAR(again.at.distance(point.at), 0, kRounding);
+  }
+  EXPECT_GT(left, 500);
+}
+
+TEST(SurfaceRays, EnterABoxAheadOrBehind) {
+  TurnedBox box;
+  const PlacedPacking body = box.placed();
+  const btMatrix3x3& axes = body.world.getBasis();
+  RandomLines lines;
+  int ahead = 0, behind = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const btVector3 p = lines.inside(), d = lines.direction();
+    const Slab slab = slabOf(p, d);
+    const double cosine = std::fabs(d[slab.enter_axis]);
+    if (std::fabs(cosine - 0.5) < 1e-3) continue;
+    const btVector3 expected = axes * (p + d * btScalar(slab.enter));
+    const bool starts_inside = i % 2 == 0;
+    const btVector3 from = starts_inside ? axes * p : axes * (p + d * btScalar(slab.enter - 1));
+    SurfacePoint point;
+    const bool enters =
+        enterSolid(body, from, axes * d, btScalar(kFar), OpposedPoints::kNone, axes * d, point);
+    ASSERT_EQ(enters, cosine > 0.5) << i;
+    if (!enters) continue;
+    ++(starts_inside ? behind : ahead);
+    EXPECT_NEAR(point.at.distance(expected), 0, kRounding);
+    EXPECT_NEAR(point.normal.dot(axes * d), -cosine, 1e-4);
+  }
+  EXPECT_GT(ahead, 200);
+  EXPECT_GT(behind, 200);
+}
+
+TEST(SurfaceRays, GoNoFurtherThanTheirLength) {
+  TurnedBox box;
+  const PlacedPacking body = box.placed();
+  const btVector3 x = body.world.getBasis().getColumn(0);
+  SurfacePoint point;
+  EXPECT_FALSE(leaveSolid(body, btVector3(0, 0, 0), x, btScalar(0.49), OpposedPoints::kNone, point));
+  EXPECT_TRUE(leaveSolid(body, btVector3(0, 0, 0), x, btScalar(0.51), OpposedPoints::kNone, point));
+}
+
+TEST(SurfaceRays, LeaveThatMuchLaterWithAMargin) {
+  TurnedBox box;
+  box.shape->setMargin(btScalar(0.1));
+  const PlacedPacking body = box.placed();
+  const btVector3 x = body.world.getBasis().getColumn(0);
+  SurfacePoint point;
+  ASSERT_TRUE(leaveSolid(body, btVector3(0, 0, 0), x, 1, OpposedPoints::kNone, point));
+  EXPECT_NEAR(point.at.dot(x), kHalf[0] + 0.1, kRounding);
+  ASSERT_TRUE(enterSolid(body, x * -2, x, 4, OpposedPoints::kNone, x, point));
+  EXPECT_NEAR(point.at.dot(x), -kHalf[0] - 0.1, kRounding);
+}
+
+TEST(SurfaceRays, LeaveABallWhereALineDoes) {
+  const auto shape = makeShape(singleBall(1));
+  shape->setMargin(0);
+  const PlacedPacking body(*shape, somewhere(), Estimator::raw, 0);
+  RandomLines lines;
+  for (int i = 0; i < 500; ++i) {
+    const btVector3 p = lines.direction() * btScalar(0.4), d = lines.direction();
+    const double along = p.dot(d);
+    const double way = -along + std::sqrt(along * along - double(p.length2()) + 1);
+    SurfacePoint point;
+    ASSERT_TRUE(leaveSolid(body, p, d, btScalar(kFar), OpposedPoints::kNone, point));
+    const btVector3 expected = p + d * btScalar(way);
+    EXPECT_NEAR(point.at.distance(expected), 0, kTessellation);
+    EXPECT_NEAR(point.normal.distance(expected), 0, 4e-3);
+    EXPECT_NEAR(point.curvature, 1, 0.02);
+  }
+}
+
+TEST(SurfaceRays, FindTheFaceUnderAPlaceOnlyWhereThereIsOne) {
+  TurnedBox box;
+  const PlacedPacking body = box.placed();
+  const btMatrix3x3& axes = body.world.getBasis();
+  const btVector3 x = axes.getColumn(0);
+  SurfacePoint point;
+  for (const double height : {-0.03, 0.0, 0.02}) {
+    const btVector3 place = axes * btVector3(btScalar(kHalf[0] + height), btScalar(0.3), btScalar(-0.4));
+    ASSERT_TRUE(faceUnder(body, place, x, btScalar(0.5), point)) << height;
+    EXPECT_NEAR(point.at.dot(x), kHalf[0], kRounding);
+  }
+  // Beside the face, and under another one.
+  EXPECT_FALSE(
+      faceUnder(body, axes * btVector3(btScalar(kHalf[0]), btScalar(1.2), 0), x, btScalar(0.5), point));
+  EXPECT_FALSE(faceUnder(body, axes * btVector3(btScalar(0.1), btScalar(0.3), 0), axes.getColumn(2),
+                         btScalar(0.5), point));
+}
+
+TEST(SurfaceRays, FindTheCornerUphill) {
+  TurnedBox box;
+  box.shape->setMargin(btScalar(0.05));
+  const PlacedPacking body = box.placed();
+  const btMatrix3x3& axes = body.world.getBasis();
+  RandomLines lines;
+  for (int i = 0; i < 100; ++i) {
+    const btVector3 local = lines.direction(), direction = axes * local;
+    btVector3 expected;
+    for (int k = 0; k < 3; ++k) expected[k] = btScalar(local[k] < 0 ? -kHalf[k] : kHalf[k]);
+    std::vector<std::uint32_t> vertices;
+    ASSERT_TRUE(cornersUphill(body, std::size_t(i) % 12, direction, btVector3(0, 0, 0), 10, vertices));
+    ASSERT_FALSE(vertices.empty());
+    EXPECT_NEAR(cornerAt(body, vertices[0], direction).distance(axes * expected + direction * btScalar(0.05)),
+                0, kRounding);
+  }
+}
+
+}  // namespace
+}  // namespace innersphere::test
