@@ -1,6 +1,7 @@
 // How overlap becomes contact.
 #pragma once
 
+#include "innersphere/bullet_precision.hpp"
 #include "innersphere/query.hpp"
 
 namespace innersphere {
@@ -18,7 +19,8 @@ enum class Response {
   penalty
 };
 
-/// Options of a registration; they hold for every pair of the dispatcher.
+/// Options of a registration, which hold for every pair of the dispatcher, or of a shape: see
+/// PackingShape::setContactOptions().
 ///
 /// Friction, restitution, rolling and spinning friction are the bodies' own, as Bullet combines them. Bodies
 /// that have friction, but no rolling or spinning friction, and touch in one place or along a line, resist
@@ -55,5 +57,25 @@ struct ContactOptions {
   /// it; with Response::penalty a restitution above 0 sets the damping in its place, if that is less.
   double damping = 1;
 };
+
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// The options of a pair: `a` and `b` are those that its shapes have of their own, null for none, and `world`
+/// those of the dispatcher.
+///
+/// Backend and estimator are the dispatcher's in any case, because one query serves all of its pairs. The
+/// rest is the dispatcher's if neither shape has its own, and the shape's if one has. If both have:
+///   - response: theirs if it is the same. Else Response::rigid counts as infinitely stiff and gives way to
+///     the other, and Response::penalty gives way to Response::compliant, which is stable at any step;
+///   - stiffness: that of two springs in series, 1 / (1/a + 1/b), so that two equal bodies are half as stiff
+///     as one of them against a body without options. The default stiffness, 0, is as stiff as the step
+///     resolves: it counts as infinitely stiff, as Response::rigid does;
+///   - damping: the mean, weighted by 1/stiffness: the softer body has more say, and all of it if only one
+///   has
+///     a stiffness;
+///   - accuracy: the finer one; 0, which is all spheres, is the finest.
+ContactOptions combine(const ContactOptions& world, const ContactOptions* a, const ContactOptions* b);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
 
 }  // namespace innersphere

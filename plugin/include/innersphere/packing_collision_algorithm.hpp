@@ -14,7 +14,9 @@ struct PackingCollisionAlgorithm {
   /// Registers for contact and closest-point queries against every shape type but compound and soft body,
   /// which Bullet itself walks down to their children. Call it after
   /// btGImpactCollisionAlgorithm::registerAlgorithm, which overwrites every row of its own. Calling it again
-  /// replaces the options. Throws Error: bad_argument, no_device.
+  /// replaces the options. `dispatcher` is a btCollisionDispatcher, or derived from it, as every dispatcher
+  /// of Bullet's is. Throws Error: bad_argument (null, another kind of dispatcher, options out of range),
+  /// no_device.
   /// Contacts are written to the dispatcher's manifolds by all threads, when Bullet asks for the first pair
   /// of a step. Where the user has set a near-callback, or any of Bullet's global callbacks of contacts, they
   /// are written as Bullet asks for them, pair by pair and by the thread that asks, which takes longer.
@@ -22,22 +24,25 @@ struct PackingCollisionAlgorithm {
   /// but that penalty forces act in the order in which it asks.
   /// Shapes are read by all threads, too; a concave shape of the user's own is asked for its triangles by one
   /// after the other.
-  static void registerAlgorithm(btCollisionDispatcher* dispatcher, const ContactOptions& options = {});
+  static void registerAlgorithm(btDispatcher* dispatcher, const ContactOptions& options = {});
 
   /// Gives the dispatcher's entries for packings back to its collision configuration. What was kept for them
   /// (threads' buffers, on a device its memory and streams) is freed with the last pair that Bullet still has
   /// an algorithm for. Without it that happens at the end of the process, because a dispatcher does not tell
   /// when it goes: call it before a dispatcher is destroyed where worlds come and go. Does nothing for a
   /// dispatcher that is not registered.
-  static void unregisterAlgorithm(btCollisionDispatcher* dispatcher);
+  static void unregisterAlgorithm(btDispatcher* dispatcher);
 
-  /// Whether packings collide in the worlds of a dispatcher. Where one was forgotten, packings fall through
-  /// each other, and as Bullet tells nobody which world a shape is in, that shows late: a message in the log
-  /// says so after 1,000 steps if no dispatcher was ever registered, else when a body with a packing has gone
-  /// further in 1,000 steps than ten times its size, and has never come near one that a registered dispatcher
-  /// asks for. That may also be one that flies alone. Children of compounds are not followed if a registered
-  /// dispatcher knows their shape.
-  static bool isRegistered(const btCollisionDispatcher* dispatcher);
+  /// Whether packings collide in the worlds of a dispatcher. Where one was forgotten, Bullet collides convex
+  /// shapes with the triangles of a packing, as with a hollow mesh, and lets packings fall through each
+  /// other, through planes and through meshes. The log names the packing when Bullet's narrow phase asks for
+  /// its triangles first. Where it never does, the log says so within some hundred steps, but only if no
+  /// dispatcher was ever registered in this process: Bullet does not tell which world a shape is in.
+  static bool isRegistered(const btDispatcher* dispatcher);
+
+  /// The options that the dispatcher was registered with last. Throws Error bad_argument if it is not
+  /// registered.
+  static ContactOptions options(const btDispatcher* dispatcher);
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -8,28 +8,56 @@
 
 #include "innersphere/bullet_precision.hpp"
 #include "innersphere/collision_model.hpp"
+#include "innersphere/contact_options.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A moving non-convex solid. Its frame is the solid's principal frame: origin at the centre of mass, axes
-/// along the principal axes of inertia, as Bullet's rigid bodies need it. principalTransform() places the
-/// packing, and so the user's graphics, in that frame. Register PackingCollisionAlgorithm with the
-/// dispatcher, or bodies fall through.
+/// A moving non-convex solid. Register PackingCollisionAlgorithm with the dispatcher, or bodies fall through.
+///
+/// The frame of the shape is that of its body. Bullet's dynamic bodies have their centre of mass at the
+/// origin of their frame, and turn as if its axes were principal axes of inertia. So the shape has the
+/// principal frame of the solid, unless another one is asked for, and that is not the frame of the mesh.
+/// meshTransform() and bodyTransform() lead from one to the other.
 class PackingShape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
-  /// Bodies of the same solid can share one shape, and shapes can share one model. Throws Error if `model` is
-  /// null.
-  explicit PackingShape(std::shared_ptr<const CollisionModel> model);
+  enum class Frame {
+    principal,  ///< origin at the centre of mass, axes along the principal axes of inertia: for dynamic
+                ///< bodies
+    /// The mesh's own: for static and kinematic bodies, btCollisionObject, and children of compounds. A
+    /// dynamic body would turn about the mesh's origin, as if its mass were there.
+    mesh
+  };
+
+  /// Bodies of the same solid can share one shape, and shapes can share one model. Throws Error bad_argument
+  /// if `model` is null.
+  explicit PackingShape(std::shared_ptr<const CollisionModel> model, Frame frame = Frame::principal);
+
+  /// A frame that the caller gives: `mesh_to_body` leads from the mesh's frame, unscaled, to the shape's. For
+  /// a link of a robot, for example, the frame that its inertia is given in: a link of a btMultiBody is a
+  /// dynamic body, too, and wants its centre of mass at the origin. The inertia may be the caller's own;
+  /// calculateLocalInertia() says what the shape knows of it. Throws Error: bad_argument (null, or no
+  /// rotation and translation), not_finite.
+  PackingShape(std::shared_ptr<const CollisionModel> model, const btTransform& mesh_to_body);
   ~PackingShape() override;
 
   const CollisionModel& model() const;
 
-  /// From the packing's frame to the shape's, for scale 1: graphics are drawn at
-  /// bodyTransform * (scale * (principalTransform() * (x - origin))), with the packing's origin, which is
-  /// zero unless the mesh is far from its own.
+  /// Where the scaled mesh lies in the frame of the shape: a vertex x of the mesh, times the scaling, is at
+  /// meshToBody() * (scaling * x). It is the second argument of a btDefaultMotionState that takes and gives
+  /// the places of the mesh. Changes with setLocalScaling().
+  btTransform meshToBody() const;
+  /// Where the body has to be for the scaled mesh to be at `mesh`: mesh * meshToBody().inverse(). For poses
+  /// that belong to the mesh: start transforms, saved games, kinematic targets. A pivot of a constraint that
+  /// is given in the frame of the mesh is moved by meshToBody().
+  btTransform bodyTransform(const btTransform& mesh) const;
+  /// Where the scaled mesh is, to be drawn, when the body is at `body`: body * meshToBody().
+  btTransform meshTransform(const btTransform& body) const;
+
+  /// From the packing's frame to the principal frame, for scale 1. The packing's frame is the mesh's, moved
+  /// by Packing::origin, which is zero unless the mesh is far from its own origin.
   const btTransform& principalTransform() const;
 
   /// The shape behind a btCollisionShape, or null if it is none of ours, whatever its type number.
@@ -43,6 +71,16 @@ class PackingShape : public btConcaveShape {
   void setSphereCount(std::size_t count);
   std::size_t sphereCount() const;
 
+  /// Options for all pairs of bodies with this shape, in place of those that the dispatcher was registered
+  /// with; combine() says what holds for a pair in which both shapes have their own. Backend and estimator
+  /// are always the dispatcher's. For one body alone, give it a shape of its own from the same model. Takes
+  /// effect with the next step; not during one. Throws Error bad_argument, as registerAlgorithm() does.
+  void setContactOptions(const ContactOptions& options);
+  /// The dispatcher's options hold again, as at first.
+  void resetContactOptions();
+  /// Null if the dispatcher's hold.
+  const ContactOptions* contactOptions() const;
+
   // btCollisionShape: all bounds take constant time. The margin, 0 at first, makes the solid that much larger
   // on all sides: contacts come that much earlier. Mass properties do not follow it, nor does it scale.
   void getAabb(const btTransform& t, btVector3& min, btVector3& max) const override;
@@ -50,12 +88,15 @@ class PackingShape : public btConcaveShape {
   btScalar getAngularMotionDisc() const override;
   void setMargin(btScalar margin) override;
   btScalar getContactBreakingThreshold(btScalar factor) const override;
-  /// About the centre of mass; replaces the scaling before. Uniform and positive only: throws Error
-  /// bad_argument otherwise. From btCompoundShape::setLocalScaling too, which has scaled the children before
-  /// it by then.
+  /// About the origin of the shape's frame; replaces the scaling before. Uniform and positive only: throws
+  /// Error bad_argument otherwise. From btCompoundShape::setLocalScaling too, which has scaled the children
+  /// before it by then.
   void setLocalScaling(const btVector3& scaling) override;
   const btVector3& getLocalScaling() const override;
-  /// Exact moments of the solid for a homogeneous body of this mass [kg m^2].
+  /// Exact moments of a homogeneous body of this mass [kg m^2]: about the axes of the shape's frame, through
+  /// its origin. In the principal frame they are the principal moments. In another frame they are the
+  /// diagonal of the inertia tensor, and Bullet takes the rest of it for zero: right for turning about one of
+  /// the axes, or where the body's symmetry makes the axes principal; else use the principal frame.
   void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
   const char* getName() const override;
   /// As a btCompoundShape of spheres, sphereCount() of them, which any Bullet can load; their radii include

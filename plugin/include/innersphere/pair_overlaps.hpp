@@ -33,7 +33,7 @@ struct PairOverlap {
 /// found then. In the order in which their boxes met. Costs a volume query for each pair, except with
 /// Response::penalty, which knows its volumes. Throws Error bad_argument if PackingCollisionAlgorithm is not
 /// registered with the dispatcher.
-std::vector<PairOverlap> pairOverlaps(btCollisionDispatcher* dispatcher);
+std::vector<PairOverlap> pairOverlaps(btDispatcher* dispatcher);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

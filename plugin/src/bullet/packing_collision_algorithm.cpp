@@ -1,6 +1,5 @@
 #include "innersphere/packing_collision_algorithm.hpp"
 
-#include <cmath>
 #include <string>
 
 #include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
@@ -8,41 +7,45 @@
 
 #include "bullet/packing_pair_algorithm.hpp"
 #include "innersphere/error.hpp"
+#include "response/option_rules.hpp"
 #include "shape/registration_check.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-void check(const btCollisionDispatcher* dispatcher, const ContactOptions& options) {
-  if (dispatcher == nullptr || dispatcher->getCollisionConfiguration() == nullptr) {
+/// Null if it is null or none.
+btCollisionDispatcher* collisionDispatcher(btDispatcher* dispatcher) {
+  return dynamic_cast<btCollisionDispatcher*>(dispatcher);
+}
+
+btCollisionDispatcher& checked(btDispatcher* dispatcher) {
+  if (dispatcher == nullptr)
+    throw Error(ErrorCode::bad_argument,
+                "registerAlgorithm needs a dispatcher; it was given a null pointer.");
+  btCollisionDispatcher* collision = collisionDispatcher(dispatcher);
+  if (collision == nullptr) {
+    throw Error(
+        ErrorCode::bad_argument,
+        "registerAlgorithm needs a btCollisionDispatcher or a class derived from it: it writes to the "
+        "table that Bullet chooses collision algorithms from, which this dispatcher does not have.");
+  }
+  if (collision->getCollisionConfiguration() == nullptr)
     throw Error(ErrorCode::bad_argument,
                 "registerAlgorithm needs a dispatcher with a collision configuration.");
-  }
-  if (!(std::isfinite(options.stiffness) && options.stiffness >= 0)) {
-    throw Error(ErrorCode::bad_argument, "ContactOptions::stiffness is " + std::to_string(options.stiffness) +
-                                             "; it must be 0 (default) or a positive number of N/m^3.");
-  }
-  if (!(std::isfinite(options.damping) && options.damping >= 0)) {
-    throw Error(ErrorCode::bad_argument, "ContactOptions::damping is " + std::to_string(options.damping) +
-                                             "; it must be a fraction of critical damping, 0 or more.");
-  }
-  if (!(std::isfinite(options.accuracy) && options.accuracy >= 0)) {
-    throw Error(ErrorCode::bad_argument, "ContactOptions::accuracy is " + std::to_string(options.accuracy) +
-                                             "; it must be 0 (all spheres) or a positive number of metres.");
-  }
-  if (options.backend == Backend::cuda && !cudaAvailable()) {
-    throw Error(ErrorCode::no_device,
-                "ContactOptions::backend is cuda, but there is no CUDA device; use automatic or cpu.");
-  }
+  return *collision;
 }
 
 }  // namespace
 
-void PackingCollisionAlgorithm::registerAlgorithm(btCollisionDispatcher* dispatcher,
-                                                  const ContactOptions& options) {
-  check(dispatcher, options);
-  const btPoolAllocator* pool = dispatcher->getCollisionConfiguration()->getCollisionAlgorithmPool();
+void PackingCollisionAlgorithm::registerAlgorithm(btDispatcher* of_world, const ContactOptions& options) {
+  btCollisionDispatcher& dispatcher = checked(of_world);
+  checkOptions(options);
+  if (options.backend == Backend::cuda && !cudaAvailable()) {
+    throw Error(ErrorCode::no_device,
+                "ContactOptions::backend is cuda, but there is no CUDA device; use automatic or cpu.");
+  }
+  const btPoolAllocator* pool = dispatcher.getCollisionConfiguration()->getCollisionAlgorithmPool();
   if (pool != nullptr && pool->getElementSize() < static_cast<int>(sizeof(PairAlgorithm))) {
     throw Error(ErrorCode::bad_argument, "The collision algorithm pool has elements of " +
                                              std::to_string(pool->getElementSize()) +
@@ -50,20 +53,34 @@ void PackingCollisionAlgorithm::registerAlgorithm(btCollisionDispatcher* dispatc
                                              std::to_string(sizeof(PairAlgorithm)) +
                                              " or more in btDefaultCollisionConstructionInfo.");
   }
-  const std::shared_ptr<Registration> registration = Registration::of(dispatcher);
+  const std::shared_ptr<Registration> registration = Registration::of(&dispatcher);
   registration->setOptions(options);
   noticeRegistration();
-  registration->fillTables(dispatcher);
+  registration->fillTables(&dispatcher);
 }
 
-void PackingCollisionAlgorithm::unregisterAlgorithm(btCollisionDispatcher* dispatcher) {
-  if (const std::shared_ptr<Registration> registration = Registration::take(dispatcher)) {
-    registration->clearTables(dispatcher);
+void PackingCollisionAlgorithm::unregisterAlgorithm(btDispatcher* dispatcher) {
+  btCollisionDispatcher* collision = collisionDispatcher(dispatcher);
+  if (const std::shared_ptr<Registration> registration = Registration::take(collision)) {
+    registration->clearTables(collision);
   }
 }
 
-bool PackingCollisionAlgorithm::isRegistered(const btCollisionDispatcher* dispatcher) {
-  return dispatcher != nullptr && Registration::hasTables(*dispatcher);
+bool PackingCollisionAlgorithm::isRegistered(const btDispatcher* dispatcher) {
+  const auto* collision = dynamic_cast<const btCollisionDispatcher*>(dispatcher);
+  return collision != nullptr && Registration::hasTables(*collision);
+}
+
+ContactOptions PackingCollisionAlgorithm::options(const btDispatcher* dispatcher) {
+  const std::shared_ptr<Registration> registration =
+      isRegistered(dispatcher)
+          ? Registration::find(collisionDispatcher(const_cast<btDispatcher*>(dispatcher)))
+          : nullptr;
+  if (!registration) {
+    throw Error(ErrorCode::bad_argument,
+                "options needs a dispatcher that PackingCollisionAlgorithm is registered with.");
+  }
+  return registration->options();
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

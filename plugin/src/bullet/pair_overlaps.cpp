@@ -6,8 +6,9 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-std::vector<PairOverlap> pairOverlaps(btCollisionDispatcher* dispatcher) {
-  const std::shared_ptr<Registration> registration = Registration::find(dispatcher);
+std::vector<PairOverlap> pairOverlaps(btDispatcher* dispatcher) {
+  const std::shared_ptr<Registration> registration =
+      Registration::find(dynamic_cast<btCollisionDispatcher*>(dispatcher));
   if (!registration) {
     throw Error(ErrorCode::bad_argument,
                 "pairOverlaps needs a dispatcher that PackingCollisionAlgorithm is registered with.");

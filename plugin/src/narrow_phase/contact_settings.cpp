@@ -3,15 +3,17 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "narrow_phase/contact_transport.hpp"
+#include "response/option_rules.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-Measure::Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b,
+Measure::Measure(const ContactOptions& world_options, const PackingShape& a, const btCollisionShape& b,
                  btScalar needed)
     : spacing(btMin(a.getContactBreakingThreshold(gContactBreakingThreshold),
                     b.getContactBreakingThreshold(gContactBreakingThreshold))),
       separation(btMax(spacing, needed + ContactMemory::reserve(spacing))) {
+  const ContactOptions options = optionsOfPair(world_options, a, b);
   const PackingShape* packing_b = PackingShape::from(&b);
   on_surfaces = options.stiffness == 0 && options.response != Response::penalty && a.impl().hasSurface() &&
                 (packing_b == nullptr || packing_b->impl().hasSurface());

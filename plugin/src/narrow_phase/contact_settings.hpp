@@ -10,8 +10,10 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 struct Measure {
   /// `needed` [m]: bodies that are not further apart than this still have a contact, if the surfaces are
   /// measured. They are looked for from a little further away, so that they are good for the next steps too,
-  /// and at least from the distance at which Bullet drops contacts: see separation.
-  Measure(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b, btScalar needed);
+  /// and at least from the distance at which Bullet drops contacts: see separation. `world_options`: the
+  /// dispatcher's, which those of the shapes replace.
+  Measure(const ContactOptions& world_options, const PackingShape& a, const btCollisionShape& b,
+          btScalar needed);
 
   btScalar slack() const { return slack_a + slack_b; }
 

@@ -7,14 +7,6 @@
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
-namespace {
-
-bool same(const btVector3& a, const btVector3& b) {
-  return a.x() == b.x() && a.y() == b.y() && a.z() == b.z();
-}
-
-}  // namespace
-
 BodySide::BodySide(const btCollisionObjectWrapper& wrapper)
     : object(wrapper.getCollisionObject()),
       shape(wrapper.getCollisionShape()),
@@ -49,26 +41,22 @@ bool isActive(const BodySide& a, const BodySide& b) {
 PackingSide::PackingSide(const btCollisionObjectWrapper& wrapper, const PackingShape& packing_shape)
     : BodySide(wrapper),
       packing(&packing_shape),
-      scaling(packing_shape.getLocalScaling()),
       margin(packing_shape.getMargin()),
-      prefix(packing_shape.impl().prefix) {}
+      version(packing_shape.impl().version) {}
 
 bool PackingSide::refresh() {
   if (!BodySide::refresh()) return false;
-  scaling = packing->getLocalScaling();
   margin = packing->getMargin();
-  prefix = packing->impl().prefix;
+  version = packing->impl().version;
   return true;
 }
 
 bool PackingSide::isAlike(const PackingSide& other) const {
-  return object == other.object && packing == other.packing && margin == other.margin &&
-         prefix == other.prefix && same(scaling, other.scaling);
+  return object == other.object && packing == other.packing && version == other.version;
 }
 
 bool PackingSide::isUpToDate() const {
-  return margin == packing->getMargin() && prefix == packing->impl().prefix &&
-         same(scaling, packing->impl().scaling);
+  return version == packing->impl().version;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -49,9 +49,8 @@ struct PackingSide : BodySide {
   bool isUpToDate() const;
 
   const PackingShape* packing;
-  btVector3 scaling;
   btScalar margin;
-  const Prefix* prefix;
+  std::size_t version;  ///< of the shape: see PackingShape::Impl
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

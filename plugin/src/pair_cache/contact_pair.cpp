@@ -9,14 +9,20 @@
 #include "common/log.hpp"
 #include "common/motion_bound.hpp"
 #include "innersphere/error.hpp"
+#include "response/option_rules.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
+btScalar sizeOf(const btCollisionShape& shape) {
+  const PackingShape* packing = PackingShape::from(&shape);
+  return packing == nullptr ? shape.getAngularMotionDisc() : packing->impl().size;
+}
+
 btScalar sizeOf(const btCollisionShape& packing, const btCollisionShape& other) {
-  const btScalar size = packing.getAngularMotionDisc();
-  return other.isInfinite() ? size : btMin(size, other.getAngularMotionDisc());
+  const btScalar size = sizeOf(packing);
+  return other.isInfinite() ? size : btMin(size, sizeOf(other));
 }
 
 bool hasLawOfItsOwn(const btCollisionObject& object) {
@@ -125,8 +131,9 @@ bool PairContact::hasReceived(const btCollisionObjectWrapper& a, const btCollisi
   return surface_ && registration_->surfaces().hasDelivered(*surface_, a, b, separation, time_step);
 }
 
-bool PairContact::receive(const std::vector<ContactPatch>& patches, const ContactOptions& options,
+bool PairContact::receive(const std::vector<ContactPatch>& patches, const ContactOptions& world_options,
                           btScalar time_step) {
+  const ContactOptions options = optionsOfPair(world_options, *shape_a_, *shape_b_);
   if (time_step != time_step_ || options.response == Response::penalty) return false;
   if (!patches.empty() || manifolds_.size() > 0) {
     // New manifolds are the dispatcher's, which is not asked by several threads at once.
@@ -165,7 +172,7 @@ PackingContact* PairContact::announce(const btCollisionObjectWrapper& a, const b
 void PairContact::look(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
                        btScalar time_step) {
   time_step_ = time_step;
-  options_ = registration_->options();
+  options_ = optionsOfPair(registration_->options(), *a.getCollisionShape(), *b.getCollisionShape());
   // What was known of the pair holds only as long as it has the same shapes.
   if (a.getCollisionShape() != shape_a_ || b.getCollisionShape() != shape_b_) forget();
   object_a_ = a.getCollisionObject();

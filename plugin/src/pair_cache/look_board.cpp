@@ -69,8 +69,6 @@ void LookBoard::remove(Look* look) {
 }
 
 const SeenBody* LookBoard::use(const BodySide& side) {
-  if (const PackingShape* packing = PackingShape::from(side.shape))
-    packing->impl().watch.meet(side.nesting == 0 ? side.object : nullptr);
   if (side.nesting != 0) return nullptr;
   SeenBody& body = bodies_.try_emplace(side.object, *side.object).first->second;
   if (body.users++ == 0) seen_.add(&body);

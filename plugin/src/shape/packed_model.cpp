@@ -61,29 +61,9 @@ btScalar Prefix::recess() const {
 }
 
 PackedSolid::PackedSolid(std::shared_ptr<const CollisionModel> collision_model)
-    : model(std::move(collision_model)), frame(principalFrame(packing())) {
-  box_min.setValue(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
-  box_max = -box_min;
-  for (const auto& vertex : packing().surface.vertices) {
-    const btVector3 v = frame.from_packing(toBullet(vertex));
-    box_min.setMin(v);
-    box_max.setMax(v);
-  }
-  for (const Sphere& s : packing().spheres) {
-    const btVector3 c = frame.from_packing(centre(s));
-    const btVector3 r(s.radius, s.radius, s.radius);
-    box_min.setMin(c - r);
-    box_max.setMax(c + r);
-  }
-  sphere_centre = (box_min + box_max) / 2;
-  for (const auto& vertex : packing().surface.vertices) {
-    sphere_radius = btMax(sphere_radius, sphere_centre.distance(frame.from_packing(toBullet(vertex))));
-  }
-  for (const Sphere& s : packing().spheres) {
-    const btVector3 c = frame.from_packing(centre(s));
-    sphere_radius = btMax(sphere_radius, sphere_centre.distance(c) + btScalar(s.radius));
-  }
-}
+    : model(std::move(collision_model)),
+      principal(principalFrame(packing())),
+      in_principal(packing(), principal.from_packing) {}
 
 std::shared_ptr<const PackedSolid> PackedSolid::of(std::shared_ptr<const CollisionModel> model) {
   static std::mutex mutex;

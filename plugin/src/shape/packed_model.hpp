@@ -9,6 +9,7 @@
 #include "common/lazy.hpp"
 #include "innersphere/collision_model.hpp"
 #include "shape/principal_frame.hpp"
+#include "shape/shape_frame.hpp"
 #include "shape/sphere_bvh.hpp"
 #include "surface/surface_queries.hpp"
 #include "surface/vertex_hill_climb.hpp"
@@ -64,11 +65,8 @@ class PackedSolid {
   Built built() const;
 
   const std::shared_ptr<const CollisionModel> model;
-  PrincipalFrame frame;
-  btVector3 box_min{0, 0, 0};  ///< of the surface and the spheres, in the shape's frame
-  btVector3 box_max{0, 0, 0};
-  btVector3 sphere_centre{0, 0, 0};
-  btScalar sphere_radius = 0;
+  const PrincipalFrame principal;
+  const ShapeFrame in_principal;  ///< for shapes in that frame: most
 
  private:
   mutable std::mutex mutex_;

@@ -1,6 +1,7 @@
 #include "innersphere/packing_shape.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <typeinfo>
 
@@ -9,6 +10,7 @@
 
 #include "common/bullet_vectors.hpp"
 #include "innersphere/error.hpp"
+#include "response/option_rules.hpp"
 #include "shape/packing_shape_impl.hpp"
 
 namespace innersphere {
@@ -27,23 +29,77 @@ struct ToShapeFrame : btTriangleCallback {
   btTriangleCallback* user = nullptr;
 };
 
-}  // namespace
-
-PackingShape::Impl::Impl(std::shared_ptr<const CollisionModel> model) {
+std::shared_ptr<const PackedSolid> solidOf(std::shared_ptr<const CollisionModel> model) {
   if (!model) {
     throw Error(ErrorCode::bad_argument, "PackingShape needs a CollisionModel; it was given a null pointer.");
   }
-  solid = PackedSolid::of(std::move(model));
-  prefix = &solid->prefix(packing().spheres.size());
+  return PackedSolid::of(std::move(model));
 }
 
+const btTransform& checkedFrame(const btTransform& mesh_to_body) {
+  if (!isFinite(mesh_to_body)) {
+    throw Error(ErrorCode::not_finite, "The frame of a PackingShape has a number in it that is not finite.");
+  }
+  constexpr btScalar kTolerance = btScalar(1e-3);
+  const btMatrix3x3& axes = mesh_to_body.getBasis();
+  const btMatrix3x3 product = axes * axes.transpose();
+  bool rotation = axes.determinant() > 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) rotation = rotation && btFabs(product[i][j] - (i == j)) < kTolerance;
+  }
+  if (!rotation) {
+    throw Error(
+        ErrorCode::bad_argument,
+        "The frame of a PackingShape must be turned and moved only; scale it with setLocalScaling().");
+  }
+  return mesh_to_body;
+}
+
+btTransform translation(const btVector3& by) {
+  return btTransform(btMatrix3x3::getIdentity(), by);
+}
+
+}  // namespace
+
+PackingShape::Impl::Impl(std::shared_ptr<const PackedSolid> packed_solid)
+    : solid(std::move(packed_solid)),
+      frame(solid->in_principal),
+      prefix(&solid->prefix(packing().spheres.size())) {}
+
+PackingShape::Impl::Impl(std::shared_ptr<const PackedSolid> packed_solid, const btTransform& mesh_to_body)
+    : solid(std::move(packed_solid)),
+      frame(packing(), mesh_to_body * translation(toBullet(packing().origin))),
+      prefix(&solid->prefix(packing().spheres.size())) {}
+
 btTransform PackingShape::Impl::toWorld(const btTransform& body) const {
-  const btTransform& local = solid->frame.from_packing;
+  const btTransform& local = frame.from_packing;
   return body * btTransform(local.getBasis(), local.getOrigin() * scaling.x());
 }
 
-PackingShape::PackingShape(std::shared_ptr<const CollisionModel> model)
-    : impl_(std::make_unique<Impl>(std::move(model))) {
+btVector3 PackingShape::Impl::moments() const {
+  const PrincipalFrame& principal = solid->principal;
+  if (frame.from_packing == principal.from_packing) return principal.moments;
+  const btTransform to_shape = frame.from_packing * principal.from_packing.inverse();
+  const btVector3& centre_of_mass = to_shape.getOrigin();
+  btVector3 moments;
+  for (int i = 0; i < 3; ++i) {
+    const btVector3& axis = to_shape.getBasis()[i];
+    const btScalar from_axis2 = centre_of_mass.length2() - centre_of_mass[i] * centre_of_mass[i];
+    moments[i] = (axis * axis).dot(principal.moments) + from_axis2;
+  }
+  return moments;
+}
+
+PackingShape::PackingShape(std::shared_ptr<const CollisionModel> model, Frame frame)
+    : impl_(frame == Frame::principal
+                ? std::make_unique<Impl>(solidOf(std::move(model)))
+                : std::make_unique<Impl>(solidOf(std::move(model)), btTransform::getIdentity())) {
+  m_shapeType = kPackingShapeType;
+  noteChange();
+}
+
+PackingShape::PackingShape(std::shared_ptr<const CollisionModel> model, const btTransform& mesh_to_body)
+    : impl_(std::make_unique<Impl>(solidOf(std::move(model)), checkedFrame(mesh_to_body))) {
   m_shapeType = kPackingShapeType;
   noteChange();
 }
@@ -54,8 +110,21 @@ const CollisionModel& PackingShape::model() const {
   return *impl_->solid->model;
 }
 
+btTransform PackingShape::meshToBody() const {
+  const btTransform local = impl_->frame.from_packing * translation(-toBullet(impl_->packing().origin));
+  return btTransform(local.getBasis(), local.getOrigin() * impl_->scaling.x());
+}
+
+btTransform PackingShape::bodyTransform(const btTransform& mesh) const {
+  return mesh * meshToBody().inverse();
+}
+
+btTransform PackingShape::meshTransform(const btTransform& body) const {
+  return body * meshToBody();
+}
+
 const btTransform& PackingShape::principalTransform() const {
-  return impl_->solid->frame.from_packing;
+  return impl_->solid->principal.from_packing;
 }
 
 const PackingShape* PackingShape::from(const btCollisionShape* shape) {
@@ -74,16 +143,31 @@ std::size_t PackingShape::sphereCount() const {
   return impl_->prefix->count;
 }
 
+void PackingShape::setContactOptions(const ContactOptions& options) {
+  checkOptions(options);
+  impl_->options = options;
+  noteChange();
+}
+
+void PackingShape::resetContactOptions() {
+  impl_->options.reset();
+  noteChange();
+}
+
+const ContactOptions* PackingShape::contactOptions() const {
+  return impl_->options ? &*impl_->options : nullptr;
+}
+
 void PackingShape::getAabb(const btTransform& t, btVector3& min, btVector3& max) const {
-  impl_->watch.notice(t, impl_->disc);
+  impl_->check.noticeBox(t);
   const btScalar scale = impl_->scaling.x();
-  btTransformAabb(impl_->solid->box_min * scale, impl_->solid->box_max * scale,
+  btTransformAabb(impl_->frame.box_min * scale, impl_->frame.box_max * scale,
                   impl_->bulge() * scale + getMargin(), t, min, max);
 }
 
 void PackingShape::getBoundingSphere(btVector3& centre, btScalar& radius) const {
-  centre = impl_->solid->sphere_centre * impl_->scaling.x();
-  radius = (impl_->solid->sphere_radius + impl_->bulge()) * impl_->scaling.x() + getMargin();
+  centre = impl_->frame.sphere_centre * impl_->scaling.x();
+  radius = (impl_->frame.sphere_radius + impl_->bulge()) * impl_->scaling.x() + getMargin();
 }
 
 btScalar PackingShape::getAngularMotionDisc() const {
@@ -96,16 +180,21 @@ void PackingShape::setMargin(btScalar margin) {
 }
 
 void PackingShape::noteChange() {
+  static std::atomic<std::size_t> changes{0};
+  impl_->version = ++changes;
   btVector3 centre;
   btScalar radius;
   PackingShape::getBoundingSphere(centre, radius);
   impl_->disc = radius + centre.length();
-  ++impl_->version;
+  const ShapeFrame& frame = impl_->solid->in_principal;
+  const btScalar scale = impl_->scaling.x();
+  impl_->size =
+      (frame.sphere_radius + impl_->bulge()) * scale + getMargin() + (frame.sphere_centre * scale).length();
 }
 
 btScalar PackingShape::getContactBreakingThreshold(btScalar factor) const {
   // Bullet merges contact points closer than this: fine features must stay apart in large solids.
-  return btMin(getAngularMotionDisc() * factor, impl_->prefix->median_radius * impl_->scaling.x());
+  return btMin(impl_->size * factor, impl_->prefix->median_radius * impl_->scaling.x());
 }
 
 void PackingShape::setLocalScaling(const btVector3& scaling) {
@@ -128,7 +217,7 @@ const btVector3& PackingShape::getLocalScaling() const {
 
 void PackingShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
   const btScalar scale = impl_->scaling.x();
-  inertia = impl_->solid->frame.moments * (mass * scale * scale);
+  inertia = impl_->moments() * (mass * scale * scale);
 }
 
 const char* PackingShape::getName() const {
@@ -137,9 +226,10 @@ const char* PackingShape::getName() const {
 
 void PackingShape::processAllTriangles(btTriangleCallback* callback, const btVector3& min,
                                        const btVector3& max) const {
+  impl_->check.noticeTriangles(*callback, impl_->packing().provenance.source);
   if (!impl_->hasSurface()) return;
   ToShapeFrame to_shape;
-  to_shape.from_packing = impl_->solid->frame.from_packing;
+  to_shape.from_packing = impl_->frame.from_packing;
   to_shape.scale = impl_->scaling.x();
   to_shape.user = callback;
   btVector3 packing_min, packing_max;

@@ -1,6 +1,8 @@
 // What the collision algorithm knows of a PackingShape beyond its public face.
 #pragma once
 
+#include <optional>
+
 #include "innersphere/packing_shape.hpp"
 #include "shape/packed_model.hpp"
 #include "shape/registration_check.hpp"
@@ -15,7 +17,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 constexpr int kPackingShapeType = FAST_CONCAVE_MESH_PROXYTYPE;
 
 struct PackingShape::Impl {
-  explicit Impl(std::shared_ptr<const CollisionModel> model);
+  explicit Impl(std::shared_ptr<const PackedSolid> packed_solid);
+  Impl(std::shared_ptr<const PackedSolid> packed_solid, const btTransform& mesh_to_body);
 
   const Packing& packing() const { return solid->packing(); }
   bool hasSurface() const { return solid->hasSurface(); }
@@ -30,13 +33,20 @@ struct PackingShape::Impl {
   /// From the packing's frame to the world for a body at `body`: x_world = result(scale * x).
   btTransform toWorld(const btTransform& body) const;
 
-  std::shared_ptr<const PackedSolid> solid;
+  /// The moments for mass 1 and scale 1 in the shape's frame [m^2].
+  btVector3 moments() const;
+
+  const std::shared_ptr<const PackedSolid> solid;
+  const ShapeFrame frame;
   const Prefix* prefix;  ///< that the user chose
   btVector3 scaling{1, 1, 1};
-  btScalar disc = 0;        ///< asked for many times in a step
-  std::size_t version = 0;  ///< rises with each change
+  btScalar disc = 0;  ///< asked for many times in a step
+  btScalar size =
+      0;  ///< the same in the principal frame: how large the solid is, wherever the origin lies [m]
+  std::optional<ContactOptions> options;  ///< of its own
+  std::size_t version = 0;                ///< another one after each change, and for each shape
   mutable SerializedSpheres serialized;
-  mutable StepWatch watch;
+  mutable RegistrationCheck check;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

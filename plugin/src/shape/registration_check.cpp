@@ -1,8 +1,8 @@
 #include "shape/registration_check.hpp"
 
-#include <cstdint>
+#include <typeinfo>
 
-#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionDispatch/btConvexConcaveCollisionAlgorithm.h>
 
 #include "common/log.hpp"
 
@@ -10,19 +10,9 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-constexpr int kSteps = 1000;
-constexpr int kMostBodies = 1 << 24;
-/// Who has gone less than so many sizes may be lying somewhere.
-constexpr btScalar kFar = 10;
+constexpr int kSteps = 60;
 std::atomic<bool> registered{false};
-std::atomic<int> steps{0};
-
-/// One in sixteen: a look at more bodies than that costs time in each step.
-bool chance() {
-  static thread_local std::uint32_t state = 0;
-  state = state * 1664525u + 1013904223u;
-  return state >> 28 == 0;
-}
+std::atomic<bool> none_said{false};
 
 }  // namespace
 
@@ -30,46 +20,28 @@ void noticeRegistration() {
   registered.store(true, std::memory_order_relaxed);
 }
 
-void StepWatch::notice(const btTransform& place, btScalar size) {
-  if (done_.load(std::memory_order_relaxed)) return;
-  if (registered.load(std::memory_order_relaxed)) {
-    if (&place == followed_.load(std::memory_order_relaxed) || chance()) follow(place, size);
-  } else if (steps.load(std::memory_order_relaxed) < kSteps && ++steps == kSteps) {
+void RegistrationCheck::noticeBox(const btTransform& place) {
+  if (registered.load(std::memory_order_relaxed) || none_said.load(std::memory_order_relaxed)) return;
+  const unsigned count = ++boxes_;
+  if ((count & (count - 1)) == 0) {
+    // Another body's turn: this one may have gone, or more bodies share the shape than would come round in
+    // time.
+    followed_ = &place;
+    repeats_ = 0;
+  } else if (followed_ == &place && ++repeats_ == kSteps && !none_said.exchange(true)) {
     log("No dispatcher was registered: packings fall through each other and through meshes and planes. Call "
         "PackingCollisionAlgorithm::registerAlgorithm with the world's dispatcher.");
   }
 }
 
-void StepWatch::meet(const btCollisionObject* body) {
-  if (body == nullptr) done_ = true;
-  if (done_) return;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  // Bullet asks for the box at either.
-  for (const btTransform* place : {&body->getWorldTransform(), &body->getInterpolationWorldTransform()}) {
-    settled_.insert(place);
-    if (followed_ == place) followed_ = nullptr;
-  }
-}
-
-void StepWatch::follow(const btTransform& place, btScalar size) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (followed_ != &place) {
-    if (settled_.count(&place) > 0 || (followed_ != nullptr && ++others_ <= patience_)) return;
-    // It has gone, or more bodies share the shape than was thought.
-    if (followed_ != nullptr && patience_ < kMostBodies) patience_ *= 2;
-    followed_ = &place;
-    start_ = place.getOrigin();
-    steps_ = 0;
-  }
-  others_ = 0;
-  if (++steps_ < kSteps) return;
-  followed_ = nullptr;  // another body's turn
-  settled_.insert(&place);
-  if (!(place.getOrigin().distance(start_) > kFar * size)) return;
-  done_ = true;
-  log("A packing has gone far in 1,000 steps and met nothing that a registered dispatcher knows of. If it "
-      "has fallen through something, call PackingCollisionAlgorithm::registerAlgorithm with the dispatcher "
-      "of its world, too.");
+void RegistrationCheck::noticeTriangles(const btTriangleCallback& callback, const std::string& source) {
+  if (typeid(callback) != typeid(btConvexTriangleCallback) || said_.exchange(true)) return;
+  none_said = true;
+  log("The packing of " + (source.empty() ? "an unknown solid" : "\"" + source + "\"") +
+      " is in a world whose dispatcher is not registered: Bullet collides a convex shape with its triangles, "
+      "and "
+      "packings fall through each other and through meshes and planes. Call "
+      "PackingCollisionAlgorithm::registerAlgorithm with that dispatcher.");
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

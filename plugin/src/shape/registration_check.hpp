@@ -2,14 +2,12 @@
 #pragma once
 
 #include <atomic>
-#include <mutex>
-#include <unordered_set>
-
-#include <LinearMath/btTransform.h>
+#include <string>
 
 #include "innersphere/bullet_precision.hpp"
 
-class btCollisionObject;
+class btTransform;
+class btTriangleCallback;
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -17,31 +15,24 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// A dispatcher was registered.
 void noticeRegistration();
 
-/// Bullet asks a shape for its box in every step, and nothing else of it in a world whose dispatcher was not
-/// registered, where packings fall through each other. Says so in the log, once that has happened so often
-/// that it cannot be somebody who measures shapes: if no dispatcher was registered ever, or if a body with
-/// this shape has gone far in all these steps and has met nothing that a registered dispatcher knows of.
-/// Safe to use from several threads at once.
-class StepWatch {
+/// Looks at what Bullet asks a shape for, and says in the log if its world cannot be registered. Safe to use
+/// from several threads at once.
+class RegistrationCheck {
  public:
-  /// The box was asked for at `place`, which for a body is always the same object. No point of the shape is
-  /// further than `size` [m] from its origin.
-  void notice(const btTransform& place, btScalar size);
-  /// A body has met another one in a world that is registered; null: the shape is the child of a compound,
-  /// and its place is not known.
-  void meet(const btCollisionObject* body);
+  /// The shape's box is asked for: in a world for each body in each step, always at the same object. Once
+  /// that cannot be somebody who measures shapes, and if nobody ever registered a dispatcher, the log says
+  /// so: once in a process.
+  void noticeBox(const btTransform& place);
+  /// Its triangles are asked for. The log says so, once for the shape, if it is Bullet's narrow phase for
+  /// convex shapes: with a registered dispatcher it is not used for packings. Rays, sweeps, soft bodies,
+  /// GImpact shapes and users bring callbacks of their own.
+  void noticeTriangles(const btTriangleCallback& callback, const std::string& source);
 
  private:
-  void follow(const btTransform& place, btScalar size);
-
-  std::atomic<bool> done_{false};                      ///< it is a child, or it has been said
-  std::atomic<const btTransform*> followed_{nullptr};  ///< one of those that have met nobody
-  std::mutex mutex_;
-  std::unordered_set<const btTransform*> settled_;  ///< have met another body, or lie somewhere
-  btVector3 start_;                                 ///< where the followed one was first
-  int steps_ = 0;                                   ///< that it was asked for since then
-  int others_ = 0;                                  ///< asked for since it was, last
-  int patience_ = 16;                               ///< more than as many others mean that it has gone
+  std::atomic<unsigned> boxes_{0};
+  std::atomic<const btTransform*> followed_{nullptr};
+  std::atomic<int> repeats_{0};
+  std::atomic<bool> said_{false};
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -14,7 +14,7 @@ const char* SerializedSpheres::write(const PackingShape& shape, void* buffer, bt
   for (std::size_t i = 0; i < impl.prefix->count; ++i) {
     const Sphere& s = impl.packing().spheres[i];
     spheres_.push_back(std::make_unique<btSphereShape>(btScalar(s.radius) * scale + shape.getMargin()));
-    const btVector3 c = impl.solid->frame.from_packing(centre(s)) * scale;
+    const btVector3 c = impl.frame.from_packing(centre(s)) * scale;
     compound_->addChildShape(btTransform(btQuaternion::getIdentity(), c), spheres_.back().get());
   }
   const char* const type = compound_->serialize(buffer, serializer);

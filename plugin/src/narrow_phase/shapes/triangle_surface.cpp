@@ -158,12 +158,11 @@ class TriangleSurface : public OtherSurface {
 
   void collect(const PackingBody& body, const btTransform& world, std::vector<Candidate>& candidates) const {
     const btVector3 slack(body.largestExcess(), body.largestExcess(), body.largestExcess());
-    const btTransform shape_to_packing = body.shape().solid->frame.from_packing;
+    const ShapeFrame& frame = body.shape().frame;
     // The shape's box in the mesh's frame, through the packing's placement.
     const btTransform packing_to_mesh = world.inverseTimes(body.world);
     btVector3 min, max;
-    btTransformAabb(body.shape().solid->box_min, body.shape().solid->box_max, 0, shape_to_packing.inverse(),
-                    min, max);
+    btTransformAabb(frame.box_min, frame.box_max, 0, frame.from_packing.inverse(), min, max);
     btTransformAabb(min * body.scale() - slack, max * body.scale() + slack, 0, packing_to_mesh, min, max);
     const btTransform mesh_to_packing = packing_to_mesh.inverse();
     Collector collector(body, mesh_to_packing, candidates);
