@@ -44,7 +44,7 @@ int main(int argc, char** argv) try {
   btVector3 inertia;
   shape.calculateLocalInertia(mass, inertia);
   btTransform mesh_pose(btQuaternion::getIdentity(), btVector3(0, 0, 2));  // where the mesh is to be
-  btDefaultMotionState motion(mesh_pose, shape.principalTransform());      // the body has another frame
+  btDefaultMotionState motion(mesh_pose, shape.meshToBody());              // the body has another frame
   btRigidBody body(mass, &motion, &shape, inertia);
   world.addRigidBody(&body);
   // after a step: draw the mesh at motion.m_graphicsWorldTrans

@@ -4,7 +4,7 @@ if(NOT DOXYGEN_FOUND)
   return()
 endif()
 set(DOXYGEN_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/docs")
-set(DOXYGEN_USE_MDFILE_AS_MAINPAGE README.md)
+set(DOXYGEN_USE_MDFILE_AS_MAINPAGE "${PROJECT_SOURCE_DIR}/README.md")
 set(DOXYGEN_FULL_PATH_NAMES YES)
 set(DOXYGEN_STRIP_FROM_PATH "${PROJECT_SOURCE_DIR}")
 set(DOXYGEN_STRIP_FROM_INC_PATH packing/include gpu/include plugin/include)
@@ -12,11 +12,20 @@ set(DOXYGEN_TOC_INCLUDE_HEADINGS 2)
 set(DOXYGEN_GENERATE_TREEVIEW YES)
 set(DOXYGEN_BUILTIN_STL_SUPPORT YES)
 set(DOXYGEN_SORT_MEMBER_DOCS NO)
-set(DOXYGEN_IMAGE_PATH "${PROJECT_SOURCE_DIR}")
-# The precision of Bullet is an inline namespace that nobody writes.
+set(DOXYGEN_JAVADOC_AUTOBRIEF YES)
+set(DOXYGEN_HAVE_DOT NO)
+set(DOXYGEN_CLASS_GRAPH NO)
+set(DOXYGEN_IMAGE_PATH "${PROJECT_SOURCE_DIR}/examples" "${PROJECT_SOURCE_DIR}/tests/benchmarks/results")
+# In headers the precision of Bullet is an inline namespace that nobody writes.
+set(DOXYGEN_FILTER_PATTERNS "*.md=\"awk -f ${PROJECT_SOURCE_DIR}/plugin/cmake/markdown_anchors.awk\"")
+set(DOXYGEN_VERBATIM_VARS DOXYGEN_FILTER_PATTERNS)
 set(DOXYGEN_INPUT_FILTER "sed s/.*namespace.INNERSPHERE_BULLET_PRECISION.*//")
+set(DOXYGEN_MACRO_EXPANSION YES)
+set(DOXYGEN_EXPAND_ONLY_PREDEF YES)
+set(DOXYGEN_PREDEFINED "BT_DECLARE_ALIGNED_ALLOCATOR()=")
 set(DOXYGEN_QUIET YES)
 set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
-doxygen_add_docs(docs README.md plugin/README.md examples/README.md CONTRIBUTING.md CHANGELOG.md
-  packing/include gpu/include plugin/include
+file(GLOB results RELATIVE "${PROJECT_SOURCE_DIR}" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/benchmarks/results/*.md")
+doxygen_add_docs(docs packing/include gpu/include plugin/include
+  README.md plugin/README.md plugin/src/README.md examples/README.md tests/README.md CONTRIBUTING.md CHANGELOG.md ${results}
   WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}" COMMENT "Writing build/docs/html/index.html")

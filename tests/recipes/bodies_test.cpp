@@ -1,6 +1,8 @@
 // Kinds of bodies: static, kinematic, links of multi-bodies, children of compounds, bodies with joints.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
@@ -17,11 +19,12 @@ TEST(Recipes, AStaticPackingCarriesABody) {
   RecipeWorld<> simulation;
   btDiscreteDynamicsWorld& world = simulation.world;
   PackingCollisionAlgorithm::registerAlgorithm(&simulation.dispatcher);
-  PackingShape shape(boxModel({1, 1, 0.2}));
+  const std::shared_ptr<const CollisionModel> model = boxModel({1, 1, 0.2});
   const btTransform mesh_pose(kUpright, btVector3(0, 0, btScalar(0.5)));
   // [snippet static]
+  innersphere::PackingShape shape(model, innersphere::PackingShape::Frame::mesh);
   btRigidBody table(0, nullptr, &shape);  // mass 0: it does not move
-  table.setWorldTransform(mesh_pose * shape.principalTransform().inverse());
+  table.setWorldTransform(mesh_pose);
   world.addRigidBody(&table);
   // [snippet]
   PackingShape torus(torusModel());
@@ -35,11 +38,11 @@ TEST(Recipes, AKinematicPackingLiftsABody) {
   RecipeWorld<> simulation;
   btDiscreteDynamicsWorld& world = simulation.world;
   PackingCollisionAlgorithm::registerAlgorithm(&simulation.dispatcher);
-  PackingShape shape(boxModel({1, 1, 0.2}));
+  PackingShape shape(boxModel({1, 1, 0.2}), PackingShape::Frame::mesh);
   btTransform mesh_pose(kUpright, btVector3(0, 0, btScalar(0.5)));
   const btScalar dt = btScalar(1) / 240;
   // [snippet kinematic]
-  btDefaultMotionState motion(mesh_pose, shape.principalTransform());
+  btDefaultMotionState motion(mesh_pose);  // a shape in the frame of the mesh
   btRigidBody lift(0, &motion, &shape);
   lift.setCollisionFlags(lift.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
   lift.setActivationState(DISABLE_DEACTIVATION);
@@ -72,26 +75,31 @@ TEST(Recipes, ALinkOfAMultiBodyRestsOnTheFloor) {
   btRigidBody floor(0, nullptr, &plane);
   world.addRigidBody(&floor);
   PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
-  PackingShape shape(torusModel());
+  const std::shared_ptr<const CollisionModel> model = bracketModel();
+  const PackingShape upright(model);
+  const btTransform link_from_mesh(kUpright, upright.meshToBody().getOrigin());
   const btScalar mass = 1;
-  btVector3 inertia;
-  shape.calculateLocalInertia(mass, inertia);
+  const btVector3 inertia(1, 1, 1);
   btMultiBody body(1, 0, btVector3(0, 0, 0), true, false);
-  body.setBaseWorldTransform(btTransform(kUpright, btVector3(0, 0, btScalar(0.3))));
+  body.setBaseWorldTransform(btTransform(kUpright, btVector3(0, 0, 1)));
   // A rail along which the link may fall.
   body.setupPrismatic(0, mass, inertia, -1, kUpright, btVector3(0, 0, 1), btVector3(0, 0, 0),
                       btVector3(0, 0, 0), true);
   body.finalizeMultiDof();
   const int link = 0;
   // [snippet multi-body]
-  btMultiBodyLinkCollider collider(&body, link);  // the link's frame is the shape's: its principal one
+  innersphere::PackingShape shape(model, link_from_mesh);  // where the mesh is in the link's frame
+  btMultiBodyLinkCollider collider(&body, link);
   collider.setCollisionShape(&shape);
   body.getLink(link).m_collider = &collider;
   world.addCollisionObject(&collider, btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter);
   world.addMultiBody(&body);
   // [snippet]
   for (int step = 0; step < 480; ++step) world.stepSimulation(btScalar(1) / 240, 0);
-  EXPECT_NEAR(collider.getWorldTransform().getOrigin().z(), kTubeRadius, 0.001);
+  // It stands on the lowest point of the mesh.
+  float lowest = 1e9f;
+  for (const auto& vertex : model->packing().surface.vertices) lowest = std::min(lowest, vertex[2]);
+  EXPECT_NEAR(shape.meshTransform(collider.getWorldTransform()).getOrigin().z(), -lowest, 0.001);
   world.removeMultiBody(&body);
   world.removeCollisionObject(&collider);
   world.removeRigidBody(&floor);
@@ -109,7 +117,7 @@ TEST(Recipes, ACompoundOfPackingsRests) {
   btScalar masses[] = {3, 1};
   // [snippet compound]
   btCompoundShape compound;
-  compound.addChildShape(torus_pose * torus.principalTransform().inverse(), &torus);
+  compound.addChildShape(torus.bodyTransform(torus_pose), &torus);
   compound.addChildShape(box_pose, &box);
 
   btTransform principal;  // where the whole has its principal frame
@@ -134,13 +142,13 @@ TEST(Recipes, AJointHoldsAPointOfTheMesh) {
   PackingShape shape(bracketModel());
   btRigidBody& body = simulation.add(shape, 1, btVector3(0, 0, 3));
   const btVector3 hole(btScalar(0.1), btScalar(0.2), btScalar(0.05));
-  const btVector3 before = body.getWorldTransform() * shape.principalTransform() * hole;
+  const btVector3 before = shape.meshTransform(body.getWorldTransform()) * hole;
   // [snippet pivot]
-  btPoint2PointConstraint joint(body, shape.principalTransform() * hole);  // a point of the mesh
+  btPoint2PointConstraint joint(body, shape.meshToBody() * hole);  // a point of the mesh
   world.addConstraint(&joint);
   // [snippet]
   simulation.run(1);
-  EXPECT_LT((body.getWorldTransform() * shape.principalTransform() * hole - before).length(), 0.01);
+  EXPECT_LT((shape.meshTransform(body.getWorldTransform()) * hole - before).length(), 0.01);
   EXPECT_GT(body.getAngularVelocity().length() + (body.getWorldTransform().getOrigin() - before).length(),
             0.1);
   world.removeConstraint(&joint);

@@ -57,7 +57,7 @@ TEST(Recipes, AMeshIsDrawnWhereItsBodyIs) {
   shape.calculateLocalInertia(mass, inertia);
   // [snippet place a mesh]
   btTransform mesh_pose(btQuaternion::getIdentity(), btVector3(0, 0, 1));  // where the mesh is to be
-  btDefaultMotionState motion(mesh_pose, shape.principalTransform());
+  btDefaultMotionState motion(mesh_pose, shape.meshToBody());
   btRigidBody body(mass, &motion, &shape, inertia);
   world.addRigidBody(&body);
   // after each step: motion.m_graphicsWorldTrans is where to draw the mesh
@@ -75,8 +75,8 @@ TEST(Recipes, APlaceOfAMeshIsOneOfABody) {
   btRigidBody body(0, nullptr, &shape, btVector3(0, 0, 0));
   const btTransform mesh_pose(btQuaternion(btVector3(1, 2, 3).normalized(), 1), btVector3(4, 5, 6));
   // [snippet frames]
-  body.setWorldTransform(mesh_pose * shape.principalTransform().inverse());
-  btTransform drawn = body.getWorldTransform() * shape.principalTransform();
+  body.setWorldTransform(shape.bodyTransform(mesh_pose));
+  btTransform drawn = shape.meshTransform(body.getWorldTransform());
   // [snippet]
   EXPECT_LT((drawn.getOrigin() - mesh_pose.getOrigin()).length(), 1e-5);
   EXPECT_LT(drawn.getRotation().angle(mesh_pose.getRotation()), 1e-3);

@@ -56,7 +56,7 @@ constexpr double kTubeRadius = 0.08;  ///< of the torus [m]: how high its centre
 /// Of a torus about the z axis; packed once for all tests.
 std::shared_ptr<const CollisionModel> torusModel();
 
-/// Of an L, whose frame is neither in its centre of mass nor along its principal axes.
+/// Of an L, whose own frame is not the principal one.
 std::shared_ptr<const CollisionModel> bracketModel();
 
 /// Of a box with these edges.

@@ -14,10 +14,11 @@ struct QueryBudget {
   std::uint64_t spheres = 0;  ///< of both bodies together; 0: any. The work is proportional to them
 };
 
+/// What a query within a budget returns.
 struct BoundedOverlap {
-  Overlap overlap;
-  std::uint32_t prefix_a = 0;  ///< spheres that were used
-  std::uint32_t prefix_b = 0;
+  Overlap overlap;             ///< the sums
+  std::uint32_t prefix_a = 0;  ///< spheres of A that were used
+  std::uint32_t prefix_b = 0;  ///< spheres of B that were used
   /// Expected |relative error| of the volume: what was measured when the worse of the two packings was made,
   /// for overlaps that are as deep (see Packing::overlap_errors). NaN if nothing overlaps or was measured.
   double error = 0;

@@ -27,8 +27,8 @@ struct Overlap {
 
 /// A pair of overlapping spheres; indices into the two packings.
 struct SpherePair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
+  std::uint32_t a = 0;  ///< sphere of A
+  std::uint32_t b = 0;  ///< sphere of B
 };
 
 /// One sphere's share of an overlap, summed over all its partners in the other body. Same frames as Overlap.

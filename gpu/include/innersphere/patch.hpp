@@ -22,6 +22,7 @@ struct Patch {
   double depth() const { return area > 0 ? volume / area : 0; }
 };
 
+/// How contacts are grouped.
 struct PatchOptions {
   std::size_t max_patches = 4;  ///< smaller ones are merged into their nearest neighbour
   double max_angle = 0.5;       ///< [rad] directions closer than this share a patch

@@ -10,6 +10,7 @@
 
 namespace innersphere {
 
+/// How meshes are read and judged.
 struct MeshOptions {
   /// readMesh() multiplies all coordinates with it: 0.001 for a file in millimetres. Over 0. makeSolid()
   /// ignores it.

@@ -47,6 +47,7 @@ inline constexpr std::array<double, 5> kOverlapBins{0, 0.01, 0.05, 0.15, 1};
 /// and copies of it at different places, 0.2 % to 45 % of its volume deep. Arrays have a number for each bin
 /// of kOverlapBins.
 struct OverlapErrors {
+  /// The errors of one prefix.
   struct Prefix {
     std::uint32_t count = 0;              ///< the first spheres, as many as there are volume-true radii for
     std::array<double, 4> raw{};          ///< mean of |relative error| with the spheres' own radii
@@ -72,21 +73,21 @@ struct Packing {
   /// Where the frame of the packing is in the solid's coordinates [m]: x_solid = origin + x. Zero unless the
   /// solid is farther than eight of its sizes away, where single precision would coarsen the spheres.
   Vec3d origin{};
-  std::vector<Sphere> spheres;
+  std::vector<Sphere> spheres;  ///< by falling radius
   std::vector<VolumeTrueRadii>
-      volume_true;       ///< by rising count: 64, 128, 256, ..., spheres.size(); may be empty
-  MassProperties solid;  ///< exact, of the solid, not of the spheres
-  Surface surface;       ///< of the solid; may be empty
-  Certificate certificate;
-  Quality quality;
-  OverlapErrors overlap_errors;
+      volume_true;               ///< by rising count: 64, 128, 256, ..., spheres.size(); may be empty
+  MassProperties solid;          ///< exact, of the solid, not of the spheres
+  Surface surface;               ///< of the solid; may be empty
+  Certificate certificate;       ///< what the packer guarantees; delta 0 where nothing is certified
+  Quality quality;               ///< how well the spheres fill the solid
+  OverlapErrors overlap_errors;  ///< how far off overlap volumes are; may be empty
   /// Densities relative to the solid's, one for each sphere: spheres of these densities have the volume,
   /// centre of mass and inertia of the solid, to 1e-6 of each. Empty if the spheres cannot have them, or
   /// nothing is known of the solid.
   std::vector<float> mass_weights;
   /// What a user should know, a sentence each: parts of the solid that got no sphere, ...
   std::vector<std::string> warnings;
-  Provenance provenance;
+  Provenance provenance;  ///< where the packing comes from
 };
 
 /// The stored volume-true radii of the longest prefix that is not longer than `count`, or null if there is
