@@ -1,5 +1,7 @@
 // The smallest program: a packed solid drops onto a plane in an otherwise ordinary Bullet world.
 //   innersphere pack torus --spheres 1000 -o torus.cbor && hello_bullet torus.cbor
+// With an installed InnerSphere and no build system:
+//   c++ -std=c++17 -O2 hello_bullet.cpp $(pkg-config --cflags --libs innersphere) -o hello_bullet
 #include <cstdio>
 
 #include "innersphere/error.hpp"
