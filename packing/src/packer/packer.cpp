@@ -16,6 +16,7 @@
 #include "packer/greedy_rounds.hpp"
 #include "packer/mass_weights.hpp"
 #include "packer/overlap_errors.hpp"
+#include "packer/pack_options.hpp"
 #include "packer/surface_samples.hpp"
 #include "packer/volume_true.hpp"
 
@@ -43,6 +44,8 @@ void checkOptions(const PackOptions& options) {
   require(options.threads >= 0, "threads must be 0 or more");
 }
 
+}  // namespace
+
 std::string commandLine(const PackOptions& options) {
   std::string line = "--spheres " + std::to_string(options.spheres);
   const auto add = [&](const char* name, double x) {
@@ -55,6 +58,8 @@ std::string commandLine(const PackOptions& options) {
   add(" --delta ", options.delta);
   return line;
 }
+
+namespace {
 
 double volumeOf(const Ball& ball) {
   return kBallVolume * ball.radius * ball.radius * ball.radius;
