@@ -1,6 +1,14 @@
 // From a mesh in memory to a shape, and where the mesh then is.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
+
+#include "innersphere/bullet_mesh.hpp"
 #include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/packing_file.hpp"
@@ -34,6 +42,29 @@ TEST(Recipes, AMeshInMemoryBecomesAModel) {
   const PackingShape shape(modelOf(boxMesh()));
   EXPECT_EQ(shape.sphereCount(), 256u);
   EXPECT_NEAR(shape.model().packing().solid.volume, 6, 1e-9);
+}
+
+TEST(Recipes, TrianglesArePackedOnce) {
+  const std::string cache = testing::TempDir() + "/recipe_cache";
+  std::filesystem::remove_all(cache);
+  ASSERT_EQ(setenv("XDG_CACHE_HOME", cache.c_str(), 1), 0);
+  const Mesh mesh = boxMesh();
+  std::vector<btScalar> vertices;
+  std::vector<int> indices;
+  for (const Vec3d& v : mesh.vertices)
+    vertices.insert(vertices.end(), {btScalar(v[0]), btScalar(v[1]), btScalar(v[2])});
+  for (const auto& t : mesh.triangles) indices.insert(indices.end(), {int(t[0]), int(t[1]), int(t[2])});
+  btTriangleIndexVertexArray triangles(int(mesh.triangles.size()), indices.data(), 3 * sizeof(int),
+                                       int(mesh.vertices.size()), vertices.data(), 3 * sizeof(btScalar));
+  // [snippet from triangles]
+  innersphere::PackMeshOptions options;
+  options.cache_folder = innersphere::defaultCacheFolder();  // the next start reads what this one packs
+  auto model = innersphere::modelFrom(triangles, "crate", options);  // those of a btGImpactMeshShape
+  innersphere::PackingShape shape(model);
+  // [snippet]
+  EXPECT_EQ(shape.sphereCount(), 256u);
+  EXPECT_NEAR(model->packing().solid.volume, 6, 1e-6);
+  EXPECT_FALSE(std::filesystem::is_empty(cache + "/innersphere"));
 }
 
 TEST(Recipes, APackingIsReadFromItsFile) {
