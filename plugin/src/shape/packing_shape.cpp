@@ -159,7 +159,7 @@ const ContactOptions* PackingShape::contactOptions() const {
 }
 
 void PackingShape::getAabb(const btTransform& t, btVector3& min, btVector3& max) const {
-  impl_->check.noticeBox(t);
+  noticeBox();
   const btScalar scale = impl_->scaling.x();
   btTransformAabb(impl_->frame.box_min * scale, impl_->frame.box_max * scale,
                   impl_->bulge() * scale + getMargin(), t, min, max);

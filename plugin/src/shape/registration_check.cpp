@@ -10,9 +10,10 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-constexpr int kSteps = 60;
+/// Five seconds of one body at 60 Hz, and more bodies than most programs add before they register.
+constexpr int kManyBoxes = 300;
 std::atomic<bool> registered{false};
-std::atomic<bool> none_said{false};
+std::atomic<int> boxes{0};
 
 }  // namespace
 
@@ -20,23 +21,17 @@ void noticeRegistration() {
   registered.store(true, std::memory_order_relaxed);
 }
 
-void RegistrationCheck::noticeBox(const btTransform& place) {
-  if (registered.load(std::memory_order_relaxed) || none_said.load(std::memory_order_relaxed)) return;
-  const unsigned count = ++boxes_;
-  if ((count & (count - 1)) == 0) {
-    // Another body's turn: this one may have gone, or more bodies share the shape than would come round in
-    // time.
-    followed_ = &place;
-    repeats_ = 0;
-  } else if (followed_ == &place && ++repeats_ == kSteps && !none_said.exchange(true)) {
-    log("No dispatcher was registered: packings fall through each other and through meshes and planes. Call "
-        "PackingCollisionAlgorithm::registerAlgorithm with the world's dispatcher.");
-  }
+void noticeBox() {
+  if (registered.load(std::memory_order_relaxed) || boxes.load(std::memory_order_relaxed) >= kManyBoxes)
+    return;
+  if (++boxes != kManyBoxes) return;
+  log("No dispatcher was registered so far: packings fall through each other and through meshes and planes. "
+      "Call "
+      "PackingCollisionAlgorithm::registerAlgorithm with the world's dispatcher before bodies are added.");
 }
 
 void RegistrationCheck::noticeTriangles(const btTriangleCallback& callback, const std::string& source) {
   if (typeid(callback) != typeid(btConvexTriangleCallback) || said_.exchange(true)) return;
-  none_said = true;
   log("The packing of " + (source.empty() ? "an unknown solid" : "\"" + source + "\"") +
       " is in a world whose dispatcher is not registered: Bullet collides a convex shape with its triangles, "
       "and "

@@ -19,7 +19,7 @@
 namespace innersphere::test {
 namespace {
 
-ErrorCode codeOf(btCollisionDispatcher* dispatcher, const ContactOptions& options) {
+ErrorCode codeOf(btDispatcher* dispatcher, const ContactOptions& options) {
   try {
     PackingCollisionAlgorithm::registerAlgorithm(dispatcher, options);
   } catch (const Error& error) {
@@ -57,6 +57,54 @@ TEST(Registration, BadArgumentsAreNamed) {
     options.backend = Backend::cuda;
     EXPECT_EQ(codeOf(&dispatcher, options), ErrorCode::no_device);
   }
+}
+
+/// A dispatcher of the user's own from the ground up.
+struct OtherDispatcher : btDispatcher {
+  btCollisionAlgorithm* findAlgorithm(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*,
+                                      btPersistentManifold*, ebtDispatcherQueryType) override {
+    return nullptr;
+  }
+  btPersistentManifold* getNewManifold(const btCollisionObject*, const btCollisionObject*) override {
+    return nullptr;
+  }
+  void releaseManifold(btPersistentManifold*) override {}
+  void clearManifold(btPersistentManifold*) override {}
+  bool needsCollision(const btCollisionObject*, const btCollisionObject*) override { return false; }
+  bool needsResponse(const btCollisionObject*, const btCollisionObject*) override { return false; }
+  void dispatchAllCollisionPairs(btOverlappingPairCache*, const btDispatcherInfo&, btDispatcher*) override {}
+  int getNumManifolds() const override { return 0; }
+  btPersistentManifold* getManifoldByIndexInternal(int) override { return nullptr; }
+  btPersistentManifold** getInternalManifoldPointer() override { return nullptr; }
+  btPoolAllocator* getInternalManifoldPool() override { return nullptr; }
+  const btPoolAllocator* getInternalManifoldPool() const override { return nullptr; }
+  void* allocateCollisionAlgorithm(int) override { return nullptr; }
+  void freeCollisionAlgorithm(void*) override {}
+};
+
+TEST(Registration, TakesADispatcherAsAWorldHoldsIt) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  btCollisionWorld world(&dispatcher, &broadphase, &configuration);
+  EXPECT_THROW(PackingCollisionAlgorithm::options(world.getDispatcher()), Error);
+  ContactOptions options;
+  options.stiffness = 321;
+  PackingCollisionAlgorithm::registerAlgorithm(world.getDispatcher(), options);
+  EXPECT_TRUE(PackingCollisionAlgorithm::isRegistered(world.getDispatcher()));
+  EXPECT_TRUE(PackingCollisionAlgorithm::isRegistered(&dispatcher));
+  EXPECT_EQ(PackingCollisionAlgorithm::options(world.getDispatcher()).stiffness, 321);
+  PackingCollisionAlgorithm::unregisterAlgorithm(world.getDispatcher());
+  EXPECT_FALSE(PackingCollisionAlgorithm::isRegistered(world.getDispatcher()));
+  EXPECT_THROW(PackingCollisionAlgorithm::options(&dispatcher), Error);
+  EXPECT_THROW(PackingCollisionAlgorithm::options(nullptr), Error);
+}
+
+TEST(Registration, ADispatcherOfAnotherKindIsAnError) {
+  OtherDispatcher other;
+  EXPECT_EQ(codeOf(&other, {}), ErrorCode::bad_argument);
+  EXPECT_FALSE(PackingCollisionAlgorithm::isRegistered(&other));
+  PackingCollisionAlgorithm::unregisterAlgorithm(&other);  // does nothing
 }
 
 TEST(Registration, CanBeAskedFor) {

@@ -2,7 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+
+#include <BulletSoftBody/btSoftBodyHelpers.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 
 #include "capture_log.hpp"
 #include "test_packings.hpp"
@@ -67,16 +72,8 @@ TEST(FarAwayWorld, NothingBreaksWhereScalarsAreCoarse) {
 
 /// A world whose dispatcher nobody registered.
 struct ForgottenWorld {
-  btDefaultCollisionConfiguration configuration;
-  btCollisionDispatcher dispatcher{&configuration};
-  btDbvtBroadphase broadphase;
-  btSequentialImpulseConstraintSolver solver;
-  btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
-  std::shared_ptr<btCollisionShape> shape = makeShape(latticeBox({1, 1, 1}, 2));
-  btRigidBody lower{0, nullptr, shape.get()};
-  btRigidBody upper{1, nullptr, shape.get()};
-
-  ForgottenWorld() {
+  explicit ForgottenWorld(std::shared_ptr<btCollisionShape> of_upper = nullptr)
+      : upper_shape(of_upper ? std::move(of_upper) : shape) {
     world.setGravity(btVector3(0, 0, btScalar(-9.81)));
     upper.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 1)));
     world.addRigidBody(&lower);
@@ -89,11 +86,21 @@ struct ForgottenWorld {
   void step(int count) {
     for (int i = 0; i < count; ++i) world.stepSimulation(btScalar(1) / 60, 0);
   }
+
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+  std::shared_ptr<btCollisionShape> shape = makeShape(latticeBox({1, 1, 1}, 2));
+  std::shared_ptr<btCollisionShape> upper_shape;
+  btRigidBody lower{0, nullptr, shape.get()};
+  btRigidBody upper{1, nullptr, upper_shape.get()};
 };
 
 /// Runs in a process of its own, in which nobody has registered a dispatcher.
 void stepAnUnregisteredWorld() {
-  ForgottenWorld().step(600);
+  ForgottenWorld().step(200);
   std::exit(0);
 }
 
@@ -103,41 +110,87 @@ TEST(UnregisteredWorldDeathTest, SaysSo) {
               "^InnerSphere: No dispatcher was registered[^\n]*\n$");
 }
 
-TEST(UnregisteredWorld, BesideOneThatIsRegisteredSaysSoOnce) {
-  for (const bool shared : {false, true}) {
-    TestWorld registered;
-    ForgottenWorld forgotten;
-    registered.addFloor();
-    const auto shape = shared ? forgotten.shape : makeShape(latticeBox({1, 1, 1}, 2));
-    for (int i = 0; i < 20; ++i)
-      registered.add(shape, 1, btVector3(btScalar(1.2 * (i % 5)), btScalar(1.2 * (i / 5)), btScalar(0.6)));
-    const CaptureLog log;
-    for (int i = 0; i < 6000; ++i) {
-      registered.run(1.0 / 60);
-      forgotten.step(1);
+std::shared_ptr<PackingShape> namedCube(const std::string& name) {
+  Packing packing = latticeBox({1, 1, 1}, 2);
+  packing.provenance.source = name;
+  return makeShape(packing);
+}
+
+TEST(UnregisteredWorld, NamesThePackingWhoseTrianglesBulletAsksFor) {
+  const TestWorld registered;
+  for (const bool compound : {false, true}) {
+    std::shared_ptr<btCollisionShape> box = std::make_shared<btBoxShape>(btVector3(1, 1, 1) / 2), shape = box;
+    if (compound) {
+      auto parent = std::make_shared<btCompoundShape>();
+      parent->addChildShape(btTransform::getIdentity(), box.get());
+      shape = parent;
     }
-    EXPECT_LT(forgotten.upper.getWorldTransform().getOrigin().z(), -100);
-    EXPECT_GT(registered.bodies.back()->getWorldTransform().getOrigin().z(), 0.4);
-    ASSERT_EQ(log.messages.size(), 1u) << shared;
-    EXPECT_NE(log.messages[0].find("registerAlgorithm with the dispatcher of its world"), std::string::npos);
+    const CaptureLog log;
+    ForgottenWorld forgotten(shape);
+    forgotten.shape = namedCube("bunny.obj");
+    forgotten.lower.setCollisionShape(forgotten.shape.get());
+    forgotten.step(60);
+    ASSERT_EQ(log.messages.size(), 1u) << compound;
+    EXPECT_NE(log.messages[0].find("\"bunny.obj\""), std::string::npos);
+    EXPECT_NE(log.messages[0].find("registerAlgorithm"), std::string::npos);
+    forgotten.step(60);
+    EXPECT_EQ(log.messages.size(), 1u);
+    forgotten.world.removeRigidBody(&forgotten.upper);
+    forgotten.world.addRigidBody(&forgotten.upper);
   }
 }
 
 TEST(UnregisteredWorld, IsNotSeenInOneThatIsRegistered) {
-  TestWorld world;
-  world.addFloor();
-  const auto shape = makeShape(latticeBox({1, 1, 1}, 2));
-  btRigidBody& falls = world.add(shape, 1, btVector3(0, 0, btScalar(0.6)));
-  world.run(0.5);
-  falls.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 10000)));
-  world.add(makeShape(latticeBox({1, 1, 1}, 2)), 0, btVector3(5, 0, 20));  // is met by nobody, and stays
   const CaptureLog log;
-  world.run(40);
-  EXPECT_LT(falls.getWorldTransform().getOrigin().z(), 9000);
-  EXPECT_TRUE(log.messages.empty());
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  world.getWorldInfo().m_sparsesdf.Initialize();
+  const auto cube = namedCube("cube");
+  btRigidBody ground(0, nullptr, cube.get()), other(1, nullptr, cube.get());
+  btBoxShape box(btVector3(1, 1, 1) / 2);
+  btRigidBody convex(1, nullptr, &box);
+  btSphereShape small(btScalar(0.1));
+  btRigidBody bullet(1, nullptr, &small);  // continuous collision detection sweeps it
+  bullet.setCcdMotionThreshold(btScalar(0.01));
+  bullet.setCcdSweptSphereRadius(btScalar(0.08));
+  bullet.setLinearVelocity(btVector3(0, 0, -100));
+  btRigidBody* const bodies[] = {&ground, &other, &convex, &bullet};
+  const btVector3 places[] = {btVector3(0, 0, 0), btVector3(0, 0, 1), btVector3(0, 0, 2),
+                              btVector3(btScalar(0.4), btScalar(0.4), 5)};
+  for (int i = 0; i < 4; ++i) {
+    bodies[i]->setWorldTransform(btTransform(btQuaternion::getIdentity(), places[i]));
+    world.addRigidBody(bodies[i]);
+  }
+  const btScalar s = btScalar(0.6), z = btScalar(0.6);
+  btSoftBody* cloth =
+      btSoftBodyHelpers::CreatePatch(world.getWorldInfo(), btVector3(-s, -s, z), btVector3(s, -s, z),
+                                     btVector3(-s, s, z), btVector3(s, s, z), 5, 5, 0, true);
+  world.addSoftBody(cloth);
+  struct AnyContact : btCollisionWorld::ContactResultCallback {
+    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+      return 0;
+    }
+  } contact;
+  for (int i = 0; i < 90; ++i) {
+    world.stepSimulation(btScalar(1) / 60, 0);
+    btCollisionWorld::ClosestRayResultCallback ray(btVector3(0, 0, 9), btVector3(0, 0, -9));
+    world.rayTest(ray.m_rayFromWorld, ray.m_rayToWorld, ray);
+    btCollisionWorld::ClosestConvexResultCallback sweep(ray.m_rayFromWorld, ray.m_rayToWorld);
+    world.convexSweepTest(&small, btTransform(btQuaternion::getIdentity(), ray.m_rayFromWorld),
+                          btTransform(btQuaternion::getIdentity(), ray.m_rayToWorld), sweep);
+    world.contactTest(&convex, contact);
+  }
+  world.removeSoftBody(cloth);
+  delete cloth;
+  for (btRigidBody* body : bodies) world.removeRigidBody(body);
+  EXPECT_TRUE(log.messages.empty()) << log.messages[0];
 }
 
-/// Shapes of a world that nobody registered are met by their triangles where Bullet can.
 TEST(UnregisteredWorld, DoesNotSpeakOnceADispatcherIsRegistered) {
   TestWorld registered;
   const CaptureLog log;
@@ -145,6 +198,27 @@ TEST(UnregisteredWorld, DoesNotSpeakOnceADispatcherIsRegistered) {
   btVector3 min, max;
   for (int i = 0; i < 5000; ++i) shape->getAabb(btTransform::getIdentity(), min, max);
   EXPECT_TRUE(log.messages.empty());
+}
+
+/// Runs in a process of its own: bodies that are made before the dispatcher is registered are no alarm.
+void addBodiesBeforeRegistering() {
+  ForgottenWorld forgotten;
+  std::vector<std::unique_ptr<btRigidBody>> bodies;
+  for (int i = 0; i < 200; ++i) {
+    bodies.push_back(std::make_unique<btRigidBody>(btScalar(1), nullptr, forgotten.shape.get()));
+    bodies.back()->setWorldTransform(
+        btTransform(btQuaternion::getIdentity(), btVector3(btScalar(2 * i), 9, 0)));
+    forgotten.world.addRigidBody(bodies.back().get());
+  }
+  PackingCollisionAlgorithm::registerAlgorithm(forgotten.world.getDispatcher());
+  forgotten.step(10);
+  std::fputs("done\n", stderr);
+  std::_Exit(0);
+}
+
+TEST(UnregisteredWorldDeathTest, IsSilentWhereRegistrationComesAfterTheBodies) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(addBodiesBeforeRegistering(), testing::ExitedWithCode(0), "^done\n$");
 }
 
 }  // namespace
