@@ -36,6 +36,7 @@ if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
   exit 77
 fi
 # The system that the package was built for: what it depends on has other names elsewhere.
+# shellcheck disable=SC1091  # it is on every Debian
 codename=$(. /etc/os-release && echo "$VERSION_CODENAME")
 bare=$work/bare
 debootstrap --variant=minbase "$codename" "$bare" >"$work/log" 2>&1 || { tail "$work/log" >&2; fail "debootstrap"; }
