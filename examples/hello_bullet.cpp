@@ -1,14 +1,20 @@
 // The smallest program: a packed solid drops onto a plane in an otherwise ordinary Bullet world.
 //   innersphere pack torus --spheres 1000 -o torus.cbor && hello_bullet torus.cbor
+// With an installed InnerSphere and no build system:
+//   c++ -std=c++17 -O2 hello_bullet.cpp $(pkg-config --cflags --libs innersphere) -o hello_bullet
 #include <cstdio>
+
+#include "innersphere/error.hpp"
+
+// [snippet use]
 #include <memory>
 
 #include <btBulletDynamicsCommon.h>
 
-#include "innersphere/error.hpp"
 #include "innersphere/packing_collision_algorithm.hpp"
 #include "innersphere/packing_file.hpp"
 #include "innersphere/packing_shape.hpp"
+// [snippet]
 
 int main(int argc, char** argv) try {
   if (argc != 2) {
@@ -28,8 +34,9 @@ int main(int argc, char** argv) try {
   world.setGravity(btVector3(0, 0, -9.81f));
   world.addRigidBody(&floor);
 
-  // [README]
-  innersphere::PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);  // the one line
+  // [snippet use]
+  innersphere::PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);  // once a world
+  world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;  // or even boxes creep
 
   auto packing = std::make_shared<innersphere::Packing>(innersphere::readPacking(file));
   auto model = std::make_shared<innersphere::CollisionModel>(packing);
@@ -38,10 +45,12 @@ int main(int argc, char** argv) try {
   btScalar mass = 1;  // [kg]
   btVector3 inertia;
   shape.calculateLocalInertia(mass, inertia);
-  btRigidBody body(mass, nullptr, &shape, inertia);
-  body.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, 2)));
+  btTransform mesh_pose(btQuaternion::getIdentity(), btVector3(0, 0, 2));  // where the mesh is to be
+  btDefaultMotionState motion(mesh_pose, shape.meshToBody());              // the body has another frame
+  btRigidBody body(mass, &motion, &shape, inertia);
   world.addRigidBody(&body);
-  // [README]
+  // after a step: draw the mesh at motion.m_graphicsWorldTrans
+  // [snippet]
 
   for (int step = 0; step < 5 * 240; ++step) world.stepSimulation(btScalar(1) / 240, 0);
 

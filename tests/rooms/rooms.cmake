@@ -4,6 +4,3 @@ set(libraries packing gpu plugin)
 set(packing_rooms common packing file mesh solids packer)
 set(gpu_rooms core common grid batch cpu|cuda patches query)
 set(plugin_rooms common surface shape narrow_phase/shapes narrow_phase response pair_cache bullet)
-
-# Includes that break the rule, as FILE>INCLUDED. To be deleted: a pair of bodies shall not know its registration.
-set(exceptions "plugin/src/pair_cache/contact_pair.hpp>bullet/registration.hpp")

@@ -19,7 +19,7 @@ struct QueryBudget {
 
 /// The result of a query within a budget.
 struct BoundedOverlap {
-  Overlap overlap;
+  Overlap overlap;             ///< The sums.
   std::uint32_t prefix_a = 0;  ///< The number of spheres of A that were used.
   std::uint32_t prefix_b = 0;  ///< The number of spheres of B that were used.
   /// The expected |relative error| of the volume. It was measured for overlaps of this depth when the worse

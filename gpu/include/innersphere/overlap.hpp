@@ -29,8 +29,8 @@ struct Overlap {
 
 /// A pair of overlapping spheres, as indices into the two packings.
 struct SpherePair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
+  std::uint32_t a = 0;  ///< sphere of A
+  std::uint32_t b = 0;  ///< sphere of B
 };
 
 /// What one sphere contributes to an overlap, summed over all its partners in the other body. It has the

@@ -23,6 +23,7 @@ struct Patch {
   double depth() const { return area > 0 ? volume / area : 0; }
 };
 
+/// How contacts are grouped.
 struct PatchOptions {
   std::size_t max_patches = 4;  ///< The number of patches, at most. Smaller ones are merged into neighbours.
   double max_angle = 0.5;       ///< The angle [rad] within which directions share a patch.

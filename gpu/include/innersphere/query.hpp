@@ -32,10 +32,10 @@ enum class Want {
 
 /// Two bodies to collide.
 struct PairQuery {
-  const CollisionModel* a = nullptr;
-  const CollisionModel* b = nullptr;
-  Placement placement_a;
-  Placement placement_b;
+  const CollisionModel* a = nullptr;  ///< The first body. Never null.
+  const CollisionModel* b = nullptr;  ///< The second body. Never null; may be the same model.
+  Placement placement_a;              ///< Where A is.
+  Placement placement_b;              ///< Where B is.
   /// The number of spheres of A to use, the largest ones. 0, or more than there are: all. Volume-true radii
   /// exist for some lengths only: with Estimator::volume_true the query uses the longest of these that is not
   /// longer than this (see volumeTrueRadii()). If there is none, it uses exactly this many spheres with their
@@ -47,6 +47,7 @@ struct PairQuery {
   double margin = 0;
 };
 
+/// What a query computes.
 struct QueryOptions {
   Want want = Want::wrench;                      ///< What is not wanted is zero or empty in the result.
   Estimator estimator = Estimator::volume_true;  ///< The radii of both bodies.
@@ -59,16 +60,17 @@ struct QueryResult {
   /// Lists for all queries. Those of query i are items[first[i]] to items[first[i + 1]], without the last.
   template <typename T>
   struct Ranges {
-    std::vector<T> items;
-    std::vector<std::size_t> first;
+    std::vector<T> items;            ///< of all queries, one after the other
+    std::vector<std::size_t> first;  ///< where each query begins, and the end
   };
   Ranges<SpherePair> pairs;          ///< The pairs, with Want::pairs.
   Ranges<SphereContact> contacts_a;  ///< Spheres of A that touch, by rising index.
   Ranges<SphereContact> contacts_b;  ///< Spheres of B that touch, with Want::contacts.
 };
 
+/// How queries run.
 struct QueryContextOptions {
-  Backend backend = Backend::automatic;
+  Backend backend = Backend::automatic;  ///< Where queries run.
   int threads = 0;  ///< The threads of the CPU backend. 0: all cores. The result does not depend on it.
   bool time_kernels = false;  ///< Whether kernelTime() is measured, which takes some microseconds a run.
 };
@@ -84,7 +86,9 @@ class QueryContext {
   /// Throws Error no_device if CUDA was asked for by name and there is none.
   explicit QueryContext(const QueryContextOptions& options = {});
   ~QueryContext();
+  /// Takes what the other context holds, which can then only be destroyed or assigned to.
   QueryContext(QueryContext&&) noexcept;
+  /// The same.
   QueryContext& operator=(QueryContext&&) noexcept;
 
   /// Collides `count` pairs. Throws Error: bad_argument (a null model, a rotation that is not one, a scale or
@@ -102,8 +106,11 @@ class QueryContext {
   /// batches (some 2,000 pairs of 60,000 spheres or 32,000 of small packings) go to the device in parts, of
   /// which later ones start in ready() or wait().
   void start(const PairQuery* queries, std::size_t count, const QueryOptions& options);
+  /// The second half of run().
   void wait(QueryResult& result);
+  /// The first half of overlap().
   void startOverlap(const PairQuery& query, const QueryOptions& options = {});
+  /// The second half of overlap().
   Overlap waitOverlap();
 
   /// Returns true if wait() will return at once. With contacts or pairs the device works in two steps, and

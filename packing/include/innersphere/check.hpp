@@ -18,6 +18,7 @@ struct CheckReport {
   bool sorted = true;           ///< Whether no sphere is larger than the one before it.
   double density = 0;           ///< The volume of the spheres over that of the solid. 0 if that is unknown.
 
+  /// Whether there is no violation.
   bool valid() const { return worst_overlap <= 0 && worst_protrusion <= 0 && sorted; }
 };
 

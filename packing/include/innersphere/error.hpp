@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+/// Everything that is public.
 namespace innersphere {
 
 /// What went wrong, for a caller that wants to react. The message says where and what to do.
@@ -31,7 +32,9 @@ const char* toString(ErrorCode code);
 /// Thrown for bad input. what() is one sentence for people: what is wrong, where, and what to do about it.
 class Error : public std::runtime_error {
  public:
+  /// The message is what what() returns.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  /// What went wrong, for a caller that wants to react.
   ErrorCode code() const { return code_; }
 
  private:

@@ -15,17 +15,17 @@ using Mat3d = std::array<double, 9>;
 
 /// An axis-aligned box [m]. It is empty when min > max on any axis.
 struct Bounds {
-  Vec3d min{};
-  Vec3d max{};
+  Vec3d min{};  ///< The lower corner.
+  Vec3d max{};  ///< The upper corner.
 };
 
 /// A ball in single precision: centre and radius [m], in the frame of its packing. It takes sixteen bytes, so
 /// that a GPU thread reads it with one load.
 struct alignas(16) Sphere {
-  float x = 0;
-  float y = 0;
-  float z = 0;
-  float radius = 0;
+  float x = 0;       ///< The centre, along x.
+  float y = 0;       ///< The centre, along y.
+  float z = 0;       ///< The centre, along z.
+  float radius = 0;  ///< The radius.
 };
 
 /// What a rigid body needs to know of a homogeneous solid, for unit density: a body of density rho has mass
@@ -39,8 +39,8 @@ struct MassProperties {
 
 /// Triangles in double precision: vertices [m], and three indices of vertices for each triangle.
 struct Mesh {
-  std::vector<Vec3d> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Vec3d> vertices;                          ///< Places [m].
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into vertices.
 };
 
 /// A closed triangle surface, wound counter-clockwise seen from outside. It serves drawing, ray tests and

@@ -10,6 +10,7 @@
 
 namespace innersphere {
 
+/// How meshes are read and judged.
 struct MeshOptions {
   /// The factor by which readMesh() multiplies all coordinates: 0.001 for a file in millimetres. It must be
   /// positive. makeSolid() ignores it.

@@ -32,7 +32,7 @@ PackOptions startUpOptions(std::size_t spheres = 256);
 
 /// How packMesh() packs, and where it keeps the result.
 struct PackMeshOptions {
-  PackOptions pack = startUpOptions();
+  PackOptions pack = startUpOptions();  ///< when to stop, and how greedy to be
   /// The function accepts a mesh that does not bound a volume, see MeshOptions::repair.
   bool repair = false;
   /// Folder of the cache; it is made where there is none. Files in it are never deleted and may be deleted at

@@ -47,6 +47,7 @@ inline constexpr std::array<double, 5> kOverlapBins{0, 0.01, 0.05, 0.15, 1};
 /// and copies of it at different places, 0.2 % to 45 % of its volume deep, unless PackOptions::overlap_errors
 /// is off. Each array has a number for each bin of kOverlapBins.
 struct OverlapErrors {
+  /// The errors of one prefix.
   struct Prefix {
     std::uint32_t count = 0;              ///< The length of the prefix, one that has volume-true radii.
     std::array<double, 4> raw{};          ///< The mean |relative error| with the spheres' own radii.
@@ -74,21 +75,21 @@ struct Packing {
   /// Where the frame of the packing is in the solid's coordinates [m]: x_solid = origin + x. Zero unless the
   /// solid is farther than eight of its sizes away, where single precision would coarsen the spheres.
   Vec3d origin{};
-  std::vector<Sphere> spheres;
+  std::vector<Sphere> spheres;  ///< The spheres by falling radius.
   /// The volume-true radii by rising count: 64, 128, 256, ..., spheres.size(). May be empty.
   std::vector<VolumeTrueRadii> volume_true;
-  MassProperties solid;  ///< The exact mass properties of the solid, not of the spheres.
-  Surface surface;       ///< The surface of the solid. May be empty.
-  Certificate certificate;
-  Quality quality;
-  OverlapErrors overlap_errors;
+  MassProperties solid;          ///< The exact mass properties of the solid, not of the spheres.
+  Surface surface;               ///< The surface of the solid. May be empty.
+  Certificate certificate;       ///< What the packer guarantees. Its delta is 0 if nothing is certified.
+  Quality quality;               ///< How well the spheres fill the solid.
+  OverlapErrors overlap_errors;  ///< How far off overlap volumes are. May be empty.
   /// Densities relative to the solid's, one for each sphere. Spheres of these densities have the volume,
   /// centre of mass and inertia of the solid, to 1e-6 of each. Empty if the spheres cannot have them, or if
   /// nothing is known of the solid.
   std::vector<float> mass_weights;
   /// What a user should know, a sentence each, such as parts of the solid that got no sphere.
   std::vector<std::string> warnings;
-  Provenance provenance;
+  Provenance provenance;  ///< where the packing comes from
 };
 
 /// Returns the stored volume-true radii of the longest prefix that is not longer than `count`, or null if

@@ -12,7 +12,7 @@ namespace innersphere {
 
 // Solids with an exact distance. Centred at the origin; lengths in metres; Error bad_argument where a length
 // is not > 0.
-std::unique_ptr<Solid> makeBall(double radius);
+std::unique_ptr<Solid> makeBall(double radius);     ///< Its centre is the origin.
 std::unique_ptr<Solid> makeBox(const Vec3d& size);  ///< The edges have these full lengths.
 std::unique_ptr<Solid> makeTorus(double ring_radius,
                                  double tube_radius);               ///< The ring lies about the z axis.
@@ -41,6 +41,7 @@ std::unique_ptr<Solid> makeDifference(std::shared_ptr<const Solid> a, std::share
 /// of radial clearance, where it is moved up by h and turned by 2 pi h / 0.125 counter-clockwise seen from
 /// above. The tray is an open container, 2 x 2 x 1, standing on z = 0, with walls and a floor of 0.2.
 std::unique_ptr<Solid> makeNamedSolid(const std::string& name);
+/// The names that makeNamedSolid() knows.
 std::vector<std::string> namedSolids();
 
 }  // namespace innersphere

@@ -32,6 +32,7 @@ class BatchedDispatcher : public Base {
  public:
   using Base::Base;
 
+  /// Bullet calls it in each step.
   void dispatchAllCollisionPairs(btOverlappingPairCache* pairs, const btDispatcherInfo& info,
                                  btDispatcher* dispatcher) override {
     constexpr bool kAsBulletDoes = std::is_same_v<Base, btCollisionDispatcher>;

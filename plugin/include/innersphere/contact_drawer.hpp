@@ -9,6 +9,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// What is drawn.
 struct ContactDrawerOptions {
   bool patches = true;  ///< outline of the points of each patch, blue
   bool normals = true;  ///< from each point out of the second body, as long as the body's size times how much
@@ -26,10 +27,13 @@ struct ContactDrawerOptions {
 /// The world must outlive it. Without a registration in the world's dispatcher nothing is drawn.
 class ContactDrawer : public btActionInterface {
  public:
+  /// Draws what the dispatcher of this world knows.
   explicit ContactDrawer(btCollisionWorld& world, const ContactDrawerOptions& options = {})
       : world_(world), options_(options) {}
 
+  /// Bullet calls it in each step.
   void updateAction(btCollisionWorld* world, btScalar time_step) override;
+  /// Bullet calls it from debugDrawWorld().
   void debugDraw(btIDebugDraw* drawer) override;
 
  private:

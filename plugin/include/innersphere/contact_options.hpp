@@ -29,8 +29,8 @@ enum class Response {
 /// come to rest. Friction that holds is anchored, but with Response::penalty: CF_HAS_FRICTION_ANCHOR changes
 /// nothing.
 struct ContactOptions {
-  Response response = Response::compliant;
-  Backend backend = Backend::automatic;
+  Response response = Response::compliant;  ///< what Bullet's solver is given
+  Backend backend = Backend::automatic;     ///< where overlap queries run
   /// Radii for overlap volumes, where these decide the depth of contact (see stiffness).
   Estimator estimator = Estimator::volume_true;
   /// [m] Each pair uses the fewest spheres (64, 128, 256, ...) that leave no larger gap to the surfaces: the
@@ -75,9 +75,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 ///   - stiffness: that of two springs in series, 1 / (1/a + 1/b), so that two equal bodies are half as stiff
 ///     as one of them against a body without options. The default stiffness, 0, is as stiff as the step
 ///     resolves: it counts as infinitely stiff, as Response::rigid does;
-///   - damping: the mean, weighted by 1/stiffness: the softer body has more say, and all of it if only one
-///   has
-///     a stiffness;
+///   - damping: the mean, weighted by 1/stiffness: the softer body has more say, and all of it if only
+///     one has a stiffness;
 ///   - accuracy: the finer one; 0, which is all spheres, is the finest.
 ContactOptions combine(const ContactOptions& world, const ContactOptions* a, const ContactOptions* b);
 

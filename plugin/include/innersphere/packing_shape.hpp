@@ -23,6 +23,7 @@ class PackingShape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
+  /// Which frame a shape, and so its body, has.
   enum class Frame {
     principal,  ///< origin at the centre of mass, axes along the principal axes of inertia: for dynamic
                 ///< bodies
@@ -43,6 +44,7 @@ class PackingShape : public btConcaveShape {
   PackingShape(std::shared_ptr<const CollisionModel> model, const btTransform& mesh_to_body);
   ~PackingShape() override;
 
+  /// What the shape was made of.
   const CollisionModel& model() const;
 
   /// Where the scaled mesh lies in the frame of the shape: a vertex x of the mesh, times the scaling, is at
@@ -69,6 +71,7 @@ class PackingShape : public btConcaveShape {
   /// alone, give it a shape of its own from the same model: shapes share all data, so that it costs nothing.
   /// See also ContactOptions::accuracy.
   void setSphereCount(std::size_t count);
+  /// How many spheres the shape collides with.
   std::size_t sphereCount() const;
 
   /// Options for all pairs of bodies with this shape, in place of those that the dispatcher was registered
@@ -81,29 +84,39 @@ class PackingShape : public btConcaveShape {
   /// Null if the dispatcher's hold.
   const ContactOptions* contactOptions() const;
 
-  // btCollisionShape: all bounds take constant time. The margin, 0 at first, makes the solid that much larger
-  // on all sides: contacts come that much earlier. Mass properties do not follow it, nor does it scale.
+  // As btCollisionShape:
+
+  /// A box around the solid at `t`, with its margin. Takes constant time, as all bounds here do.
   void getAabb(const btTransform& t, btVector3& min, btVector3& max) const override;
+  /// A ball around the solid, in the frame of the shape, with its margin.
   void getBoundingSphere(btVector3& centre, btScalar& radius) const override;
+  /// No point of the solid is further from the origin of the shape [m].
   btScalar getAngularMotionDisc() const override;
+  /// The margin [m], 0 at first, makes the solid that much larger on all sides: contacts come that much
+  /// earlier. Mass properties do not follow it, nor does it scale.
   void setMargin(btScalar margin) override;
+  /// How far apart two points of a contact may be until Bullet drops it [m]: `factor` times the size.
   btScalar getContactBreakingThreshold(btScalar factor) const override;
   /// About the origin of the shape's frame; replaces the scaling before. Uniform and positive only: throws
   /// Error bad_argument otherwise. From btCompoundShape::setLocalScaling too, which has scaled the children
   /// before it by then.
   void setLocalScaling(const btVector3& scaling) override;
+  /// The same factor on each axis.
   const btVector3& getLocalScaling() const override;
   /// Exact moments of a homogeneous body of this mass [kg m^2]: about the axes of the shape's frame, through
   /// its origin. In the principal frame they are the principal moments. In another frame they are the
   /// diagonal of the inertia tensor, and Bullet takes the rest of it for zero: right for turning about one of
   /// the axes, or where the body's symmetry makes the axes principal; else use the principal frame.
   void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
+  /// The name that Bullet's serializer knows.
   const char* getName() const override;
   /// As a btCompoundShape of spheres, sphereCount() of them, which any Bullet can load; their radii include
   /// the margin.
   int calculateSerializeBufferSize() const override;
+  /// Writes it there.
   const char* serialize(void* buffer, btSerializer* serializer) const override;
-  // btConcaveShape
+  // As btConcaveShape:
+
   /// Triangles of the solid's surface near a box, for rays, sweeps, debug drawing and soft bodies. None if
   /// the packing has no surface: such a body collides, but rays pass through it.
   void processAllTriangles(btTriangleCallback* callback, const btVector3& min,

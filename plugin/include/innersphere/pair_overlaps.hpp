@@ -13,7 +13,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// A pair of bodies, or of children of compounds, that touch. Vectors have the axes of the world.
 struct PairOverlap {
   const btCollisionObject* a = nullptr;  ///< has a packing
-  const btCollisionObject* b = nullptr;
+  const btCollisionObject* b = nullptr;  ///< the other one, of any shape
   /// That both share, by the spheres [m^3]. Of what is no packing a sphere sees the plane that touches it
   /// where it is nearest; one that lies all behind the triangles of a mesh or height field does not count.
   double volume = 0;

@@ -10,7 +10,7 @@
 #include "innersphere/contact_statistics.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/pair_overlaps.hpp"
-#include "response/option_rules.hpp"
+#include "shape/option_rules.hpp"
 #include "shape/registration_check.hpp"
 
 namespace innersphere {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "narrow_phase/contact_tolerances.hpp"
+#include "common/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "common/contact_tolerances.hpp"
 #include "common/parallel.hpp"
 #include "narrow_phase/contact_normal.hpp"
-#include "narrow_phase/contact_tolerances.hpp"
 #include "narrow_phase/deepest_points.hpp"
 
 namespace innersphere {

@@ -4,8 +4,8 @@
 #include <array>
 #include <iterator>
 
+#include "common/contact_tolerances.hpp"
 #include "narrow_phase/contact_point.hpp"
-#include "narrow_phase/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
+#include "common/contact_tolerances.hpp"
 #include "narrow_phase/contact_point.hpp"
 #include "narrow_phase/contact_samples.hpp"
-#include "narrow_phase/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -1,6 +1,6 @@
 #include "narrow_phase/packing_probe.hpp"
 
-#include "narrow_phase/contact_tolerances.hpp"
+#include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
 #include "narrow_phase/surface_rays.hpp"
 

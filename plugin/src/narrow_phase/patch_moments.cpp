@@ -1,7 +1,7 @@
 #include "narrow_phase/patch_moments.hpp"
 
 #include "common/bullet_vectors.hpp"
-#include "narrow_phase/contact_tolerances.hpp"
+#include "common/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "common/bullet_vectors.hpp"
-#include "narrow_phase/contact_tolerances.hpp"
+#include "common/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -1,6 +1,6 @@
 #include "narrow_phase/surface_rays.hpp"
 
-#include "narrow_phase/contact_tolerances.hpp"
+#include "common/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

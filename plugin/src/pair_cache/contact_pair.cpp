@@ -3,7 +3,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include "common/log.hpp"
-#include "response/option_rules.hpp"
+#include "shape/option_rules.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -9,7 +9,7 @@
 
 #include "common/bullet_vectors.hpp"
 #include "innersphere/error.hpp"
-#include "response/option_rules.hpp"
+#include "shape/option_rules.hpp"
 #include "shape/packing_shape_impl.hpp"
 
 namespace innersphere {

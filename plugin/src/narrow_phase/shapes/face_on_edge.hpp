@@ -1,7 +1,7 @@
 // Where a face of a packing lies on an edge or a corner of another shape.
 #pragma once
 
-#include "narrow_phase/contact_tolerances.hpp"
+#include "common/contact_tolerances.hpp"
 #include "narrow_phase/shapes/shape_surface.hpp"
 
 namespace innersphere {

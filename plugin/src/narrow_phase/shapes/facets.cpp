@@ -6,7 +6,7 @@
 #include <LinearMath/btConvexHullComputer.h>
 
 #include "common/bullet_vectors.hpp"
-#include "narrow_phase/contact_tolerances.hpp"
+#include "common/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -15,7 +15,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 #include <LinearMath/btAabbUtil2.h>
 
-#include "narrow_phase/contact_tolerances.hpp"
+#include "common/contact_tolerances.hpp"
 #include "narrow_phase/shapes/distance_surface.hpp"
 #include "narrow_phase/shapes/face_on_edge.hpp"
 

@@ -1,4 +1,4 @@
-#include "response/option_rules.hpp"
+#include "shape/option_rules.hpp"
 
 #include <algorithm>
 #include <cmath>
