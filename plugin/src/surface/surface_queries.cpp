@@ -18,8 +18,8 @@ using Lanes = TriangleBvh::Lanes;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 /// Ratio: hits whose distances differ by less lie on an edge that both triangles share.
 constexpr btScalar kShared = btScalar(1e-5);
-/// Cosine, 84 degrees: rays that are flatter to a triangle meet it itself, not the curved surface that it stands
-/// for.
+/// Cosine, 84 degrees: rays that are flatter to a triangle meet it itself, not the curved surface that it
+/// stands for.
 constexpr btScalar kGrazing = btScalar(0.1);
 /// Cosine, 15 degrees: a nearest point that is seen from further aside lies on an edge.
 constexpr btScalar kOver = btScalar(0.966);
