@@ -63,7 +63,7 @@ constexpr btScalar kOneNormal = btScalar(1e-3);
 constexpr btScalar kConforming = btScalar(0.3);
 /// Cosine, 60 degrees: a surface that leans more from the line has no usable slope.
 constexpr btScalar kUsableCosine = btScalar(0.5);
-/// Steps of an ascent to a top: Newton's method needs two or three on a ball, twice as many on a torus.
+/// Steps of an ascent to a top, at most: each is one of Newton's method, whose error falls quadratically.
 constexpr int kAscentSteps = 8;
 /// Steps of the other samples, which only have to get nearer.
 constexpr int kAscentStepsBeside = 2;
@@ -80,7 +80,7 @@ constexpr btScalar kSameTop = btScalar(0.1);
 
 // --- Crossing edges --------------------------------------------------------------------------------------
 
-/// How often edges are looked for, each time where those before would cross: more finds no further ones.
+/// How often edges are looked for at most, each time where those before would cross.
 constexpr int kEdgeLooks = 4;
 /// Sine, 5 degrees: edges that are closer to parallel do not cross at a place.
 constexpr btScalar kCrossingSine = btScalar(0.087);
