@@ -55,11 +55,17 @@ need_packages() {
 build_packages="g++ cmake ninja-build pkg-config libbullet-dev libtbb-dev libeigen3-dev libassimp-dev libembree-dev \
 libcli11-dev nlohmann-json3-dev libpng-dev libjs-three"
 
+# cuda_architectures: those of the cards that are here; fails if there is none.
+cuda_architectures() {
+  local found
+  found=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2>/dev/null) && tr -d . <<<"$found" | sort -u | paste -sd ';'
+}
+
 # cuda_for_this_machine: CMake's options for the card that is here, or for none. All cards take ten times as long.
 cuda_for_this_machine() {
   local architectures
-  if architectures=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2>/dev/null); then
-    printf '%s\n' -DINNERSPHERE_CUDA=AUTO "-DCMAKE_CUDA_ARCHITECTURES=$(tr -d . <<<"$architectures" | sort -u | paste -sd ';')"
+  if architectures=$(cuda_architectures); then
+    printf '%s\n' -DINNERSPHERE_CUDA=AUTO "-DCMAKE_CUDA_ARCHITECTURES=$architectures"
   else
     printf '%s\n' -DINNERSPHERE_CUDA=OFF
   fi

@@ -224,6 +224,14 @@ void run(const Settings& settings) {
     benchmark.afterEachStep([](btDiscreteDynamicsWorld& world) {
       pairOverlaps(static_cast<btCollisionDispatcher*>(world.getDispatcher()));
     });
+    const std::pair<const char*, Reuse> least[] = {{"nothing idle", Reuse::transport},
+                                                   {"nothing transported", Reuse::refine},
+                                                   {"nothing reused", Reuse::search}};
+    for (const auto& [name, reuse] : least) {
+      options = {};
+      options.reuse = reuse;
+      benchmark.addPackings(std::string("packing, ") + name, model, options);
+    }
     ContactDrawerOptions drawn;
     for (const bool volumes : {false, true}) {
       drawn.volumes = volumes;

@@ -25,7 +25,8 @@ Packing packAnew(const Mesh& mesh, const std::string& name, const PackMeshOption
 }
 
 std::string optionsText(const PackMeshOptions& options) {
-  return commandLine(options.pack) + (options.repair ? " --repair" : "");
+  return commandLine(options.pack) + (options.repair ? " --repair" : "") +
+         (options.pack.overlap_errors ? "" : " without overlap errors");
 }
 
 }  // namespace
@@ -33,6 +34,7 @@ std::string optionsText(const PackMeshOptions& options) {
 PackOptions startUpOptions(std::size_t spheres) {
   PackOptions options;
   options.spheres = spheres;
+  options.overlap_errors = false;
   return options;
 }
 

@@ -11,22 +11,26 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Looks at all pairs with a packing that may collide in this step, those of packings in one launch. Then,
-/// if `as_bullet_does`, collides all pairs, as btCollisionDispatcher does, but for those that there is
-/// nothing left to do for; true if it did that: not if there is a near-callback of the user's, or pairs are
-/// to be collided in a certain order. Does nothing for a dispatcher that is not registered.
+/// Updates all pairs with a packing that may collide in this step; pairs of packings share one query. Then,
+/// if `as_bullet_does`, dispatches all pairs as btCollisionDispatcher does, without those that need nothing
+/// more. Returns true if it has dispatched them. It does not if there is a near-callback of the user's, or if
+/// pairs are to be dispatched in a certain order. Does nothing for a dispatcher that is not registered.
 bool collideBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pairs,
                   const btDispatcherInfo& info, bool as_bullet_does);
 
-/// In place of a btCollisionDispatcher (or another one derived from it, btCollisionDispatcherMt for example,
-/// as Base): exactly one launch a step, on which a device works while Bullet collides bodies that are no
-/// packings, up to the first pair of packings. Without it pairs that are new in a step take a launch each, so
-/// use it where many bodies meet in a step, above all with CUDA. Pairs of children of compound shapes that
-/// are new still do. Pairs that there is nothing left to do for, most of those of a pile, cost it next to
-/// nothing; not so with another Base, or a near-callback of the user's. Near-callbacks and filters work as
-/// before: a pair that they turn down is looked at once, when it is new. Filters of a class derived from this
-/// one (needsCollision()) are asked by one thread, those of bodies (checkCollideWithOverride()) by several.
-/// Register PackingCollisionAlgorithm with it as with any other.
+/// A dispatcher to use in place of btCollisionDispatcher, or of the one that is given as Base, for example
+/// btCollisionDispatcherMt. Register PackingCollisionAlgorithm with it as with any other.
+///
+/// It makes exactly one query a step for all pairs of packings. A device works on it while Bullet collides
+/// other bodies, up to the first pair of packings. Without it each pair that is new in a step takes a query
+/// of its own, so use it where many bodies meet in a step, above all with CUDA. New pairs of children of
+/// compound shapes still take one each.
+///
+/// Pairs that need nothing more, most of those of a pile, cost next to nothing. That does not hold with
+/// another Base, or with a near-callback of the user's.
+///
+/// Near-callbacks and filters work as before, and are called by the thread that dispatches. A pair that they
+/// refuse is searched once, when it is new.
 template <class Base = btCollisionDispatcher>
 class BatchedDispatcher : public Base {
  public:

@@ -1,6 +1,8 @@
 // How overlap becomes contact.
 #pragma once
 
+#include <cstdint>
+
 #include "innersphere/bullet_precision.hpp"
 #include "innersphere/query.hpp"
 
@@ -17,6 +19,14 @@ enum class Response {
   /// leaves them alone. Links of a btMultiBody, which take no impulses, get compliant contacts, as deep as
   /// the spheres say.
   penalty
+};
+
+/// What has to be done for a pair in a step, from the least work to the most.
+enum class Reuse : std::uint8_t {
+  idle,       ///< The bodies stay apart: nothing is done.
+  transport,  ///< The contacts are moved along with the bodies.
+  refine,     ///< The depth is evaluated again at the samples that a search has found.
+  search      ///< Contact is searched for.
 };
 
 /// Options of a registration, which hold for every pair of the dispatcher, or of a shape: see
@@ -56,11 +66,10 @@ struct ContactOptions {
   /// four times that for Response::compliant with its default stiffness. Bullet's restitution works on top of
   /// it; with Response::penalty a restitution above 0 sets the damping in its place, if that is less.
   double damping = 1;
-  /// Whether contacts that were found are used again while bodies hardly move against each other: then they
-  /// are moved along with the bodies, or evaluated again where they are, and not searched for. False: contact
-  /// is searched for in each step, which takes several times as long; for tests, and to find out where a
-  /// fault lies. See ContactStatistics.
-  bool reuse_contacts = true;
+  /// How much is used again of contacts that were found, while bodies hardly move against each other. Less
+  /// takes several times as long; it is for tests and measurements, and to find out where a fault lies. See
+  /// ContactStatistics.
+  Reuse reuse = Reuse::idle;
 };
 
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -68,8 +77,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// The options of a pair: `a` and `b` are those that its shapes have of their own, null for none, and `world`
 /// those of the dispatcher.
 ///
-/// Backend and estimator are the dispatcher's in any case, because one query serves all of its pairs. The
-/// rest is the dispatcher's if neither shape has its own, and the shape's if one has. If both have:
+/// Backend, estimator and reuse are the dispatcher's in any case, because one query serves all of its pairs.
+/// The rest is the dispatcher's if neither shape has its own, and the shape's if one has. If both have:
 ///   - response: theirs if it is the same. Else Response::rigid counts as infinitely stiff and gives way to
 ///     the other, and Response::penalty gives way to Response::compliant, which is stable at any step;
 ///   - stiffness: that of two springs in series, 1 / (1/a + 1/b), so that two equal bodies are half as stiff

@@ -10,8 +10,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Counts of what was done for pairs with a packing, from the registration of their dispatcher on. A pair that
-/// Bullet asks for counts once a step. ContactOptions::reuse_contacts = false makes all of them searched.
+/// Counts of what was done for pairs with a packing, from the registration of their dispatcher on. A pair
+/// that Bullet asks for counts once a step. With ContactOptions::reuse = Reuse::search all are searched.
 struct ContactStatistics {
   std::size_t idle = 0;         ///< pairs that were left alone, because their bodies stay apart
   std::size_t transported = 0;  ///< pairs whose contacts were moved along with the bodies

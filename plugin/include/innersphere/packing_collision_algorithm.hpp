@@ -22,8 +22,9 @@ struct PackingCollisionAlgorithm {
   /// Contacts are written to the dispatcher's manifolds by all threads, when Bullet asks for the first pair
   /// of a step. Where the user has set a near-callback, or any of Bullet's global callbacks of contacts, they
   /// are written as Bullet asks for them, pair by pair and by the thread that asks, which takes longer.
-  /// A dispatcher may ask for several pairs at once, as btCollisionDispatcherMt does: bodies move the same,
-  /// but that penalty forces act in the order in which it asks.
+  /// A dispatcher that collides pairs with a btManifoldResult of its own class must do so in a near-callback.
+  /// A dispatcher may ask for several pairs at once, as btCollisionDispatcherMt does: they are processed in
+  /// parallel, and bodies move the same, but that penalty forces act in the order in which it asks.
   /// Shapes are read by all threads, too; a concave shape of the user's own is asked for its triangles by one
   /// after the other.
   static void registerAlgorithm(btDispatcher* dispatcher, const ContactOptions& options = {});

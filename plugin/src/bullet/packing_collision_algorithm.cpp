@@ -65,7 +65,9 @@ void PackingCollisionAlgorithm::registerAlgorithm(btDispatcher* of_world, const 
                                              std::to_string(sizeof(PairAlgorithm)) +
                                              " or more in btDefaultCollisionConstructionInfo.");
   }
-  Registration::of(&dispatcher).table().setOptions(options);
+  PairTable& table = Registration::of(&dispatcher).table();
+  table.setOptions(options);
+  table.setSolver(nullptr);
   noticeRegistration();
 }
 

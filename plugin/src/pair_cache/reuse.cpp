@@ -1,5 +1,7 @@
 #include "pair_cache/reuse.hpp"
 
+#include <algorithm>
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -20,29 +22,31 @@ bool staysApart(const SafeDistance& safe, const BodySnapshot& a, const BodySnaps
 
 }  // namespace
 
-Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step) {
-  const bool apart = staysApart(pair.safe, a, b, time_step);
+Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step,
+              Reuse least) {
+  const bool apart = least == Reuse::idle && staysApart(pair.safe, a, b, time_step);
   if (apart && pair.of_packings) return Reuse::idle;  // has read nothing but the beginning of the pair
   const bool same_shapes = pair.found->hasSameShapes();
   if (apart && same_shapes) return Reuse::idle;
   const std::optional<btTransform> at_a = pair.a.placeIn(a);
   const std::optional<btTransform> at_b = pair.b.placeIn(b);
-  if (!pair.found->isKnown() || !same_shapes || !pair.a.hasSameShape() || !pair.b.hasSameShape() || !at_a ||
-      !at_b)
+  if (least == Reuse::search || !pair.found->isKnown() || !same_shapes || !pair.a.hasSameShape() ||
+      !pair.b.hasSameShape() || !at_a || !at_b)
     return Reuse::search;
   const Placed now{*at_a, *at_b};
   const ContactTransport& memory = pair.found->memory;
   const ContactSettings& settings = *pair.found->settings;
-  if (!pair.found->on_surfaces && !(memory.measuredAt() == now)) return Reuse::search;
+  if (!pair.found->on_surfaces && (least > Reuse::transport || !(memory.measuredAt() == now)))
+    return Reuse::search;
   const btScalar size_a = sizeOf(*pair.a.shape), size_b = sizeOf(*pair.b.shape);
   const btScalar needed = neededSeparation(pair, a, b, time_step);
   const btScalar moved = motionBetween(memory.searchedAt(), now, size_a, size_b);
   const btScalar farthest = memory.isEnclosed() ? btScalar(0) : kSearchAgain * settings.spacing;
   if (moved > farthest || needed + moved > settings.separation) return Reuse::search;
-  if (memory.isEmpty()) return Reuse::transport;
+  if (memory.isEmpty()) return std::max(least, Reuse::transport);
   const btScalar turned = motionBetween(memory.measuredAt(), now, size_a, size_b);
   const btScalar carried = btMax(kRefineAgain * settings.spacing, kRefineGap * (memory.gap() - needed));
-  return turned > carried ? Reuse::refine : Reuse::transport;
+  return std::max(least, turned > carried ? Reuse::refine : Reuse::transport);
 }
 
 btScalar neededSeparation(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,

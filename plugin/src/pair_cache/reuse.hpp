@@ -1,25 +1,17 @@
 // What of a pair's contact can be used again in a new step.
 #pragma once
 
-#include <cstdint>
-
 #include "pair_cache/body_snapshot.hpp"
 #include "pair_cache/contact_pair.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// From the least work to the most.
-enum class Reuse : std::uint8_t {
-  idle,       ///< the bodies stay apart: nothing is done
-  transport,  ///< the contacts are moved along with the bodies
-  refine,     ///< the depth is evaluated again at the samples that a search has found
-  search,     ///< contact is searched for
-};
-
 /// The one rule of reuse: what has to be done for `pair` in a step of `time_step` [s] whose bodies are `a`
-/// and `b`. Asks the shapes whether they have changed, which they tell once a step.
-Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step);
+/// and `b`, if nothing less than `least` is allowed. Asks the shapes whether they have changed, which they
+/// tell once a step.
+Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step,
+              Reuse least = Reuse::idle);
 
 /// Gaps of the pair up to this width are to have a contact in the step [m]: they might close in it.
 btScalar neededSeparation(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,

@@ -15,7 +15,7 @@ PackingVsPacking& packingsOf(ContactPair& pair) {
 
 Reuse reuseFor(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                const StepSettings& settings) {
-  return settings.options.reuse_contacts ? reuseOf(pair, a, b, settings.time_step) : Reuse::search;
+  return reuseOf(pair, a, b, settings.time_step, settings.options.reuse);
 }
 
 /// Takes a pair that is not idle to where its bodies are. False if that is not known.

@@ -41,6 +41,7 @@ ContactOptions combine(const ContactOptions& world, const ContactOptions* a, con
   ContactOptions pair = a != nullptr ? *a : b != nullptr ? *b : world;
   pair.backend = world.backend;
   pair.estimator = world.estimator;
+  pair.reuse = world.reuse;
   if (a == nullptr || b == nullptr) return pair;
   pair.response = combine(a->response, b->response);
   const bool a_is_softer = stiffnessOf(*a) < stiffnessOf(*b);

@@ -36,8 +36,7 @@ TEST(ContactSettings, LookFurtherThanIsNeeded) {
   const double spacing = ContactSettings({}, *shape, ball, 0).spacing;
   // At least from where Bullet drops contacts.
   EXPECT_NEAR(ContactSettings({}, *shape, ball, 0).separation, spacing, 1e-9);
-  EXPECT_NEAR(ContactSettings({}, *shape, ball, 1).separation,
-              1 + ContactTransport::reserve(btScalar(spacing)), 1e-6);
+  EXPECT_NEAR(ContactSettings({}, *shape, ball, 1).separation, 1 + kSearchAgain * spacing, 1e-6);
 }
 
 TEST(ContactSettings, AddTheInsetsOfBothPackings) {

@@ -36,7 +36,7 @@ std::vector<ContactPoint> carried(const PackingShape& a, const std::vector<Conta
   patch.normal = points[0].normal;
   for (const ContactPoint& point : points) patch.points[patch.count++] = point;
   transport.patches = {patch};
-  transport.measuredAt(then, 1);
+  transport.noteDepths(then, 1);
   transport.carryTo(now, a, spacing);
   return {transport.patches[0].points.begin(), transport.patches[0].points.begin() + patch.count};
 }
@@ -197,7 +197,7 @@ TEST_F(OnAPlane, SamplesTurnWithThePacking) {
   ContactTransport transport;
   transport.samples.patches.push_back({down, 1, 1, 0});
   const Placed then{at({0, 0, 0}), at({0, 0, 0})};
-  transport.measuredAt(then, 1);
+  transport.noteDepths(then, 1);
   const btQuaternion turn(btVector3(1, 0, 0), SIMD_HALF_PI);
   transport.turnTo({at({0, 0, 0}, turn), at({0, 0, 0})});
   EXPECT_NEAR(transport.samples.patches[0].normal.distance(btMatrix3x3(turn) * down), 0, 1e-6);

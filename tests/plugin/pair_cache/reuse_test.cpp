@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -125,6 +126,15 @@ TEST_F(ReuseRule, AWiderSeparationIsSearched) {
   EXPECT_EQ(ruleAfter(at(0.001)), Reuse::transport);
   pair.separation = btScalar(2 * spacing);
   EXPECT_EQ(ruleAfter(at(0.001)), Reuse::search);
+}
+
+TEST_F(ReuseRule, NothingLessIsDoneThanIsAllowed) {
+  for (const double gap : {-0.001, 1.0}) {
+    searchAt(gap);
+    const Reuse usual = gap < 0 ? Reuse::transport : Reuse::idle;
+    for (const Reuse least : {Reuse::idle, Reuse::transport, Reuse::refine, Reuse::search})
+      EXPECT_EQ(reuseOf(pair, *body_a, *body_b, btScalar(kStep), least), std::max(usual, least));
+  }
 }
 
 TEST_F(ReuseRule, ABodyAtNaNIsSearchedNotReused) {

@@ -68,7 +68,7 @@ TEST_P(ReuseIn, AWorldMovesAsWithoutIt) {
     const auto run = [&](bool reuse, ContactStatistics& statistics) {
       ContactOptions options;
       options.response = response;
-      options.reuse_contacts = reuse;
+      options.reuse = reuse ? Reuse::idle : Reuse::search;
       TestWorld world(options);
       GetParam().fill(world);
       for (const auto& body : world.bodies) {
