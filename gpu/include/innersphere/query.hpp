@@ -14,7 +14,7 @@ namespace innersphere {
 
 /// Where a query runs.
 enum class Backend {
-  /// The CPU or, if there is enough work and a device, CUDA. Both find the same pairs and sums within 1e-5.
+  /// The CPU or, if there is enough work and a device, CUDA. Both give the same results, to the bit.
   automatic,
   cpu,   ///< The CPU.
   cuda,  ///< CUDA. Error no_device if there is none: there is no silent fallback.

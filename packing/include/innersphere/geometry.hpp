@@ -43,8 +43,8 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into vertices.
 };
 
-/// A closed triangle surface, wound counter-clockwise seen from outside. It serves drawing, ray tests and
-/// convex sweeps; collisions are decided by the spheres.
+/// A closed triangle surface, wound counter-clockwise seen from outside. It serves drawing, ray
+/// tests and convex sweeps, and gives the depth of contacts, which the spheres find.
 struct Surface {
   std::vector<std::array<float, 3>> vertices;           ///< The vertices [m].
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into vertices.

@@ -66,9 +66,9 @@ struct ContactOptions {
   /// four times that for Response::compliant with its default stiffness. Bullet's restitution works on top of
   /// it; with Response::penalty a restitution above 0 sets the damping in its place, if that is less.
   double damping = 1;
-  /// How much is used again of contacts that were found, while bodies hardly move against each other. Less
-  /// takes several times as long; it is for tests and measurements, and to find out where a fault lies. See
-  /// ContactStatistics.
+  /// The least that is done for a pair in a step. By default contacts that were found are used again while
+  /// bodies hardly move against each other. Reuse::search takes several times as long; it is for tests and
+  /// measurements, and to find out where a fault lies. See ContactStatistics.
   Reuse reuse = Reuse::idle;
 };
 

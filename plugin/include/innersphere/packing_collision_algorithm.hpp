@@ -30,7 +30,8 @@ struct PackingCollisionAlgorithm {
   static void registerAlgorithm(btDispatcher* dispatcher, const ContactOptions& options = {});
   /// The same for the dispatcher of a world. Contacts then follow the settings of its solver
   /// (btContactSolverInfo: warm starting, friction ERP, split impulse), as they are in each step; else they
-  /// are made for Bullet's defaults. The world must live as long as its dispatcher is used.
+  /// are made for Bullet's defaults, as they are after a registration of the dispatcher alone. The world must
+  /// live as long as its dispatcher is used.
   static void registerAlgorithm(btDynamicsWorld& world, const ContactOptions& options = {});
 
   /// Gives the dispatcher's entries for packings back to its collision configuration. What was kept for them

@@ -75,9 +75,10 @@ class PackingShape : public btConcaveShape {
   std::size_t sphereCount() const;
 
   /// Options for all pairs of bodies with this shape, in place of those that the dispatcher was registered
-  /// with; combine() says what holds for a pair in which both shapes have their own. Backend and estimator
-  /// are always the dispatcher's. For one body alone, give it a shape of its own from the same model. Takes
-  /// effect with the next step; not during one. Throws Error bad_argument, as registerAlgorithm() does.
+  /// with; combine() says what holds for a pair in which both shapes have their own. Backend, estimator
+  /// and reuse are always the dispatcher's. For one body alone, give it a shape of its own from the same
+  /// model. Takes effect with the next step; not during one. Throws Error bad_argument, as
+  /// registerAlgorithm() does.
   void setContactOptions(const ContactOptions& options);
   /// The dispatcher's options hold again, as at first.
   void resetContactOptions();
