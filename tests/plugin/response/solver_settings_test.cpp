@@ -63,8 +63,8 @@ TEST(SolverSettings, ASlipThatFrictionUndoesFollowsTheFrictionErp) {
   EXPECT_EQ(slip(0), 0);
 }
 
-/// A box on a plane under a spring bears its weight whatever part of its impulse the solver starts with; a law
-/// for another solver would let it sink until its spring has made up for the difference.
+/// A box on a plane under a spring bears its weight whatever part of its impulse the solver starts with; a
+/// law for another solver would let it sink until its spring has made up for the difference.
 TEST(SolverSettings, AWorldThatIsRegisteredIsRead) {
   const auto sinking = [](bool of_world, double warm_starting) {
     TestWorld world;
