@@ -28,7 +28,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// reuse.hpp); searches begin; meanwhile contacts are transported and refined; the results of the searches;
 /// and each pair's contacts are written into Bullet's manifolds as soon as they are known.
 ///
-/// Safe to use from several threads at once. No code of the user's is called while the table is locked.
+/// Safe to use from several threads at once. While the table is locked no code of the user's is called but
+/// that of a concave shape of their own, which is asked for its triangles.
 class PairTable {
  public:
   explicit PairTable(btDispatcher* dispatcher) : dispatcher_(dispatcher) {}
