@@ -21,7 +21,7 @@ void PairAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
                                      btManifoldResult* result) {
   const bool swapped = PackingShape::from(body0->getCollisionShape()) == nullptr;
   if (swapped) std::swap(body0, body1);
-  if (PackingShape::from(body0->getCollisionShape()) == nullptr)
+  if (swapped && PackingShape::from(body0->getCollisionShape()) == nullptr)
     return;  // the user has given both bodies another shape
   if (closest_) {
     registration_->table().report(*pair_, *body0, *body1, result);

@@ -148,26 +148,12 @@ void PairTable::process(ContactPair& pair, const btCollisionObjectWrapper& a,
   const Busy busy(pair, mutex_, number_);
   lock.unlock();
 
-  bool known = false;
-  Reuse reuse = Reuse::search;
-  if (!isFinite(a.getWorldTransform()) || !isFinite(b.getWorldTransform())) {
-    pair.logOnce("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
-  } else {
-    try {
-      reuse = updateAlone(pair, body_a, body_b, settings);
-      known = true;
-    } catch (const Error& error) {
-      pair.logOnce(std::string("Contacts of a pair of bodies are skipped: ") + error.what());
-    }
-  }
+  const bool known = updateOrLog(pair, body_a, body_b, settings);
   if (!known) pair.found->drop();
   pair.time_step = settings.time_step;
   pair.write(settings, body_a, body_b, result);
   pair.penalty = PenaltyReport();
   if (known) push(pair, settings, dispatch);
-  lock.lock();
-  count(reuse);
-  lock.unlock();
 }
 
 void PairTable::report(ContactPair& pair, const btCollisionObjectWrapper& a,
@@ -179,15 +165,21 @@ void PairTable::report(ContactPair& pair, const btCollisionObjectWrapper& a,
   const BodySnapshot body_a(a), body_b(b);
   const StepSettings settings = settingsFor(0);
   lock.unlock();
-  if (!isFinite(a.getWorldTransform()) || !isFinite(b.getWorldTransform())) {
+  if (updateOrLog(pair, body_a, body_b, settings)) pair.report(result);
+}
+
+bool PairTable::updateOrLog(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
+                            const StepSettings& settings) {
+  if (!isFinite(*a.shapePlace()) || !isFinite(*b.shapePlace())) {
     pair.logOnce("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
-    return;
+    return false;
   }
   try {
-    updateAlone(pair, body_a, body_b, settings);
-    pair.report(result);
+    updateAlone(pair, a, b, settings);
+    return true;
   } catch (const Error& error) {
     pair.logOnce(std::string("Contacts of a pair of bodies are skipped: ") + error.what());
+    return false;
   }
 }
 
@@ -212,14 +204,12 @@ void PairTable::finishUpdate() {
 }
 
 bool PairTable::isDone(const ContactPair& pair, btScalar time_step) const {
-  return pair.published && pair.step == number_ && !pair.asked && time_step == settings_.time_step &&
-         pair.body_a->isAsTaken() && pair.body_b->isAsTaken();
+  return isFresh(pair, time_step) && pair.body_a->isAsTaken() && pair.body_b->isAsTaken();
 }
 
 bool PairTable::isDone(const ContactPair& pair, const btCollisionObjectWrapper& a,
                        const btCollisionObjectWrapper& b, btScalar time_step, btScalar separation) const {
-  return pair.published && pair.step == number_ && !pair.asked && time_step == settings_.time_step &&
-         pair.separation == separation && isAsTaken(pair.a, *pair.body_a, a) &&
+  return isFresh(pair, time_step) && pair.separation == separation && isAsTaken(pair.a, *pair.body_a, a) &&
          isAsTaken(pair.b, *pair.body_b, b);
 }
 

@@ -93,9 +93,16 @@ class PairTable {
   void publish(ContactPair& pair) const;
   void finish();
 
-  /// Brings one pair up to date; the table is not locked. Throws Error from the query.
-  Reuse updateAlone(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
-                    const StepSettings& settings);
+  /// The last update has published the pair, and Bullet has not asked for it since.
+  bool isFresh(const ContactPair& pair, btScalar time_step) const {
+    return pair.published && pair.step == number_ && !pair.asked && time_step == settings_.time_step;
+  }
+  /// Brings one pair up to date; the table is not locked. False if that cannot be done, which the log says.
+  bool updateOrLog(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
+                   const StepSettings& settings);
+  /// The same. Throws Error from the query.
+  void updateAlone(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
+                   const StepSettings& settings);
   void push(ContactPair& pair, const StepSettings& settings, const btDispatcherInfo& dispatch);
   Overlap overlapOf(const ContactPair& pair, PackingSearch& search) const;
   void count(Reuse reuse);

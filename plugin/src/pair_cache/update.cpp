@@ -129,27 +129,25 @@ void PairTable::finish() {
   giveBack(std::move(search_));
 }
 
-Reuse PairTable::updateAlone(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
-                             const StepSettings& settings) {
+void PairTable::updateAlone(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
+                            const StepSettings& settings) {
   pair.safe = SafeDistance();
   const Reuse reuse = reuseFor(pair, a, b, settings);
   place(pair, a, b);
-  if (reuse != Reuse::search || !pair.of_packings) {
-    updateWithoutQuery(pair, a, b, reuse, settings);
-    return reuse;
-  }
+  const bool queries = reuse == Reuse::search && pair.of_packings;
   std::unique_ptr<PackingSearch> search;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    search = takeSearch();
-    ++statistics_.queries;
+    if (pair.body_a != nullptr) count(reuse);  // closest-point queries are no part of a step
+    if (queries) search = takeSearch();
+    if (queries) ++statistics_.queries;
   }
+  if (!queries) return updateWithoutQuery(pair, a, b, reuse, settings);
   search->add(packingsOf(pair), beginSearch(pair, a, b, settings), 0);
   search->start(settings.options.estimator);
   search->finish([](std::size_t) {});
   const std::lock_guard<std::mutex> lock(mutex_);
   giveBack(std::move(search));
-  return reuse;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
