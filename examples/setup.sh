@@ -86,7 +86,8 @@ build() {
   shift 2
   log=$(mktemp)
   say "Configuring ($preset) ..."
-  if ! cmake --preset "$preset" "$@" >"$log" 2>&1; then
+  # Off unless it is asked for: the folder remembers what was asked for last.
+  if ! cmake --preset "$preset" -DCMAKE_UNITY_BUILD=OFF "$@" >"$log" 2>&1; then
     tail -n 40 "$log" >&2
     exit 1
   fi

@@ -18,7 +18,6 @@ namespace {
 constexpr std::size_t kLinks = 10;
 constexpr double kRing = 1, kTube = 0.25;         // [m]
 constexpr double kSpacing = 2 * (kRing - kTube);  // the tubes of neighbours touch
-constexpr double kDensity = 1000;                 // [kg/m^3]
 
 // Hung at an angle against the vertical [rad]. The first link never moves.
 void addLinks(SceneWorld& world, const SceneOptions& options, double angle, double last_density) {

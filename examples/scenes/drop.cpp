@@ -11,7 +11,6 @@ namespace innersphere::demo {
 
 void buildDrop(SceneWorld& world, const SceneOptions& options) {
   constexpr double kRing = 0.35, kTube = 0.15, kHeight = 1;  // [m]
-  constexpr double kDensity = 1000;                          // [kg/m^3]
   const std::size_t torus =
       world.addSolid(*makeTorus(kRing, kTube), options.spheres, progressOf(options, 0, 1));
   world.addGround(0);

@@ -15,7 +15,6 @@ namespace innersphere::demo {
 namespace {
 
 constexpr double kDiagonal = 0.7;  // [m] of each solid's bounding box
-constexpr double kDensity = 1000;  // [kg/m^3]
 constexpr double kWall = 0.03;     // [m] half the thickness of floor and walls
 constexpr Colour kTrayColour{0.80f, 0.77f, 0.72f};
 

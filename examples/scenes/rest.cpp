@@ -16,7 +16,6 @@
 namespace innersphere::demo {
 namespace {
 
-constexpr double kDensity = 1000;  // [kg/m^3]
 constexpr double kGravity = 9.81;  // [m/s^2]
 
 double longestEdge(const Bounds& b) {

@@ -13,8 +13,7 @@
 namespace innersphere::demo {
 namespace {
 
-constexpr double kEdge = 0.5;      // [m]
-constexpr double kDensity = 1000;  // [kg/m^3]
+constexpr double kEdge = 0.5;  // [m]
 
 std::size_t addBox(SceneWorld& world, const SceneOptions& options) {
   return world.addSolid(*makeBox({kEdge, kEdge, kEdge}), options.spheres, progressOf(options, 0, 1));

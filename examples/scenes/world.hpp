@@ -18,6 +18,9 @@
 
 namespace innersphere::demo {
 
+/// Of bodies, unless their scene says otherwise [kg/m^3].
+constexpr double kDensity = 1000;
+
 /// Lever of the resistance against rolling [m], for bodies that would roll on for ever. Those that lie still
 /// on a face go without: Bullet's solver lets them creep by 0.1 mm/s with it.
 constexpr btScalar kRollingFriction = btScalar(0.01);

@@ -29,7 +29,7 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
 }
 
 // In single quotes, for bash and zsh.
-std::string quoted(const std::string& text) {
+std::string shellQuoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
   return result + "'";
@@ -47,7 +47,7 @@ std::vector<Option> optionsOf(const Command& command, const std::vector<Option>&
 // bash: the words of a command are joined with a space before each.
 
 std::string bashOffer(const Option& option) {
-  return "names=" + quoted(joined(option.choices, " ")) + (option.takes_file ? " files=1" : "");
+  return "names=" + shellQuoted(joined(option.choices, " ")) + (option.takes_file ? " files=1" : "");
 }
 
 // zsh: what _arguments wants.
@@ -70,10 +70,10 @@ std::string zshValue(const Option& option) {
 }
 
 std::string zshSpec(const Option& option) {
-  if (option.isArgument()) return quoted((option.repeated ? "*" : "") + zshValue(option));
+  if (option.isArgument()) return shellQuoted((option.repeated ? "*" : "") + zshValue(option));
   const std::vector<std::string> names = option.spellings();
   const std::string rest =
-      quoted("[" + zshText(option.description) + "]" + (option.isFlag() ? "" : zshValue(option)));
+      shellQuoted("[" + zshText(option.description) + "]" + (option.isFlag() ? "" : zshValue(option)));
   if (names.size() == 1) return (option.repeated ? "'*'" : "") + names[0] + rest;
   return "'(" + joined(names, " ") + ")'{" + joined(names, ",") + "}" + rest;
 }
@@ -121,19 +121,19 @@ std::string bashCompletion(const Command& root, const std::vector<Option>& every
   std::string commands, values, offers;
   visitAll(root, [&](const Command& command, const std::vector<std::string>& path) {
     const std::string words = path.empty() ? "" : " " + joined(path, " ");
-    if (!path.empty()) commands += (commands.empty() ? "" : "|") + quoted(words);
-    std::string names, arguments = "names=" + quoted(joined(command.namesOfCommands(), " "));
+    if (!path.empty()) commands += (commands.empty() ? "" : "|") + shellQuoted(words);
+    std::string names, arguments = "names=" + shellQuoted(joined(command.namesOfCommands(), " "));
     for (const Option& option : optionsOf(command, everywhere)) {
       if (option.isArgument()) arguments = bashOffer(option);
       for (const std::string& name : option.spellings()) {
         names += (names.empty() ? "" : " ") + name;
         if (!option.isFlag()) {
-          values += "    " + quoted(words + " " + name) + ") " + bashOffer(option) + " option=1 ;;\n";
+          values += "    " + shellQuoted(words + " " + name) + ") " + bashOffer(option) + " option=1 ;;\n";
         }
       }
     }
-    offers += "    " + quoted(words + " -") + ") names=" + quoted(names) + " ;;\n";
-    offers += "    " + quoted(words + " ") + ") " + arguments + " ;;\n";
+    offers += "    " + shellQuoted(words + " -") + ") names=" + shellQuoted(names) + " ;;\n";
+    offers += "    " + shellQuoted(words + " ") + ") " + arguments + " ;;\n";
   });
   return "# bash completion of innersphere, written by: innersphere completion bash\n"
          "_innersphere() {\n"
@@ -169,7 +169,7 @@ std::string zshCompletion(const Command& root, const std::vector<Option>& everyw
     if (group) {
       text += "  local state line\n  local -a commands=(\n";
       for (const Command& sub : command.commands) {
-        text += "    " + quoted(sub.name + ":" + zshText(sub.description)) + "\n";
+        text += "    " + shellQuoted(sub.name + ":" + zshText(sub.description)) + "\n";
       }
       text += "  )\n";
     }

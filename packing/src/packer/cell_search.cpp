@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace innersphere {
 namespace {
-
-constexpr double kSqrt3 = 1.7320508075688773;
 
 // In a cell whose half is larger than this many wanted radii, only the centre is looked at.
 constexpr double kLarge = 4;
@@ -114,7 +113,7 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
   };
   Point x = centre;
   for (int k = 0; k < (half > kLarge * wanted_ ? 1 : kProbes); ++k) {
-    const Probe p = probe(x, begin, balls_.size(), wanted_, k == 0 ? bound_ - kSqrt3 * half : 0);
+    const Probe p = probe(x, begin, balls_.size(), wanted_, k == 0 ? bound_ - std::numbers::sqrt3 * half : 0);
     if (p.value > wanted_ && climb(x)) return Verdict::found;
     program.add(p.value - p.gradient.dot(x - centre), p.gradient);
     cuts.push_back(p);

@@ -14,9 +14,6 @@
 namespace innersphere {
 namespace {
 
-constexpr double kBallVolume = 4.0 / 3.0 * std::numbers::pi;
-constexpr double kSqrt3 = std::numbers::sqrt3;
-
 // Samples in the gaps for each sphere, on average.
 constexpr double kSamples = 16;
 
@@ -41,10 +38,10 @@ class Sampler {
   void descend(const std::array<std::uint32_t, 3>& at, std::uint32_t lattice, bool inside) {
     const double half = lattice * spacing_ / 2;
     const Point centre = Point(at[0], at[1], at[2]) * spacing_ + Point::Constant(half);
-    if (grid_.nearest(centre, 0).distance <= -kSqrt3 * half) return;
+    if (grid_.nearest(centre, 0).distance <= -std::numbers::sqrt3 * half) return;
     if (!inside) {
-      const double distance = container_.closest(centre, 1.01 * kSqrt3 * half).distance;
-      if (distance > kSqrt3 * half) {
+      const double distance = container_.closest(centre, 1.01 * std::numbers::sqrt3 * half).distance;
+      if (distance > std::numbers::sqrt3 * half) {
         if (!container_.contains(centre)) return;
         inside = true;
       }

@@ -8,11 +8,11 @@
 namespace innersphere {
 namespace {
 
-using Moments = Eigen::Matrix<double, 10, 1>;
+using MomentVector = Eigen::Matrix<double, 10, 1>;
 using Matrix10 = Eigen::Matrix<double, 10, 10>;
 
 // The least mass of a sphere, relative to the mass of its cell.
-constexpr double kLeast = 0.01;
+constexpr double kLeastMass = 0.01;
 
 // Relative error of the moments at which the search ends, and the one that is good enough.
 constexpr double kExact = 1e-12;
@@ -26,18 +26,18 @@ struct Frame {
     unit = std::sqrt(trace / (2 * mass.volume));
   }
 
-  Moments of(const Sphere& s) const {
+  MomentVector of(const Sphere& s) const {
     const Eigen::Vector3d x = (Eigen::Vector3d(s.x, s.y, s.z) - origin) / unit;
     const double own = double{s.radius} * s.radius / (5 * unit * unit);
-    Moments m;
+    MomentVector m;
     m << 1, x, x.cwiseAbs2().array() + own, x[0] * x[1], x[1] * x[2], x[2] * x[0];
     return m;
   }
 
-  Moments of(const MassProperties& mass) const {
+  MomentVector of(const MassProperties& mass) const {
     const Mat3d& i = mass.inertia;
     const double half = (i[0] + i[4] + i[8]) / 2, scale = 1 / (mass.volume * unit * unit);
-    Moments m;
+    MomentVector m;
     m << 1, 0, 0, 0, scale * (half - i[0]), scale * (half - i[4]), scale * (half - i[8]), -scale * i[1],
         -scale * i[5], -scale * i[2];
     return m;
@@ -56,29 +56,29 @@ std::vector<float> findMassWeights(const std::vector<Sphere>& spheres,
                                    const std::vector<double>& cell_volumes, const MassProperties& solid) {
   const Frame frame(solid);
   if (!(frame.unit > 0) || !std::isfinite(frame.unit)) return {};
-  const Moments wanted = frame.of(solid);
-  std::vector<Moments> moments;
+  const MomentVector wanted = frame.of(solid);
+  std::vector<MomentVector> moments;
   moments.reserve(spheres.size());
   for (const Sphere& s : spheres) moments.push_back(frame.of(s));
 
-  Moments y = Moments::Zero();
-  const auto missing = [&](const Moments& at, Matrix10* slope) {
-    Moments rest = wanted;
+  MomentVector y = MomentVector::Zero();
+  const auto missing = [&](const MomentVector& at, Matrix10* slope) {
+    MomentVector rest = wanted;
     if (slope) slope->setZero();
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       const double cell = cell_volumes[i] / solid.volume, change = 1 + moments[i].dot(at);
-      rest -= cell * std::max(kLeast, change) * moments[i];
-      if (slope && change > kLeast) *slope += cell * moments[i] * moments[i].transpose();
+      rest -= cell * std::max(kLeastMass, change) * moments[i];
+      if (slope && change > kLeastMass) *slope += cell * moments[i] * moments[i].transpose();
     }
     return rest;
   };
   Matrix10 slope;
   for (int step = 0; step < 50; ++step) {
-    const Moments rest = missing(y, &slope);
+    const MomentVector rest = missing(y, &slope);
     if (rest.norm() < kExact) break;
     Eigen::CompleteOrthogonalDecomposition<Matrix10> solver;
     solver.setThreshold(1e-10);
-    const Moments change = solver.compute(slope).solve(rest);
+    const MomentVector change = solver.compute(slope).solve(rest);
     double part = 1;
     while (part > 1e-3 && missing(y + part * change, nullptr).norm() >= rest.norm()) part /= 2;
     if (part <= 1e-3) break;
@@ -90,7 +90,8 @@ std::vector<float> findMassWeights(const std::vector<Sphere>& spheres,
   weights.reserve(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double ball = 4.0 / 3.0 * std::numbers::pi * std::pow(double{spheres[i].radius}, 3);
-    weights.push_back(static_cast<float>(cell_volumes[i] * std::max(kLeast, 1 + moments[i].dot(y)) / ball));
+    weights.push_back(
+        static_cast<float>(cell_volumes[i] * std::max(kLeastMass, 1 + moments[i].dot(y)) / ball));
   }
   return weights;
 }

@@ -13,7 +13,6 @@
 namespace innersphere {
 namespace {
 
-constexpr double kBallVolume = 4.0 / 3.0 * std::numbers::pi;
 constexpr double kSamples = 1 << 20;
 constexpr std::size_t kBins = kOverlapBins.size() - 1;
 constexpr std::size_t kPosesPerBin = 8;
@@ -22,8 +21,8 @@ constexpr std::size_t kPosesPerBin = 8;
 constexpr std::size_t kStride = 16;
 
 // Overlaps, as fractions of the solid, that are looked for.
-constexpr double kLeast = 0.002;
-constexpr double kMost = 0.45;
+constexpr double kLeastOverlap = 0.002;
+constexpr double kMostOverlap = 0.45;
 
 struct Trial {
   Pose pose;
@@ -134,7 +133,8 @@ OverlapErrors findOverlapErrors(const Container& container, std::span<const Ball
   std::vector<Trial> trials(kBins * kPosesPerBin);
   tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
     const std::size_t bin = i / kPosesPerBin;
-    const double low = std::max(kOverlapBins[bin], kLeast), high = std::min(kOverlapBins[bin + 1], kMost);
+    const double low = std::max(kOverlapBins[bin], kLeastOverlap),
+                 high = std::min(kOverlapBins[bin + 1], kMostOverlap);
     const double part = (static_cast<double>(i % kPosesPerBin) + 0.5) / kPosesPerBin;
     trials[i] = findTrial(voxels, centre_of_mass, i, low * std::pow(high / low, part));
   });

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "innersphere/error.hpp"
+#include "packer/ball.hpp"
 #include "packer/cell_volumes.hpp"
 #include "packer/container.hpp"
 #include "packer/empty_parts.hpp"
@@ -21,8 +21,6 @@
 
 namespace innersphere {
 namespace {
-
-constexpr double kBallVolume = 4.0 / 3.0 * std::numbers::pi;
 
 // A solid filled to this fraction counts as full: a ball, after its first sphere.
 constexpr double kFull = 1 - 1e-6;

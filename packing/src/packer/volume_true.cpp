@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "packer/ball.hpp"
 
 namespace innersphere {
 namespace {
-
-constexpr double kBallVolume = 4.0 / 3.0 * std::numbers::pi;
 
 // Balls with the volumes of their cells fill a solid right in the mean, but not at its surface: a cell
 // reaches to the surface, and the ball in its place does not. Down to about one smallest radius s below the

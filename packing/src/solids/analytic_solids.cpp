@@ -66,9 +66,9 @@ Vec3d withLength(const Vec3d& v, double length, const Vec3d& fallback) {
   return n > 0 ? (length / n) * v : length * fallback;
 }
 
-class Ball : public AnalyticSolid {
+class BallSolid : public AnalyticSolid {
  public:
-  Ball(const std::string& name, double r) : AnalyticSolid(name, {r, r, r}, massOf(r)), radius_(r) {}
+  BallSolid(const std::string& name, double r) : AnalyticSolid(name, {r, r, r}, massOf(r)), radius_(r) {}
   bool contains(const Vec3d& p) const override { return norm(p) < radius_; }
 
  protected:
@@ -198,7 +198,7 @@ class Cylinder : public AnalyticSolid {
 
 std::unique_ptr<Solid> ballSolid(const std::string& name, double radius) {
   requirePositive("ball", "radius", radius);
-  return std::make_unique<Ball>(name, radius);
+  return std::make_unique<BallSolid>(name, radius);
 }
 
 std::unique_ptr<Solid> boxSolid(const std::string& name, const Vec3d& size) {

@@ -23,10 +23,16 @@ btCollisionObjectWrapper wrapped(const btCollisionObject& object) {
   return {nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1};
 }
 
-/// Null if the pair is none of ours, or new.
+/// Null if the pair is none of ours, or Bullet has not asked for it yet.
 ContactPair* contactPairOf(const btBroadphasePair& pair) {
   auto* algorithm = dynamic_cast<PairAlgorithm*>(pair.m_algorithm);
   return algorithm == nullptr ? nullptr : &algorithm->pair();
+}
+
+/// A pair of the table, which reads it: with a thousand bodies that takes all threads.
+ContactPair* listedPairOf(const btBroadphasePair& pair) {
+  ContactPair* ours = contactPairOf(pair);
+  return ours == nullptr || ours->body_a == nullptr ? nullptr : ours;
 }
 
 /// A pair of packings that is new in this step takes part in its update.
@@ -52,6 +58,7 @@ void collide(btCollisionDispatcher& dispatcher, PairTable& table, btBroadphasePa
     if (ours[i] == nullptr) dispatcher.getNearCallback()(pairAt(pairs, i), dispatcher, info);
   }
   table.finishUpdate();
+  table.compareBodies();
   done.resize(ours.size());
   inParallel(ours.size(),
              [&](std::size_t i) { done[i] = ours[i] != nullptr && table.isDone(*ours[i], info.m_timeStep); });
@@ -77,9 +84,9 @@ bool collideBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pai
   PairTable& table = registration->table();
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   ours.resize(static_cast<std::size_t>(all.size()));
-  inParallel(ours.size(), [&](std::size_t i) { ours[i] = contactPairOf(pairAt(all, i)); });
+  inParallel(ours.size(), [&](std::size_t i) { ours[i] = listedPairOf(pairAt(all, i)); });
   for (std::size_t i = 0; i < ours.size(); ++i) {
-    if (ours[i] != nullptr && ours[i]->body_a != nullptr) continue;
+    if (ours[i] != nullptr) continue;
     announce(dispatcher, table, pairAt(all, i));
     ours[i] = contactPairOf(pairAt(all, i));
   }

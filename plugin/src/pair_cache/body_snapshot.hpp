@@ -29,6 +29,9 @@ class BodySnapshot {
   bool isAsTaken(const btCollisionObjectWrapper& wrapper) const;
   /// The same, for where the body is and how fast: its shape may be a child of a compound.
   bool isAsTaken() const { return isAsTaken(object_->getWorldTransform()); }
+  /// Notes that, for all pairs of the body.
+  void compare() { changed_ = !isAsTaken(); }
+  bool hasChanged() const { return changed_; }
 
   const btCollisionObject* object() const { return object_; }
   const btTransform& transform() const { return transform_; }
@@ -59,6 +62,7 @@ class BodySnapshot {
   Motion motion_;
   double travel_ = 0;
   bool active_ = true;
+  bool changed_ = false;  ///< found by compare()
   std::uint32_t changes_ = 0;
 };
 

@@ -43,11 +43,15 @@ class PairList {
   template <typename Visit>
   void forEachInParallel(const Visit& visit) const {
     inParallel(pairs_.size(), [&](std::size_t i) {
+      // They lie scattered in memory, and most of them are only looked at.
+      if (i + kAhead < pairs_.size()) __builtin_prefetch(pairs_[i + kAhead]);
       if (pairs_[i] != nullptr) visit(*pairs_[i]);
     });
   }
 
  private:
+  static constexpr std::size_t kAhead = 8;
+
   void closeGaps() {
     pairs_.erase(std::remove(pairs_.begin(), pairs_.end(), nullptr), pairs_.end());
     for (std::size_t i = 0; i < pairs_.size(); ++i) pairs_[i]->list_index = i;

@@ -15,8 +15,10 @@ bool isWhereItWas(const PairSide& side, const BodySnapshot& body, bool published
   return side.isFor(wrapper) && place == wrapper.getWorldTransform();
 }
 
-bool isAsTaken(const PairSide& side, const BodySnapshot& body, const btCollisionObjectWrapper& wrapper) {
-  if (side.isWhole()) return body.isAsTaken(wrapper);
+/// `plain`: no child of a compound. Most pairs are that, and then the side, which is far away, is not read.
+bool isAsTaken(bool plain, const PairSide& side, const BodySnapshot& body,
+               const btCollisionObjectWrapper& wrapper) {
+  if (plain) return body.isAsTaken(wrapper);
   return side.isFor(wrapper) && side.transform == wrapper.getWorldTransform() && body.isAsTaken();
 }
 
@@ -203,14 +205,19 @@ void PairTable::finishUpdate() {
   finish();
 }
 
+void PairTable::compareBodies() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  body_list_.forEachInParallel([](BodySnapshot& body) { body.compare(); });
+}
+
 bool PairTable::isDone(const ContactPair& pair, btScalar time_step) const {
-  return isFresh(pair, time_step) && pair.body_a->isAsTaken() && pair.body_b->isAsTaken();
+  return isFresh(pair, time_step) && !pair.body_a->hasChanged() && !pair.body_b->hasChanged();
 }
 
 bool PairTable::isDone(const ContactPair& pair, const btCollisionObjectWrapper& a,
                        const btCollisionObjectWrapper& b, btScalar time_step, btScalar separation) const {
-  return isFresh(pair, time_step) && pair.separation == separation && isAsTaken(pair.a, *pair.body_a, a) &&
-         isAsTaken(pair.b, *pair.body_b, b);
+  return isFresh(pair, time_step) && pair.separation == separation &&
+         isAsTaken(pair.plain, pair.a, *pair.body_a, a) && isAsTaken(pair.plain, pair.b, *pair.body_b, b);
 }
 
 std::vector<PairOverlap> PairTable::overlaps() {

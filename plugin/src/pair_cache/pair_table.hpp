@@ -59,6 +59,8 @@ class PairTable {
   void beginUpdate(btScalar time_step);
   /// Waits for it.
   void finishUpdate();
+  /// Compares all bodies with what they were in the last update: for the isDone() that follow.
+  void compareBodies();
   /// Whether the last update has published the contacts of a pair of whole bodies as they are now. Does not
   /// lock the table: for one that nobody else uses meanwhile.
   bool isDone(const ContactPair& pair, btScalar time_step) const;
