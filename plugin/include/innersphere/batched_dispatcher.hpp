@@ -1,4 +1,5 @@
-// A dispatcher that finds the overlaps of all packings at once, before Bullet asks for them one by one.
+// Declares a dispatcher that finds the overlaps of all packings at once, before Bullet asks for them one by
+// one.
 #pragma once
 
 #include <type_traits>
@@ -20,7 +21,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 bool collideBatch(btCollisionDispatcher& dispatcher, btOverlappingPairCache& pairs,
                   const btDispatcherInfo& info, bool as_bullet_does);
 
-/// A dispatcher to use in place of btCollisionDispatcher, or of the one that is given as Base, for example
+/// Takes the place of btCollisionDispatcher, or of the one that is given as Base, for example
 /// btCollisionDispatcherMt. Register PackingCollisionAlgorithm with it as with any other.
 ///
 /// It searches all pairs of packings of a step together, in one shared query. A device works on it while

@@ -1,5 +1,5 @@
-// From the triangles of a Bullet program to a model for PackingShape. A program that calls modelFrom() has to
-// link InnerSphere::packer, which the plug-in itself does not need.
+// Turns the triangles of a Bullet program into a model for PackingShape. A program that calls modelFrom() has
+// to link InnerSphere::packer, which the plug-in itself does not need.
 #pragma once
 
 #include <memory>

@@ -9,7 +9,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// What a ContactDrawer draws.
+/// Says what a ContactDrawer draws.
 struct ContactDrawerOptions {
   /// Whether the points of each patch of contact are joined by blue lines.
   bool patches = true;

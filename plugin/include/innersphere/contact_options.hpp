@@ -1,4 +1,4 @@
-// How overlap becomes contact: the options of a registration, of a shape and of a pair.
+// Says how overlap becomes contact: the options of a registration, of a shape and of a pair.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace innersphere {
 
-/// How bodies in contact push each other.
+/// Says how bodies in contact push each other.
 enum class Response {
   /// The solver gets contact points with stiffness and damping: an implicit spring, which is stable at any
   /// stiffness and step.
@@ -23,7 +23,7 @@ enum class Response {
   penalty
 };
 
-/// What has to be done for a pair in a step, from the least work to the most.
+/// Says what has to be done for a pair in a step, from the least work to the most.
 enum class Reuse : std::uint8_t {
   idle,       ///< The bodies stay apart: nothing is done.
   transport,  ///< The contacts are moved along with the bodies.
@@ -31,7 +31,7 @@ enum class Reuse : std::uint8_t {
   search      ///< Contact is searched for.
 };
 
-/// Options of a registration, which hold for every pair of the dispatcher, or of a shape: see
+/// Holds the options of a registration, which hold for every pair of the dispatcher, or of a shape: see
 /// PackingShape::setContactOptions().
 ///
 /// Friction, restitution, rolling and spinning friction are the bodies' own, as Bullet combines them. Bodies

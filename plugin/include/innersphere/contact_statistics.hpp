@@ -1,4 +1,4 @@
-// How much of the work on contacts was saved from step to step.
+// Counts how much of the work on contacts was saved from step to step.
 #pragma once
 
 #include <cstddef>

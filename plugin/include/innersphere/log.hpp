@@ -1,4 +1,4 @@
-// Where the plug-in says what it cannot throw, because it runs inside Bullet's callbacks.
+// Lets the plug-in say what it cannot throw, because it runs inside Bullet's callbacks.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// The narrow phase for packings: one line to add to a Bullet program.
+// Adds the narrow phase for packings to a Bullet program, with one line.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>

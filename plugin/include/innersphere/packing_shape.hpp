@@ -1,4 +1,4 @@
-// The Bullet collision shape of a packed solid.
+// Declares the Bullet collision shape of a packed solid.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A moving non-convex solid. Register PackingCollisionAlgorithm with the dispatcher, or bodies fall through.
+/// Is a non-convex solid that may move. Register PackingCollisionAlgorithm with the dispatcher, or bodies
+/// fall through.
 ///
 /// The frame of the shape is that of its body. Bullet's dynamic bodies have their centre of mass at the
 /// origin of their frame, and turn as if its axes were principal axes of inertia. So the shape has the
@@ -23,7 +24,7 @@ class PackingShape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
-  /// Which frame a shape, and so its body, has.
+  /// Says which frame a shape, and so its body, has.
   enum class Frame {
     /// The origin is at the centre of mass, and the axes are principal axes of inertia: for dynamic bodies.
     principal,

@@ -1,4 +1,4 @@
-// What bodies in contact share and how they push each other, for haptics, sound and logging.
+// Tells what bodies in contact share and how they push each other, for haptics, sound and logging.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A pair of bodies, or of children of compounds, that touch. Vectors have the axes of the world.
+/// Describes a pair of bodies, or of children of compounds, that touch. Vectors have the axes of the world.
 struct PairOverlap {
   /// The body with the packing; the first of two packings.
   const btCollisionObject* a = nullptr;
