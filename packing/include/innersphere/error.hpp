@@ -29,7 +29,8 @@ enum class ErrorCode {
 /// Returns the name of a code as written in this header, for messages and machine-readable output.
 const char* toString(ErrorCode code);
 
-/// Is thrown for bad input. what() is one sentence for people: what is wrong, where, and what to do about it.
+/// This is thrown for bad input. what() is one sentence for people: what is wrong, where, and what to do
+/// about it.
 class Error : public std::runtime_error {
  public:
   /// Makes an error whose what() returns `message`.

@@ -13,8 +13,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Is a non-convex solid that may move. Register PackingCollisionAlgorithm with the dispatcher, or bodies
-/// fall through.
+/// This is a non-convex solid that may move. Register PackingCollisionAlgorithm with the dispatcher, or
+/// bodies fall through.
 ///
 /// The frame of the shape is that of its body. Bullet's dynamic bodies have their centre of mass at the
 /// origin of their frame, and turn as if its axes were principal axes of inertia. So the shape has the
