@@ -1,4 +1,4 @@
-// The tuned numbers of the contact geometry, each with its unit and its reason.
+// Holds the tuned numbers of the contact geometry, each with its unit and its reason.
 //
 // Cosines compare unit vectors: a larger cosine asks for a smaller angle. Numbers in spheres, spacings,
 // separations or lengths are fractions of that length, so that nothing depends on the size of a solid.
@@ -75,12 +75,13 @@ constexpr btScalar kSlopeBeside = btScalar(0.1);
 constexpr btScalar kSteepSlope = btScalar(0.5);
 /// In ways to a top: a top that is guessed this near to one that was reached is that one.
 constexpr btScalar kSameHill = btScalar(0.5);
-/// In separations: the same for tops that are close by.
+/// In separations: a top that is guessed this near to one that was reached is that one, too, however short
+/// the way to it.
 constexpr btScalar kSameTop = btScalar(0.1);
 
 // --- Crossing edges --------------------------------------------------------------------------------------
 
-/// How often edges are looked for at most, each time where those before would cross.
+/// Edges are looked for at most so often, each time where those before would cross.
 constexpr int kEdgeLooks = 4;
 /// Sine, 5 degrees: edges that are closer to parallel do not cross at a place.
 constexpr btScalar kCrossingSine = btScalar(0.087);
@@ -96,13 +97,15 @@ constexpr btScalar kShallow = btScalar(0.01);
 
 // --- Selection of samples --------------------------------------------------------------------------------
 
-/// Directions in which the outermost spheres of a patch are samples: an octagon spans what the patch spans.
+/// This is the number of directions in which the outermost spheres of a patch are samples: an octagon spans
+/// what the patch spans.
 constexpr int kOutermostDirections = 8;
-/// Sectors of the patch in which the spheres that stand out most of each solid are samples.
+/// This is the number of sectors of the patch in which the spheres that stand out most of each solid are
+/// samples.
 constexpr std::size_t kSectors = 8;
-/// How many of the spheres that face the other solid most are samples.
+/// This is how many of the spheres that face the other solid most are samples.
 constexpr std::size_t kMostFacing = 6;
-/// How many others are samples, evenly spaced in the list.
+/// This is how many others are samples, evenly spaced in the list.
 constexpr std::size_t kEvenlySpaced = 6;
 /// In spacings: a sphere that is this much less deep than the deepest only touches as it was enlarged.
 constexpr btScalar kLessDeep = 2;
