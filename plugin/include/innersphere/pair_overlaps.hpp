@@ -42,7 +42,7 @@ struct PairOverlap {
 /// Returns all pairs with contacts, as they were when the last step looked for them; forces are those that
 /// the solver found then. They come in the order in which their boxes met. It costs a volume query for each
 /// pair, except with Response::penalty, which knows its volumes. Throws Error bad_argument if
-/// PackingCollisionAlgorithm is not registered with the dispatcher.
+/// PackingCollisionAlgorithm is not registered with the dispatcher, and what QueryContext::run() throws.
 std::vector<PairOverlap> pairOverlaps(btDispatcher* dispatcher);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
