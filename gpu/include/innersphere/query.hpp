@@ -103,9 +103,9 @@ class QueryContext {
   /// Collides one pair and returns its sums. Contacts and pairs are left out, even if they are wanted.
   Overlap overlap(const PairQuery& query, const QueryOptions& options = {});
 
-  /// run() and overlap() in halves, so that the caller can do other things while a device works. start()
-  /// copies what it needs of the queries and returns; wait() gives what run() would, to the bit. On the CPU
-  /// start() does all the work. A context has one query under way, and models must live until wait(). All
+  /// Starts run(), whose second half is wait(), so that the caller can do other things while a device works.
+  /// It copies what it needs of the queries and returns; wait() gives what run() would, to the bit. On the
+  /// CPU start() does all the work. A context has one query under way, and models must live until wait(). All
   /// errors are thrown by wait(), also those of a second start() or of a wait() without a start(). Long
   /// batches (some 2,000 pairs of 60,000 spheres or 32,000 of small packings) go to the device in parts, of
   /// which later ones start in ready() or wait().

@@ -8,7 +8,7 @@
 
 namespace innersphere {
 
-/// A sphere with more partners than that has them summed in so many partial sums.
+/// A sphere with more partners than this has them summed in so many partial sums.
 constexpr unsigned kPartialSums = 256;
 
 /// Names an overlapping pair of spheres of one query of a batch.

@@ -53,7 +53,7 @@ struct CellWindow {
   }
 };
 
-/// Works on any processor.
+/// Works on any processor; the other classes like it need what they are named after.
 struct LanesAny {
   /// Loads kLanes spheres.
   static void load(const Sphere* spheres, const std::uint32_t* places, const Columns& to) {
@@ -243,7 +243,7 @@ struct LanesAvx2 : LanesAny {
 
   struct Kept {
     explicit Kept(std::uint32_t kept) : bits(kept) {}
-    /// There must be room for kLanes.
+    /// Copies the items that are kept, in their order. There must be room for kLanes.
     template <typename T>
     INNERSPHERE_AVX2 void copy(const T* from, T* to) const {
       keep(bits & 255u, from, to);
@@ -327,7 +327,7 @@ struct LanesAvx512 : LanesAny {
 
   struct Kept {
     explicit Kept(std::uint32_t bits) : kept(static_cast<__mmask16>(bits)) {}
-    /// There must be room for kLanes.
+    /// Copies the items that are kept, in their order. There must be room for kLanes.
     template <typename T>
     INNERSPHERE_AVX512 void copy(const T* from, T* to) const {
       _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(kept, _mm512_loadu_si512(from)));

@@ -54,7 +54,7 @@ struct QuerySpheres {
   bool hasRoom() const { return count + core::kClusterSize <= kSize; }
   core::Lookup lookup(std::uint32_t k) const { return {{x[k], y[k], z[k]}, reach[k], smallest[k]}; }
 
-  /// What core::makeLookup does, for the spheres of a cluster.
+  /// Does what core::makeLookup() does, for the spheres of a cluster.
   template <typename Lanes>
   void add(const core::Traversal& traversal, const core::Cluster& cluster) {
     constexpr std::uint32_t kAll = core::kClusterSize;

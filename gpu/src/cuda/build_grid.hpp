@@ -129,7 +129,8 @@ BuildStatus sortLists(const BuildPlan& plan, const GridArrays& arrays, BuildScra
 void launchSorted(const BuildPlan& plan, const GridArrays& arrays, const BuildStatus& status,
                   BuildScratch& scratch, cudaStream_t stream);
 
-/// Behind the lists: pairs of all spheres, and of none for steps that go beyond the end.
+/// Returns how many entries follow the lists: pairs of all spheres, and of none for steps that go beyond the
+/// end.
 __host__ __device__ inline std::size_t entriesOfAll(std::uint32_t spheres) {
   return core::padded(spheres) / 2 + 4;
 }

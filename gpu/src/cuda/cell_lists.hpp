@@ -131,7 +131,7 @@ inline __device__ void fillEntryOfAll(const core::GridPlan& grid, const GridArra
   arrays.entries[listed / 2 + i] = entriesOf(grid, arrays, frameOfAll(grid.view), {first, first + 1});
 }
 
-/// The cells of the table, and the header: by all threads of a launch.
+/// Fills the cells of the table, and the header, with all threads of a launch.
 template <typename Cells>
 __device__ void finishGrid(const BuildPlan& plan, const GridArrays& arrays, const Cells& cells,
                            const BuildStatus& status, std::uint64_t thread, std::uint64_t threads) {

@@ -29,7 +29,8 @@ class ClusterTree {
   }
 
  private:
-  /// `first` and `end` are numbers of clusters.
+  /// Visits the balls of one level, and what is below those that meet. `first` and `end` are numbers of
+  /// clusters.
   template <typename Meeting, typename F>
   bool visit(std::size_t level, std::size_t first, std::size_t end, const Meeting& meeting,
              const F& f) const {

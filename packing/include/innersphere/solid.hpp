@@ -15,9 +15,9 @@ struct ClosestPoint {
   Vec3d point{};        ///< The nearest point [m].
 };
 
-/// Can be packed: it is bounded and has a distance to its surface. Implementations are immutable and safe to
-/// query from several threads at once. Only distances from the inside need to be exact; outside, a lower
-/// bound is enough.
+/// This is a bounded solid with a distance to its surface. Implementations are immutable and safe to query
+/// from several threads at once. Only distances from the inside need to be exact; outside, a lower bound is
+/// enough.
 class Solid {
  public:
   virtual ~Solid() = default;

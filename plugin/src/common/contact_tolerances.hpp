@@ -63,9 +63,10 @@ constexpr btScalar kOneNormal = btScalar(1e-3);
 constexpr btScalar kConforming = btScalar(0.3);
 /// Cosine, 60 degrees: a surface that leans more from the line has no usable slope.
 constexpr btScalar kUsableCosine = btScalar(0.5);
-/// Steps of an ascent to a top, at most: each is one of Newton's method, whose error falls quadratically.
+/// An ascent to a top takes so many steps at most: each is one of Newton's method, whose error falls
+/// quadratically.
 constexpr int kAscentSteps = 8;
-/// Steps of the other samples, which only have to get nearer.
+/// The other samples, which only have to get nearer, take so many.
 constexpr int kAscentStepsBeside = 2;
 /// Ratio of two steps: the estimate of how fast the slope falls is not believed below this part of the last.
 constexpr btScalar kSlowestFall = btScalar(0.1);
@@ -116,7 +117,8 @@ constexpr btScalar kLessDeep = 2;
 constexpr btScalar kKeepSpan = btScalar(1.3);
 /// In spacings: a point of the step before is kept until another one is this much deeper.
 constexpr btScalar kKeepDepth = btScalar(1e-3);
-/// In the depth above: what a point at the rim of the patch may lack, as flat faces are as deep everywhere.
+/// In the depth above: a point at the rim of the patch may lack this much, as flat faces are as deep
+/// everywhere.
 constexpr btScalar kPreferRim = btScalar(0.5);
 /// In spacings: a point that is less deep than the deepest by this much is worth 1/e of it.
 constexpr btScalar kWorthFalls = btScalar(0.1);
@@ -124,7 +126,7 @@ constexpr btScalar kWorthFalls = btScalar(0.1);
 constexpr btScalar kSameManifoldCosine = btScalar(0.966);
 /// More manifolds of one pair than this are merged.
 constexpr std::size_t kMaxManifolds = 8;
-/// In depths: how far around a crossing edges have sunk in.
+/// In depths: edges have sunk into each other this far around their crossing.
 constexpr btScalar kSunkAround = 3;
 
 // --- Patches by volume -------------------------------------------------------------------------------------
@@ -135,13 +137,13 @@ constexpr btScalar kThinPatch = btScalar(1e-4);
 
 // --- Shapes that are no packings -------------------------------------------------------------------------
 
-/// In search radii: what a place may lack to be the outermost of a shape, for rounding.
+/// In search radii: a place that lacks no more than this is the outermost of a shape, for rounding.
 constexpr btScalar kOutermostTolerance = btScalar(1e-3);
 /// Cosine, 30 degrees: directions in which one sphere meets a mesh that are closer are one contact.
 constexpr btScalar kSameDirectionCosine = btScalar(0.866);
 /// In median radii: nearest points of triangles that are closer are the same place of a mesh.
 constexpr btScalar kSamePlace = btScalar(1e-4);
-/// In sizes of the contact: how far around it the triangles of a mesh are kept for the next steps.
+/// In sizes of the contact: the triangles of a mesh are kept this far around it for the next steps.
 constexpr btScalar kKeptAround = btScalar(0.1);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
