@@ -1,4 +1,4 @@
-// Overlap queries within a limit of time or work, which say how exact they are.
+// Runs overlap queries within a limit of time or work, and says how exact they are.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace innersphere {
 
-/// What a query may cost. If both limits are set, both hold.
+/// Says what a query may cost. If both limits are set, both hold.
 struct QueryBudget {
   /// The time by the caller's clock [s]. 0: no limit. It is predicted from earlier queries and may be
   /// exceeded.
@@ -17,7 +17,7 @@ struct QueryBudget {
   std::uint64_t spheres = 0;
 };
 
-/// The result of a query within a budget.
+/// Holds the result of a query within a budget.
 struct BoundedOverlap {
   Overlap overlap;             ///< The sums.
   std::uint32_t prefix_a = 0;  ///< The number of spheres of A that were used.
@@ -34,17 +34,18 @@ struct BoundedOverlap {
 /// one query to the next. Use one object for each pair of bodies.
 class BoundedQuery {
  public:
-  /// The context must outlive this object.
+  /// Makes an object that knows nothing of times yet. The context must outlive it.
   explicit BoundedQuery(QueryContext& context) : context_(context) {}
 
   /// Runs the query with each step, which builds all grids and compares the steps. Give it a pose where the
   /// bodies overlap. Without a warm-up each step counts as twice as slow as the one before until it was
-  /// tried, and the first query with a step also builds its grids.
+  /// tried, and the first query with a step also builds its grids. Throws as QueryContext::run().
   void warmUp(const PairQuery& query, const QueryOptions& options = {});
 
   /// Runs the query with the longest step that the budget allows, and with the shortest one in any case. The
-  /// prefixes of the query are upper bounds. Throws as QueryContext::run(), and bad_argument for seconds that
-  /// are negative or not a number.
+  /// prefixes of the query are upper bounds. Without a warm-up the first query with a limit of time takes the
+  /// shortest step. Throws as QueryContext::run(), and bad_argument for seconds that are negative or not a
+  /// number.
   BoundedOverlap overlap(const PairQuery& query, const QueryBudget& budget, const QueryOptions& options = {});
 
  private:

@@ -1,4 +1,4 @@
-// A packing made ready for queries.
+// Declares a packing that is ready for queries.
 #pragma once
 
 #include <cstddef>
@@ -9,20 +9,21 @@
 
 namespace innersphere {
 
-/// Which radii a query uses.
+/// Says which radii a query uses.
 enum class Estimator {
   raw,  ///< The packing's own radii. The gaps between spheres count as empty: volumes are 25 to 70 % low.
-  volume_true  ///< Radii whose volumes sum to the solid's, right in the mean. Raw radii where none are
-               ///< stored.
+  /// Radii whose volumes sum to the solid's, right in the mean. Raw radii where none are stored.
+  volume_true
 };
 
-/// A packing with its hierarchical hash grids, one for each prefix and estimator in use. Bodies of the same
-/// shape share one model. A grid is built by the first query that needs it, on the CPU or the device where
-/// the query runs, and lives as long as the model. All members but update() are safe to call from several
-/// threads at once.
+/// Holds a packing with its hierarchical hash grids, one for each prefix and estimator in use. Bodies of the
+/// same shape share one model. A grid is built by the first query that needs it, on the CPU or the device
+/// where the query runs, and lives as long as the model. All members but update() are safe to call from
+/// several threads at once.
 class CollisionModel {
  public:
-  /// Throws Error if the packing is not valid (see validate()) or has lengths beyond 1e15 m.
+  /// Makes a model of a packing, which it shares. Throws Error: bad_argument for a null pointer, 2^29 spheres
+  /// or more, or lengths beyond 1e15 m, and what validate() throws.
   explicit CollisionModel(std::shared_ptr<const Packing> packing);
   ~CollisionModel();
   CollisionModel(const CollisionModel&) = delete;
@@ -42,7 +43,7 @@ class CollisionModel {
   /// is not positive, lengths beyond 1e15 m), not_finite.
   void update(const Sphere* spheres, std::size_t count);
 
-  struct Impl;  ///< Private to the backends.
+  struct Impl;  ///< This is private to the backends.
   Impl& impl() const { return *impl_; }
 
  private:

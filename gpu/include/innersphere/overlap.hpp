@@ -1,4 +1,4 @@
-// What a query returns.
+// Declares what a query returns.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace innersphere {
 
-/// The overlap of two packings A and B, summed over all pairs of overlapping spheres. Two overlapping spheres
-/// share a lens of volume V. Vectors have the axes of the world. Points are relative to the origin of A,
-/// which is the translation of its placement, so that they keep their digits far from the origin of the
+/// Holds the overlap of two packings A and B, summed over all pairs of overlapping spheres. Two overlapping
+/// spheres share a lens of volume V. Vectors have the axes of the world. Points are relative to the origin of
+/// A, which is the translation of its placement, so that they keep their digits far from the origin of the
 /// world. n is the unit vector from the centre of A's sphere to the centre of B's. Forces push B away; A gets
 /// the opposite.
 struct Overlap {
@@ -27,14 +27,14 @@ struct Overlap {
   std::uint64_t pair_count = 0;  ///< The number of overlapping pairs of spheres.
 };
 
-/// A pair of overlapping spheres, as indices into the two packings.
+/// Names a pair of overlapping spheres, as indices into the two packings.
 struct SpherePair {
-  std::uint32_t a = 0;  ///< sphere of A
-  std::uint32_t b = 0;  ///< sphere of B
+  std::uint32_t a = 0;  ///< The index of the sphere of A.
+  std::uint32_t b = 0;  ///< The index of the sphere of B.
 };
 
-/// What one sphere contributes to an overlap, summed over all its partners in the other body. It has the
-/// frames of Overlap.
+/// Tells what one sphere contributes to an overlap, summed over all its partners in the other body. It has
+/// the frames of Overlap.
 struct SphereContact {
   std::uint32_t sphere = 0;         ///< The index of the sphere in its packing.
   float volume = 0;                 ///< The volume of its lenses [m^3].

@@ -1,11 +1,11 @@
-// Where a packing is in the world.
+// Says where a packing is in the world.
 #pragma once
 
 #include "innersphere/packing.hpp"
 
 namespace innersphere {
 
-/// A similarity transform from the packing's frame to the world: x_world = scale * rotation * x +
+/// This is a similarity transform from the packing's frame to the world: x_world = scale * rotation * x +
 /// translation. The query forms the relative transform of two packings in double precision and goes to single
 /// precision only in the frame of one of them. So results do not get worse far from the world's origin.
 struct Placement {

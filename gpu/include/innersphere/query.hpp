@@ -1,4 +1,4 @@
-// The overlap query, on the CPU or in CUDA.
+// Runs the overlap query, on the CPU or in CUDA.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace innersphere {
 
-/// Where a query runs.
+/// Says where a query runs.
 enum class Backend {
   /// The CPU or, if there is enough work and a device, CUDA. Both give the same results, to the bit.
   automatic,
@@ -20,7 +20,7 @@ enum class Backend {
   cuda,  ///< CUDA. Error no_device if there is none: there is no silent fallback.
 };
 
-/// What is computed. Asking for less costs less.
+/// Says what is computed. Asking for less costs less.
 enum class Want {
   touch,          ///< Whether anything overlaps: pair_count is 0 or 1, all else is zero.
   volume,         ///< The volume, the centroid and pair_count.
@@ -30,7 +30,7 @@ enum class Want {
   pairs           ///< All of Overlap and the overlapping pairs, sorted by (a, b). No contacts.
 };
 
-/// Two bodies to collide.
+/// Names two bodies to collide, and where they are.
 struct PairQuery {
   const CollisionModel* a = nullptr;  ///< The first body. Never null.
   const CollisionModel* b = nullptr;  ///< The second body. Never null; may be the same model.
@@ -47,28 +47,31 @@ struct PairQuery {
   double margin = 0;
 };
 
-/// What a query computes.
+/// Says what a query computes.
 struct QueryOptions {
   Want want = Want::wrench;                      ///< What is not wanted is zero or empty in the result.
   Estimator estimator = Estimator::volume_true;  ///< The radii of both bodies.
 };
 
-/// Results of a batch. Keep the object and pass it again: after warm-up nothing is allocated.
+/// Holds the results of a batch. Keep the object and pass it again: after warm-up nothing is allocated.
 struct QueryResult {
   std::vector<Overlap> overlaps;  ///< The overlap of each query, in their order.
 
-  /// Lists for all queries. Those of query i are items[first[i]] to items[first[i + 1]], without the last.
+  /// Holds the lists of all queries. Those of query i are items[first[i]] to items[first[i + 1]], without the
+  /// last.
   template <typename T>
   struct Ranges {
-    std::vector<T> items;            ///< of all queries, one after the other
-    std::vector<std::size_t> first;  ///< where each query begins, and the end
+    /// The items of all queries, one after the other.
+    std::vector<T> items;
+    /// Where the items of each query begin, and at last the end of all: one more than there are queries.
+    std::vector<std::size_t> first;
   };
   Ranges<SpherePair> pairs;          ///< The pairs, with Want::pairs.
   Ranges<SphereContact> contacts_a;  ///< Spheres of A that touch, by rising index.
   Ranges<SphereContact> contacts_b;  ///< Spheres of B that touch, with Want::contacts.
 };
 
-/// How queries run.
+/// Says how queries run.
 struct QueryContextOptions {
   Backend backend = Backend::automatic;  ///< Where queries run.
   int threads = 0;  ///< The threads of the CPU backend. 0: all cores. The result does not depend on it.
@@ -83,12 +86,13 @@ bool cudaAvailable();
 /// threads and any place in a batch. Without a margin, swapping A and B negates force and area exactly.
 class QueryContext {
  public:
-  /// Throws Error no_device if CUDA was asked for by name and there is none.
+  /// Makes a context. Throws Error: no_device if CUDA was asked for by name and there is none, bad_argument
+  /// for a negative number of threads.
   explicit QueryContext(const QueryContextOptions& options = {});
   ~QueryContext();
   /// Takes what the other context holds, which can then only be destroyed or assigned to.
   QueryContext(QueryContext&&) noexcept;
-  /// The same.
+  /// Takes what the other context holds, as the constructor does, and frees its own.
   QueryContext& operator=(QueryContext&&) noexcept;
 
   /// Collides `count` pairs. Throws Error: bad_argument (a null model, a rotation that is not one, a scale or
@@ -99,25 +103,26 @@ class QueryContext {
   /// Collides one pair and returns its sums. Contacts and pairs are left out, even if they are wanted.
   Overlap overlap(const PairQuery& query, const QueryOptions& options = {});
 
-  /// run() and overlap() in halves, so that the caller can do other things while a device works. start()
-  /// copies what it needs of the queries and returns; wait() gives what run() would, to the bit. On the CPU
-  /// start() does all the work. A context has one query under way, and models must live until wait(). All
+  /// Starts run(), whose second half is wait(), so that the caller can do other things while a device works.
+  /// It copies what it needs of the queries and returns; wait() gives what run() would, to the bit. On the
+  /// CPU start() does all the work. A context has one query under way, and models must live until wait(). All
   /// errors are thrown by wait(), also those of a second start() or of a wait() without a start(). Long
   /// batches (some 2,000 pairs of 60,000 spheres or 32,000 of small packings) go to the device in parts, of
   /// which later ones start in ready() or wait().
   void start(const PairQuery* queries, std::size_t count, const QueryOptions& options);
-  /// The second half of run().
+  /// Waits for what start() began and fills in `result` as run() does. Throws what run() would throw, or what
+  /// start() met.
   void wait(QueryResult& result);
-  /// The first half of overlap().
+  /// Starts overlap(), as start() does run().
   void startOverlap(const PairQuery& query, const QueryOptions& options = {});
-  /// The second half of overlap().
+  /// Waits for what startOverlap() began and returns its sums. Throws as wait() does.
   Overlap waitOverlap();
 
   /// Returns true if wait() will return at once. With contacts or pairs the device works in two steps, and
   /// the second step begins in the first call of ready() or wait() after the first step.
   bool ready();
 
-  /// Returns the backend that the last run used: cpu or cuda.
+  /// Returns the backend that the last run used, cpu or cuda; cpu before the first.
   Backend lastBackend() const;
 
   /// Returns how long the device worked on the last run, by its own clock [s]. 0 if the run was on the CPU or

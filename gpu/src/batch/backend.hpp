@@ -1,4 +1,4 @@
-// The seam between the query and the hardware that it runs on.
+// Declares the seam between the query and the hardware that it runs on.
 #pragma once
 
 #include <cstddef>
@@ -19,13 +19,13 @@ class QueryBackend {
   /// Begins a batch. `queries` must live until finish().
   virtual void start(const std::vector<PreparedQuery>& queries, Want want) = 0;
 
-  /// True if finish() need not wait. Throws what finish() would.
+  /// Returns true if finish() need not wait. Throws what finish() would.
   virtual bool ready() = 0;
 
   /// Waits for the batch. Leaves `result` as it was where it throws; the next batch may begin in either case.
   virtual void finish(QueryResult& result) = 0;
 
-  /// The time that a device worked on the last batch [s]; 0 if it is not measured.
+  /// Returns the time that a device worked on the last batch [s]; 0 if it is not measured.
   virtual double kernelTime() const { return 0; }
 };
 

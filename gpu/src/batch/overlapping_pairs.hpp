@@ -1,4 +1,4 @@
-// Overlapping pairs of spheres.
+// Declares lists of overlapping pairs of spheres.
 #pragma once
 
 #include <algorithm>
@@ -8,24 +8,25 @@
 
 namespace innersphere {
 
-/// A sphere with more partners than that has them summed in so many partial sums.
+/// A sphere with more partners than this has them summed in so many partial sums.
 constexpr unsigned kPartialSums = 256;
 
-/// An overlapping pair of spheres of one query of a batch.
+/// Names an overlapping pair of spheres of one query of a batch.
 struct OverlappingPair {
   std::uint32_t query;
   std::uint32_t a;
   std::uint32_t b;
 };
 
-/// What a pair adds to the contacts of both of its spheres, laid out as a SphereContact is, with zero in the
-/// place of the sphere.
+/// Holds what a pair adds to the contacts of both of its spheres, laid out as a SphereContact is, with zero
+/// in the place of the sphere.
 struct alignas(64) ContactValues {
   static constexpr std::size_t kVolume = 1, kMoment = 2, kArea = 5, kCount = 8;
   double of[kCount];
 };
 
-/// Overlapping pairs in no particular order. The first `count` are valid, the rest is room for the next run.
+/// Holds overlapping pairs in no particular order. The first `count` are valid, the rest is room for the next
+/// run.
 struct OverlappingPairs {
   std::vector<OverlappingPair> items;
   std::vector<ContactValues> values;  ///< The values of the items, where contacts are wanted.

@@ -9,7 +9,7 @@
 
 namespace innersphere {
 
-/// A query that was checked, with the grids of both bodies.
+/// Holds a query that was checked, with the grids of both bodies.
 struct PreparedQuery {
   core::Setup setup;  ///< Its grids have no arrays; see bringToCpu().
   const ModelGrid* grid_a;
@@ -18,8 +18,8 @@ struct PreparedQuery {
   std::size_t clusters() const { return std::size_t{setup.a.clusters} + setup.b.clusters; }
 };
 
-/// The grids of neighbouring queries are often the same and are then found without the model's lock. Each
-/// thread needs an object of its own.
+/// Remembers the last grids. The grids of neighbouring queries are often the same and are then found without
+/// the model's lock. Each thread needs an object of its own.
 class KnownGrids {
  public:
   const ModelGrid& of(const CollisionModel& model, std::uint32_t prefix, Estimator estimator, int side);
@@ -33,9 +33,9 @@ class KnownGrids {
   Known known_[2];
 };
 
-/// Throws Error as QueryContext::run says; `index` is the query's place in its batch, for messages. Bodies
-/// whose bounding balls or boxes are apart get no clusters to traverse. Builds no grids. All calls with the
-/// same `grids` have one estimator.
+/// Checks a query and returns it in the form that the backends read. Throws Error as QueryContext::run()
+/// says; `index` is the query's place in its batch, for messages. Bodies whose bounding balls or boxes are
+/// apart get no clusters to traverse. Builds no grids. All calls with the same `grids` have one estimator.
 PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estimator, KnownGrids& grids);
 
 /// Builds the grids of a query on the CPU if this is their first use there.

@@ -1,4 +1,4 @@
-// From the sums of a query to what its caller gets.
+// Turns the sums of a query into what its caller gets.
 #pragma once
 
 #include "core/sums.hpp"
@@ -6,10 +6,10 @@
 
 namespace innersphere {
 
-/// The sums of a query in floating point.
+/// Returns the sums of a query in floating point.
 core::Totals toTotals(const core::Sums& sums, const core::Units& units);
 
-/// The overlap that the sums of a query describe.
+/// Returns the overlap that the sums of a query describe.
 Overlap toOverlap(const core::Totals& totals);
 
 }  // namespace innersphere

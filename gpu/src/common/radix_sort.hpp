@@ -1,4 +1,4 @@
-// Sorting by integer keys, a digit at a time.
+// Sorts by integer keys, a digit at a time.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,8 @@ void sortByBits(std::vector<T>& items, std::vector<T>& spare, const Key& key, in
   if (first != items.data()) std::swap(items, spare);
 }
 
-/// Sorts few items by key(item) < limit, in few steps of large digits; the rest is as above.
+/// Sorts few items by key(item) < limit, in few steps of large digits; otherwise it does what sortByBits()
+/// does.
 template <typename Key>
 void sortByNumber(std::uint32_t*& items, std::uint32_t*& spare, std::size_t count, std::uint32_t limit,
                   const Key& key) {

@@ -1,4 +1,4 @@
-// Threads of one context.
+// Declares the threads of one context.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -9,11 +9,11 @@
 
 namespace innersphere {
 
-/// An arena of its own: while a thread waits here it never takes up foreign tasks, which could use the same
-/// context.
+/// Holds an arena of its own: while a thread waits here it never takes up foreign tasks, which could use the
+/// same context.
 class Workers {
  public:
-  /// threads = 0: all cores.
+  /// Makes an arena of so many threads; 0: all cores.
   explicit Workers(int threads)
       : serial_(threads == 1), arena_(threads > 0 ? threads : static_cast<int>(tbb::task_arena::automatic)) {}
 

@@ -1,4 +1,4 @@
-// Sums of real numbers that do not depend on the order of their terms.
+// Sums real numbers in a way that does not depend on the order of their terms.
 //
 // Floating-point addition is not associative, so a sum over pairs found by many threads would change from run
 // to run. Each term is therefore rounded once, to a multiple of a quantum that depends on the query alone,
@@ -18,7 +18,7 @@
 
 namespace innersphere::core {
 
-/// A 128-bit two's complement integer.
+/// This is a 128-bit two's complement integer.
 struct FixedSum {
   std::uint64_t lo;
   std::uint64_t hi;
@@ -33,7 +33,7 @@ INNERSPHERE_HD inline FixedSum operator-(const FixedSum& a) {
   return {~a.lo + 1u, ~a.hi + (a.lo == 0 ? 1u : 0u)};
 }
 
-/// x 2^shift, 0 <= shift < 64.
+/// Returns x 2^shift, 0 <= shift < 64.
 INNERSPHERE_HD inline FixedSum shifted(std::int64_t x, int shift) {
   const auto bits = static_cast<std::uint64_t>(x);
   const auto sign = static_cast<std::uint64_t>(x >> 63);
@@ -41,8 +41,8 @@ INNERSPHERE_HD inline FixedSum shifted(std::int64_t x, int shift) {
   return {bits << shift, sign << shift | bits >> (64 - shift)};
 }
 
-/// The quantum of one kind of term is 2^-(coarse_shift + fine_bits). Terms are below 2^(kCoarseBits -
-/// coarse_shift).
+/// Says how one kind of term is rounded: its quantum is 2^-(coarse_shift + fine_bits). Terms are below
+/// 2^(kCoarseBits - coarse_shift).
 struct Unit {
   double coarse;  ///< 2^coarse_shift
   double fine;    ///< 2^fine_bits
@@ -55,7 +55,7 @@ constexpr int kFineBits = 40;      ///< at most, of its fine part
 constexpr int kFixedBits = 124;    ///< of a whole sum
 constexpr int kShortSumBits = 13;  ///< so many terms, as a power of two, may be summed in 64 bits
 
-/// A sum of at most 2^kShortSumBits terms.
+/// Holds a sum of at most 2^kShortSumBits terms.
 struct ShortSum {
   std::uint64_t coarse;
   std::uint64_t fine;
@@ -63,8 +63,8 @@ struct ShortSum {
 
 constexpr std::uint64_t kMagicBits = 0x4338000000000000u;  ///< of 1.5 * 2^52
 
-/// The two parts of a term, rounded to nearest, ties to even, so that a term and its negation cancel: what
-/// the bits of these numbers are above kMagicBits.
+/// Holds the two parts of a term, rounded to nearest, ties to even, so that a term and its negation cancel:
+/// what the bits of these numbers are above kMagicBits.
 struct Parts {
   double coarse, fine;
 };
@@ -87,7 +87,7 @@ INNERSPHERE_HD inline void addBits(ShortSum& sum, double x, const Unit& unit) {
   sum.fine += bits;
 }
 
-/// A sum of the bits of `terms` terms.
+/// Makes a sum of the bits of `terms` terms their sum.
 INNERSPHERE_HD inline ShortSum withoutMagic(const ShortSum& sum, std::uint64_t terms) {
   return {sum.coarse - terms * kMagicBits, sum.fine - terms * kMagicBits};
 }
@@ -97,7 +97,7 @@ INNERSPHERE_HD inline void add(ShortSum& sum, double x, const Unit& unit) {
   sum = withoutMagic(sum, 1);
 }
 
-/// In units of the quantum.
+/// Returns the sum in units of the quantum.
 inline FixedSum toFixed(const ShortSum& sum, const Unit& unit) {
   return shifted(static_cast<std::int64_t>(sum.coarse), unit.fine_bits) +
          shifted(static_cast<std::int64_t>(sum.fine), 0);

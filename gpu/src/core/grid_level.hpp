@@ -1,4 +1,4 @@
-// The cells of one grid level, and which of them list a sphere.
+// Finds the cells of one grid level, and which of them list a sphere.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace innersphere::core {
 
-/// Squared distance from x to the cell number `cell` of an axis, in cells; without a branch.
+/// Returns the squared distance from x to the cell number `cell` of an axis, in cells; it has no branch.
 INNERSPHERE_HD inline float gap2(float x, std::uint32_t cell) {
   const float middle =
       static_cast<float>(static_cast<std::int32_t>(cell)) - 0.5f;  // number 0 is before the first
@@ -17,12 +17,12 @@ INNERSPHERE_HD inline float gap2(float x, std::uint32_t cell) {
   return gap * gap;
 }
 
-/// Room for a list, in whole steps.
+/// Returns the room for a list of `count` spheres, in whole steps of kListStep.
 INNERSPHERE_HD inline std::uint32_t padded(std::uint32_t count) {
   return (count + kListStep - 1) / kListStep * kListStep;
 }
 
-/// Where to look for the cells that list a sphere: those with a point that is not farther away than its
+/// Says where to look for the cells that list a sphere: those with a point that is not farther away than its
 /// radius and the reach of the grid level's query spheres, by the squares of three gaps, added up in this
 /// order.
 struct CellsNear {
@@ -35,7 +35,7 @@ struct CellsNear {
   }
 };
 
-/// Cells are numbered along x, then y, then z: in the order of their keys.
+/// Describes one grid level. Cells are numbered along x, then y, then z: in the order of their keys.
 struct GridLevel {
   int number;
   std::uint32_t first_place;  ///< of the spheres that it may list
@@ -55,7 +55,7 @@ struct GridLevel {
                    static_cast<std::uint32_t>(row % size[1]), static_cast<std::uint32_t>(row / size[1]));
   }
 
-  /// `s` is relative to the centre of the grid.
+  /// Returns where to look for the cells that list `s`, which is relative to the centre of the grid.
   INNERSPHERE_HD CellsNear near(const Sphere& s) const {
     const float far = s.radius * scale + reach;
     CellsNear cells{
@@ -88,7 +88,8 @@ inline GridLevel makeGridLevel(const GridPlan& plan, int number) {
   return grid_level;
 }
 
-/// Whether each cell of the level has a counter. In other levels only cells that list something have one.
+/// Returns true if each cell of the level has a counter. In other levels only cells that list something have
+/// one.
 inline bool isDense(const GridLevel& grid_level, std::uint32_t spheres) {
   const std::uint64_t most = 64 + std::uint64_t{8} * spheres, limit = std::uint64_t{1} << 31;
   return grid_level.count <= (most < limit ? most : limit);

@@ -1,4 +1,4 @@
-// The hierarchical hash grid as a query reads it (Weller, Frese, Zachmann 2013, with their level rule
+// Shows the hierarchical hash grid as a query reads it (Weller, Frese, Zachmann 2013, with their level rule
 // corrected).
 //
 // A sphere of radius r has the size level e with 2r <= 2^e < 4r. The paper has a grid for each size level and
@@ -22,7 +22,8 @@
 
 namespace innersphere::core {
 
-/// The size level of a radius: the smallest exponent e with 2 radius <= 2^e. It rises with the radius.
+/// Returns the size level of a radius: the smallest exponent e with 2 radius <= 2^e. It rises with the
+/// radius.
 INNERSPHERE_HD inline int levelOf(float radius) {
   constexpr float kTiny = 1e-37f;  // keeps 2^-e finite
   if (!(radius > kTiny)) radius = kTiny;
@@ -39,14 +40,14 @@ constexpr std::uint32_t kClusterSize = 32;
 /// Lists begin at multiples of this number, and are filled up with places of no sphere.
 constexpr std::uint32_t kListStep = 4;
 
-/// A cell, which lists a run of GridView::listed. An empty slot of the table has count 0.
+/// This is a cell, which lists a run of GridView::listed. An empty slot of the table has count 0.
 struct alignas(16) Cell {
   std::uint64_t key;
   std::uint32_t first;
   std::uint32_t count;
 };
 
-/// Up to kClusterSize neighbours of one size level: a run of spheres with a ball around them.
+/// Holds up to kClusterSize neighbours of one size level: a run of spheres with a ball around them.
 struct alignas(16) Cluster {
   Sphere ball;
   std::uint32_t first;
@@ -59,7 +60,7 @@ INNERSPHERE_HD inline std::uint64_t cellKey(int grid_level, std::uint32_t x, std
          static_cast<std::uint64_t>(z) << (2 * kAxisBits) | static_cast<std::uint64_t>(y) << kAxisBits | x;
 }
 
-/// 2^exponent, for exponents from -126 to 127.
+/// Returns 2^exponent, for exponents from -126 to 127.
 INNERSPHERE_HD inline float powerOfTwo(int exponent) {
   const std::uint32_t bits = static_cast<std::uint32_t>(exponent + 127) << 23;
   float x;
@@ -67,15 +68,15 @@ INNERSPHERE_HD inline float powerOfTwo(int exponent) {
   return x;
 }
 
-/// Cells of a grid level, both ends included.
+/// Holds the cells of a grid level in a box, both ends included.
 struct CellBox {
   std::uint32_t lo[3];
   std::uint32_t hi[3];
 };
 
-/// A grid in the memory of whoever queries it. Lengths are those of the packing; cells are laid out relative
-/// to `centre`, so that positions keep their digits in single precision where the packing is far from its
-/// origin.
+/// This is a grid in the memory of whoever queries it. Lengths are those of the packing; cells are laid out
+/// relative to `centre`, so that positions keep their digits in single precision where the packing is far
+/// from its origin.
 struct GridView {
   const Sphere* spheres;     ///< The `count` spheres by size level and, within one, along a Hilbert curve.
   const Sphere* centred;     ///< The spheres relative to `centre`, and one that meets nothing. CPU only.
@@ -96,14 +97,14 @@ struct GridView {
   float largest;  ///< The largest radius of any sphere.
 };
 
-/// The grid level where a sphere of this size level looks for partners that are at least as large. Beyond the
-/// last grid level there are none.
+/// Returns the grid level where a sphere of this size level looks for partners that are at least as large.
+/// Beyond the last grid level there are none.
 INNERSPHERE_HD inline int gridLevelOf(const GridView& grid, int level) {
   const int grid_level = level + 1 - grid.finest;
   return grid_level > 0 ? grid_level : 0;
 }
 
-/// How far query spheres of a grid level may reach if they are to look into one cell only.
+/// Returns how far query spheres of a grid level may reach if they are to look into one cell only.
 INNERSPHERE_HD inline float reachOf(const GridView& grid, int grid_level) {
   return powerOfTwo(grid.finest + grid_level - 2);
 }
@@ -114,7 +115,8 @@ INNERSPHERE_HD inline std::uint32_t hashCell(const GridView& grid, std::uint64_t
   return static_cast<std::uint32_t>(key * kHashFactor >> grid.hash_shift);
 }
 
-/// The cell with this key; an empty slot if there is none. The table is never full, so probing ends.
+/// Returns the cell with this key, or an empty slot if there is none. The table is never full, so probing
+/// ends.
 INNERSPHERE_HD inline Cell findCell(const GridView& grid, std::uint64_t key) {
   const auto mask = static_cast<std::uint32_t>((std::uint64_t{1} << (64 - grid.hash_shift)) - 1);
   for (std::uint32_t at = hashCell(grid, key);; at = (at + 1) & mask) {
@@ -125,9 +127,9 @@ INNERSPHERE_HD inline Cell findCell(const GridView& grid, std::uint64_t key) {
 
 namespace detail {
 
-/// Cells of one axis between lo and hi, relative to the centre; false if they are all outside the grid, which
-/// goes one cell beyond the box around the spheres. Comparisons are such that a number that is not one gives
-/// the whole axis.
+/// Finds the cells of one axis between lo and hi, relative to the centre. Returns false if they are all
+/// outside the grid, which goes one cell beyond the box around the spheres. Comparisons are such that a
+/// number that is not one gives the whole axis.
 INNERSPHERE_HD inline bool cellRange(float lo, float hi, float half, float inverse_cell, std::uint32_t& first,
                                      std::uint32_t& end) {
   const float last = floorf(2 * half * inverse_cell) + 2;
@@ -141,7 +143,8 @@ INNERSPHERE_HD inline bool cellRange(float lo, float hi, float half, float inver
 
 }  // namespace detail
 
-/// The cells of a grid level between two points (relative to the centre); false if all are outside the grid.
+/// Finds the cells of a grid level between two points, relative to the centre. Returns false if all are
+/// outside the grid.
 INNERSPHERE_HD inline bool cellBox(const GridView& grid, int grid_level, const Vec3f& lo, const Vec3f& hi,
                                    CellBox& box) {
   const float k = powerOfTwo(-(grid.finest + grid_level));
@@ -150,8 +153,8 @@ INNERSPHERE_HD inline bool cellBox(const GridView& grid, int grid_level, const V
          detail::cellRange(lo.z, hi.z, grid.half.z, k, box.lo[2], box.hi[2]);
 }
 
-/// False if the ball about p (relative to the centre) cannot meet the box or the ball around the grid's
-/// spheres.
+/// Returns false if the ball about p (relative to the centre) cannot meet the box or the ball around the
+/// grid's spheres.
 INNERSPHERE_HD inline bool meetsBounds(const GridView& grid, const Vec3f& p, float r) {
   const Vec3f a{fabsf(p.x) - grid.half.x, fabsf(p.y) - grid.half.y, fabsf(p.z) - grid.half.z};
   const Vec3f out{a.x > 0 ? a.x : 0, a.y > 0 ? a.y : 0, a.z > 0 ? a.z : 0};

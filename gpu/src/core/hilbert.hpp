@@ -1,4 +1,5 @@
-// The place of a cell on a Hilbert curve through a cube: neighbours on the curve are neighbours in space.
+// Finds the place of a cell on a Hilbert curve through a cube: neighbours on the curve are neighbours in
+// space.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +8,9 @@
 
 namespace innersphere::core {
 
-/// The curve as a machine. In each of 24 orientations of a cube it visits the eight octants in an order, and
-/// each of them in an orientation of its own. An orientation is the octant where the curve enters and the
-/// axis along which it leaves (C. H. Hamilton, "Compact Hilbert Indices", 2006).
+/// Describes the curve as a machine. In each of 24 orientations of a cube it visits the eight octants in an
+/// order, and each of them in an orientation of its own. An orientation is the octant where the curve enters
+/// and the axis along which it leaves (C. H. Hamilton, "Compact Hilbert Indices", 2006).
 struct alignas(8) HilbertTable {
   std::uint8_t digit[24][8];  ///< when an octant is visited
   std::uint8_t next[24][8];   ///< the orientation in it
@@ -45,8 +46,9 @@ constexpr HilbertTable makeHilbertTable() {
 
 constexpr HilbertTable kHilbertTable = detail::makeHilbertTable();
 
-/// Place of the cell (x, y, z) of 2^bits along each axis: of its 3 * bits bits, the upper 3 k are the place
-/// of the cube of 2^(bits - k) cells along each axis that it is in. `table`: kHilbertTable, or a copy of it.
+/// Returns the place of the cell (x, y, z) of 2^bits along each axis: of its 3 * bits bits, the upper 3 k are
+/// the place of the cube of 2^(bits - k) cells along each axis that it is in. `table` is kHilbertTable, or a
+/// copy of it.
 INNERSPHERE_HD inline std::uint64_t hilbertPlace(const HilbertTable& table, std::uint32_t x, std::uint32_t y,
                                                  std::uint32_t z, int bits) {
   std::uint64_t place = 0;

@@ -1,5 +1,6 @@
-// The overlap of two balls: a lens. No branches, so that compilers can evaluate many of them side by side,
-// and nothing but operations that round alike everywhere, so that all processors give the same bits.
+// Computes the overlap of two balls, a lens. There are no branches, so that compilers can evaluate many of
+// them side by side, and no operations but those that round alike everywhere, so that all processors give the
+// same bits.
 #pragma once
 
 #include <cmath>
@@ -10,14 +11,14 @@
 
 namespace innersphere::core {
 
-/// Two overlapping balls: their radii, the distance d of their centres, how far they reach into each other,
-/// s = ra + rb - d >= 0, and 1 / d and 1 / (ra + rb), which the caller has anyway. s is given because the
-/// caller can have it without the cancellation.
+/// Describes two overlapping balls: their radii, the distance d of their centres, how far they reach into
+/// each other, s = ra + rb - d >= 0, and 1 / d and 1 / (ra + rb), which the caller has anyway. s is given
+/// because the caller can have it without the cancellation.
 struct Balls {
   double ra, rb, d, s, inverse_d, inverse_sum;
 };
 
-/// What one pair of overlapping balls contributes. All lengths to one unit.
+/// Tells what one pair of overlapping balls contributes. All lengths have one unit.
 struct Lens {
   double volume;    ///< V
   double moment;    ///< V times the centroid's way from the centre of ball a to that of ball b, 0 to 1
@@ -28,13 +29,14 @@ namespace detail {
 
 constexpr double kPi = 3.141592653589793238462643383279502884;
 
-/// d - |ra - rb|, from d or from s, whichever rounds less: how far the smaller ball is from lying inside.
+/// Returns d - |ra - rb|, from d or from s, whichever rounds less: how far the smaller ball is from lying
+/// inside.
 INNERSPHERE_HD inline double outside(double small, double step, double d, double s) {
   const double from_d = d - step, from_s = 2 * small - s;
   return d < small ? from_d : from_s;
 }
 
-/// Natural logarithm of 0 < x <= 1, to about 2e-16 of itself.
+/// Returns the natural logarithm of 0 < x <= 1, to about 2e-16 of itself.
 INNERSPHERE_HD inline double logarithm(double x) {
   // x = 2^k m with m from sqrt(1/2) to sqrt(2), and ln m = 2 artanh z.
   constexpr std::uint64_t kRootHalf = 0x3fe6a09e00000000u, kOne = 0x3ff0000000000000u;
@@ -54,8 +56,8 @@ INNERSPHERE_HD inline double logarithm(double x) {
   return k * 0.693147180559945309417 + 2 * (z + z * z2 * sum);
 }
 
-/// -ln(1 - x) - x - x^2/2 - x^3/3 - x^4/4 for 0 < x < 1, y = 1 - x. Where x is small the logarithm would
-/// cancel, and nine terms of the series are exact enough.
+/// Returns -ln(1 - x) - x - x^2/2 - x^3/3 - x^4/4 for 0 < x < 1, y = 1 - x. Where x is small the logarithm
+/// would cancel, and nine terms of the series are exact enough.
 INNERSPHERE_HD inline double logTail(double x, double y) {
   const double x2 = x * x;
   double series = 1.0 / 13;
@@ -67,11 +69,11 @@ INNERSPHERE_HD inline double logTail(double x, double y) {
 
 }  // namespace detail
 
-/// The lens of two balls. Every term below is a sum or product of non-negative numbers, so results keep the
-/// relative accuracy of d and s, also for s << r and ra << rb. Volume and centroid: the lens is a cap of
-/// height h (3 r - h) h^2 pi/3 from each ball, and the first moments of the two caps about their own centres
-/// cancel, so V c = Va ca + Vb cb with ca, cb the centres of the balls. A ball inside the other is its own
-/// lens; two balls with the same centre and radius meet halfway.
+/// Returns the lens of two balls. Every term below is a sum or product of non-negative numbers, so results
+/// keep the relative accuracy of d and s, also for s << r and ra << rb. Volume and centroid: the lens is a
+/// cap of height h (3 r - h) h^2 pi/3 from each ball, and the first moments of the two caps about their own
+/// centres cancel, so V c = Va ca + Vb cb with ca, cb the centres of the balls. A ball inside the other is
+/// its own lens; two balls with the same centre and radius meet halfway.
 INNERSPHERE_HD inline Lens lens(const Balls& b) {
   constexpr double kPi = detail::kPi;
   const double small = b.ra < b.rb ? b.ra : b.rb;
@@ -91,8 +93,8 @@ INNERSPHERE_HD inline Lens lens(const Balls& b) {
   return {apart ? v_large + v_small : ball, apart ? moment : ball_moment, apart ? rim : 0.0};
 }
 
-/// The potential of the central force V: the integral of V over the distance, from d to ra + rb. With x = s /
-/// R, R = ra + rb, D = ra - rb it is pi/12 R [s^3 (4 ra rb / R^2 - (1 + 3 D^2 / R^2) x / 4) - 3 D^2 R
+/// Returns the potential of the central force V: the integral of V over the distance, from d to ra + rb. With
+/// x = s / R, R = ra + rb, D = ra - rb it is pi/12 R [s^3 (4 ra rb / R^2 - (1 + 3 D^2 / R^2) x / 4) - 3 D^2 R
 /// logTail(x)]: the closed form of V integrated and ordered so that little cancels. Inside the other ball V
 /// is constant and U grows linearly.
 INNERSPHERE_HD inline double lensEnergy(const Balls& b) {

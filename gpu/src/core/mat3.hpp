@@ -1,11 +1,11 @@
-// 3x3 matrices for code that runs on the CPU and on the device.
+// Declares 3x3 matrices for code that runs on the CPU and on the device.
 #pragma once
 
 #include "innersphere/vec3.hpp"
 
 namespace innersphere::core {
 
-/// Row-major 3x3 matrix.
+/// This is a row-major 3x3 matrix.
 template <typename T>
 struct Mat3 {
   T m[9];

@@ -1,4 +1,4 @@
-// Two spheres, one of each body: do they overlap, and what do they contribute?
+// Says of two spheres, one of each body, whether they overlap and what they contribute.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace innersphere::core {
 
-/// A pair in double precision and world axes.
+/// Describes a pair in double precision and world axes.
 struct Pair {
   Vec3d a, b;     ///< centres, each relative to the origin of its own body
   Vec3d v;        ///< from the centre of a to that of b
@@ -17,8 +17,8 @@ struct Pair {
   double distance2;
 };
 
-/// Everything in it is symmetric under exchange of the bodies, to the last bit: v changes sign, the rest
-/// changes places.
+/// Makes a pair of spheres. Everything in it is symmetric under exchange of the bodies, to the last bit: v
+/// changes sign, the rest changes places.
 INNERSPHERE_HD inline Pair makePair(const Frame& frame, const Sphere& a, const Sphere& b) {
   Pair pair;
   pair.a = frame.matrix_a * Vec3d{a.x, a.y, a.z};
@@ -30,26 +30,27 @@ INNERSPHERE_HD inline Pair makePair(const Frame& frame, const Sphere& a, const S
   return pair;
 }
 
-/// Touching from outside is not an overlap: its volume is zero.
+/// Returns true if the spheres overlap. Touching from outside is not an overlap: its volume is zero.
 INNERSPHERE_HD inline bool overlaps(const Pair& pair) {
   const double sum = pair.ra + pair.rb;
   return pair.distance2 < sum * sum;
 }
 
-/// Who of the two finds the pair: the smaller sphere traverses the other's grid; of equals, that of A.
+/// Returns true if the sphere of the given side is the one of the two that finds the pair: the smaller sphere
+/// traverses the other's grid; of equals, that of A.
 INNERSPHERE_HD inline bool searchesPartner(const Pair& pair, bool from_a) {
   const bool a_searches = pair.rb >= pair.ra;
   return a_searches == from_a;
 }
 
-/// True if a candidate of a cluster overlaps and is this side's to report.
+/// Returns true if a candidate of a cluster overlaps and is this side's to report.
 INNERSPHERE_HD inline bool isReported(const Pair& pair, bool from_a) {
   const bool searches = searchesPartner(pair, from_a);
   return overlaps(pair) ? searches : false;
 }
 
-/// An overlapping pair's lens, with the unit vector from a to b. Concentric spheres have no direction: n is
-/// zero, so they push nowhere.
+/// Holds an overlapping pair's lens, with the unit vector from a to b. Concentric spheres have no direction:
+/// n is zero, so they push nowhere.
 struct Contact {
   Balls balls;
   Lens lens;
@@ -78,7 +79,7 @@ INNERSPHERE_HD inline Contact makeContact(const Pair& pair) {
   return contact;
 }
 
-/// Volume times centroid of the lens, relative to the origin of A.
+/// Returns volume times centroid of the lens, relative to the origin of A.
 INNERSPHERE_HD inline Vec3d lensMoment(const Pair& pair, const Contact& contact) {
   return contact.lens.volume * pair.a + contact.lens.moment * pair.v;
 }

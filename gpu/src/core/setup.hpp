@@ -1,5 +1,5 @@
-// One query of a batch, checked and brought into the form that the traversal reads. Plain data: it is copied
-// to the device.
+// Holds one query of a batch, checked and brought into the form that the traversal reads. It is plain data,
+// which is copied to the device.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace innersphere::core {
 
-/// The transforms that take spheres of both bodies into double precision and world axes. A body's own frame
-/// is scaled and rotated, not translated, into the axes of the world.
+/// Holds the transforms that take spheres of both bodies into double precision and world axes. A body's own
+/// frame is scaled and rotated, not translated, into the axes of the world.
 struct Frame {
   Mat3<double> matrix_a, matrix_b;  ///< Scale times rotation.
   double scale_a, scale_b;
@@ -19,14 +19,14 @@ struct Frame {
   Vec3d offset;               ///< From the origin of A to that of B, in axes of the world [m].
 };
 
-/// A body as a query sees it.
+/// Describes a body as a query sees it.
 struct Body {
   GridView grid;
   std::uint32_t clusters;  ///< The clusters that traverse the other's grid: 0 if the bodies are apart.
 };
 
-/// How spheres of one body are looked up in the other's grid, in that grid's lengths. The transform is in
-/// double, so that a position is rounded to single precision only once it is relative to the centre of the
+/// Says how spheres of one body are looked up in the other's grid, in that grid's lengths. The transform is
+/// in double, so that a position is rounded to single precision only once it is relative to the centre of the
 /// grid; the lookup then makes everything larger by `tolerance`, which is more than that rounding. It only
 /// picks candidates.
 struct Search {
@@ -38,11 +38,12 @@ struct Search {
   float tolerance;
 };
 
-/// The units of the sums, for each kind of quantity.
+/// Holds the units of the sums, for each kind of quantity.
 struct Units {
   Unit volume, moment, torque, area, energy;
 };
 
+/// Holds all that the traversal of one query reads.
 struct Setup {
   Body a, b;
   Frame frame;

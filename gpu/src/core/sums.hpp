@@ -1,4 +1,4 @@
-// The sums of one query over its overlapping pairs.
+// Forms the sums of one query over its overlapping pairs.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace innersphere::core {
 
-/// Places of the sums. Want::volume needs the first kVolumeTerms of them.
+/// Names the places of the sums. Want::volume needs the first kVolumeTerms of them.
 enum Term {
   kVolume = 0,
   kMoment = 1,
@@ -30,7 +30,7 @@ INNERSPHERE_HD inline const Unit& unitOf(const Units& units, int term) {
   return term < kEnergy ? units.area : units.energy;
 }
 
-/// What one pair adds to each sum.
+/// Holds what one pair adds to each sum.
 struct Terms {
   double terms[kTerms];
 
@@ -65,7 +65,7 @@ INNERSPHERE_HD inline Terms makeTerms(const Pair& pair) {
   return terms;
 }
 
-/// The sums in floating point.
+/// Holds the sums in floating point.
 struct Totals {
   double terms[kTerms];
   std::uint64_t pairs;

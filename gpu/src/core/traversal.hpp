@@ -1,4 +1,4 @@
-// The traversal of one body's spheres through the other's grid: what both backends share of it.
+// Holds what both backends share of the traversal of one body's spheres through the other's grid.
 //
 // Each sphere of A meets the spheres of B that are at least as large as it, and each sphere of B those of A
 // that are strictly larger: every pair once. All of them are listed in one cell of the query sphere's grid
@@ -16,7 +16,7 @@
 
 namespace innersphere::core {
 
-/// Where a sphere or cluster of one body is in the other's grid.
+/// Says where a sphere or cluster of one body is in the other's grid.
 struct Probe {
   Vec3f p;       ///< centre, relative to that of the grid
   float radius;  ///< with its margin
@@ -28,12 +28,12 @@ INNERSPHERE_HD inline Probe makeProbe(const Search& search, const Sphere& s) {
           search.ratio * s.radius + search.margin};
 }
 
-/// True if a cluster of a setup, of all of A's and then all of B's, is one of A's.
+/// Returns true if a cluster of a setup, of all of A's and then all of B's, is one of A's.
 INNERSPHERE_HD inline bool isFromA(const Setup& setup, std::uint32_t cluster) {
   return cluster < setup.a.clusters;
 }
 
-/// One direction of a query: the spheres of a body in the grid of the other.
+/// Describes one direction of a query: the spheres of a body in the grid of the other.
 struct Traversal {
   const GridView& own;
   const GridView& grid;
@@ -45,38 +45,39 @@ INNERSPHERE_HD inline Traversal traversalOf(const Setup& setup, bool from_a) {
   return {setup.b.grid, setup.a.grid, setup.b_in_a};
 }
 
-/// A ball around spheres of the searching body, larger by all margins and tolerances. It may be much larger
-/// than the grid, and its place is rounded by a part of the way to it.
+/// Returns a ball around spheres of the searching body, larger by all margins and tolerances. It may be much
+/// larger than the grid, and its place is rounded by a part of the way to it.
 INNERSPHERE_HD inline Probe makeBallProbe(const Search& search, const Sphere& ball) {
   constexpr float kRounded = 1 + 1.0f / (1 << 20);
   const Probe around = makeProbe(search, ball);
   return {around.p, kRounded * around.radius + search.grid_margin + search.tolerance};
 }
 
-/// False if nothing in such a ball can meet the grid.
+/// Returns false if nothing in such a ball can meet the grid.
 INNERSPHERE_HD inline bool ballMeets(const Search& search, const GridView& grid, const Sphere& ball) {
   const Probe around = makeBallProbe(search, ball);
   return meetsBounds(grid, around.p, around.radius);
 }
 
-/// False if no sphere of the cluster can meet one of the grid.
+/// Returns false if no sphere of the cluster can meet one of the grid.
 INNERSPHERE_HD inline bool clusterMeets(const Traversal& traversal, const Cluster& cluster) {
   return ballMeets(traversal.search, traversal.grid, cluster.ball);
 }
 
-/// A query sphere in the other body's grid.
+/// Describes a query sphere in the other body's grid.
 struct Lookup {
   Vec3f p;         ///< The centre, relative to that of the grid.
   float reach;     ///< The radius with all margins and tolerances.
   float smallest;  ///< The smallest partner that this query sphere has to find.
 };
 
-/// A little below what a query sphere of this radius need look for: pair.hpp has the last word on equals.
+/// Returns a radius a little below that of the smallest partner which a query sphere of this radius need look
+/// for: pair.hpp has the last word on equals.
 INNERSPHERE_HD inline float smallestPartner(const Search& search, float radius) {
   return radius * (1 - 1e-6f) - search.grid_margin;
 }
 
-/// False if the sphere cannot meet any of the grid.
+/// Brings a sphere into the other's grid. Returns false if it cannot meet any sphere there.
 INNERSPHERE_HD inline bool makeLookup(const Traversal& traversal, const Sphere& sphere, Lookup& lookup) {
   const Search& search = traversal.search;
   const Probe probe = makeProbe(search, sphere);
@@ -86,14 +87,14 @@ INNERSPHERE_HD inline bool makeLookup(const Traversal& traversal, const Sphere& 
   return meetsBounds(traversal.grid, lookup.p, lookup.reach) && !(lookup.smallest > traversal.grid.largest);
 }
 
-/// Where a query sphere looks.
+/// Says where a query sphere looks.
 struct Cells {
   int grid_level;
   CellBox box;
   std::uint32_t count;  ///< of cells
   bool all;  ///< they would be too many: it looks at all spheres of the grid instead, as if in one cell
 
-  /// The coordinates of one of the cells.
+  /// Gives the coordinates of one of the cells.
   INNERSPHERE_HD void coordinates(std::uint32_t number, std::uint32_t (&cell)[3]) const {
     const std::uint32_t nx = box.hi[0] - box.lo[0] + 1, ny = box.hi[1] - box.lo[1] + 1;
     cell[0] = box.lo[0] + number % nx;
@@ -119,8 +120,8 @@ INNERSPHERE_HD inline Cells cellsOf(const GridView& grid, const Lookup& lookup) 
   return cells;
 }
 
-/// Whether a partner counts in this cell. A pair found in several cells is reported once: in the visited cell
-/// nearest to the partner's centre, which is relative to that of the grid.
+/// Returns true if a partner counts in this cell. A pair found in several cells is reported once: in the
+/// visited cell nearest to the partner's centre, which is relative to that of the grid.
 INNERSPHERE_HD inline bool countsIn(const GridView& grid, const Cells& cells, const std::uint32_t (&cell)[3],
                                     const Sphere& partner) {
   const Vec3f p{partner.x, partner.y, partner.z};

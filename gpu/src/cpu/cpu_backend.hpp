@@ -1,4 +1,4 @@
-// Batches on the CPU, spread over threads by clusters of spheres.
+// Runs batches on the CPU, spread over threads by clusters of spheres.
 #pragma once
 
 #include <tbb/spin_mutex.h>
@@ -14,7 +14,7 @@
 
 namespace innersphere {
 
-/// A batch is done when start() returns: the calling thread and the workers do it all.
+/// Runs on the CPU. A batch is done when start() returns: the calling thread and the workers do it all.
 class CpuBackend : public QueryBackend {
  public:
   explicit CpuBackend(Workers& workers) : workers_(workers) {}

@@ -1,5 +1,5 @@
-// The loops of the CPU backend that run on several numbers at once, compiled for several generations of
-// x86-64 processors; the best that this one knows is chosen at run time. All give the same bits.
+// Declares the loops of the CPU backend that run on several numbers at once, compiled for several generations
+// of x86-64 processors; the best that this one knows is chosen at run time. All give the same bits.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace innersphere {
 
-/// Pairs to decide, as places in the grids.
+/// Holds pairs to decide, as places in the grids.
 struct Candidates {
   static constexpr std::size_t kSize = 256;
   std::array<std::uint32_t, kSize> query_sphere;  ///< in the grid of the body that searches
@@ -31,7 +31,7 @@ class CandidateSink {
   virtual bool take(Candidates& candidates) = 0;
 };
 
-/// What some candidates add up to.
+/// Holds what some candidates add up to.
 struct Tally {
   std::array<core::ShortSum, core::kTerms> sums{};
   std::size_t pairs = 0;
@@ -40,7 +40,7 @@ struct Tally {
 };
 
 struct CpuKernels {
-  /// A bit for each of up to 32 balls of the searching body that can meet the grid.
+  /// Returns a bit for each of up to 32 balls of the searching body that can meet the grid.
   std::uint32_t (*ballsMeeting)(const core::Traversal& traversal, const Occupancy& occupancy,
                                 const Sphere* balls, std::uint32_t count);
   /// Finds the candidates of some clusters, and hands them on where the room ends; the last of them stay in
@@ -57,13 +57,13 @@ struct CpuKernels {
   /// `end`.
   void (*sumContacts)(const ContactValues* values, const std::uint32_t* order, const std::size_t* heads,
                       std::size_t begin, std::size_t end, SphereContact* contacts);
-  /// The first of some directions that is nearest to each unit vector. All are read, and all groups written,
-  /// up to whole kLanes.
+  /// Finds the first of some directions that is nearest to each unit vector. All are read, and all groups
+  /// written, up to whole kLanes.
   void (*nearestDirections)(const float* x, const float* y, const float* z, std::size_t count,
                             const Vec3f* directions, std::size_t direction_count, std::uint32_t* nearest);
 };
 
-/// The kernels that this processor can run, the best ones first.
+/// Returns the kernels that this processor can run, the best ones first.
 const std::vector<const CpuKernels*>& supportedKernels();
 
 inline const CpuKernels& cpuKernels() {

@@ -1,4 +1,4 @@
-// From the overlapping pairs that the CPU found to sorted pairs and the contacts of each sphere.
+// Turns the overlapping pairs that the CPU found into sorted pairs and the contacts of each sphere.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class PairSorter {
            const OverlappingPairs& found_pairs, Want want, Workers& workers, QueryResult& result);
 
  private:
-  /// Whose number a sphere is, in an overlapping pair.
+  /// Says whose number a sphere is, in an overlapping pair.
   using Sphere = std::uint32_t OverlappingPair::*;
 
   void groupByQuery(const std::vector<core::Sums>& sums, const OverlappingPairs& found_pairs);

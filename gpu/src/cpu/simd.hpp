@@ -1,6 +1,6 @@
-// What compilers do not make of loops by themselves: spheres from any places as columns, and a list of those
-// that a query sphere meets. A version for each generation of x86-64 processors and one for all others; the
-// same bits.
+// Does what compilers do not make of loops by themselves: spheres from any places as columns, and a list of
+// those that a query sphere meets. There is a version for each generation of x86-64 processors and one for
+// all others; all give the same bits.
 #pragma once
 
 #include <bit>
@@ -23,20 +23,20 @@ namespace innersphere {
 constexpr std::size_t kLanes = 16;         ///< spheres that are worked on together
 constexpr std::uint32_t kMostCells = 128;  ///< that are found together
 
-/// kLanes spheres: where their coordinates go.
+/// Says where the coordinates of kLanes spheres go.
 struct Columns {
   float *x, *y, *z, *radius;
 
   operator SphereColumns() const { return {x, y, z, radius}; }
 };
 
-/// A run of GridView::listed.
+/// This is a run of GridView::listed.
 struct ListRange {
   std::uint32_t first, count;
 };
 
-/// What core::countsIn() asks of the centre of a partner, in cells from the edge of the grid: is it in this
-/// window? `inverse` is of the cells' size.
+/// Answers what core::countsIn() asks of the centre of a partner, in cells from the edge of the grid: is it
+/// in this window? `inverse` is one over the cells' size.
 struct CellWindow {
   Vec3f half;
   float inverse;
@@ -53,7 +53,7 @@ struct CellWindow {
   }
 };
 
-/// Any processor.
+/// Works on any processor; the other classes like it need what they are named after.
 struct LanesAny {
   /// Loads kLanes spheres.
   static void load(const Sphere* spheres, const std::uint32_t* places, const Columns& to) {
@@ -66,7 +66,7 @@ struct LanesAny {
     }
   }
 
-  /// A bit for each sphere that the query sphere meets.
+  /// Returns a bit for each sphere that the query sphere meets.
   static std::uint32_t meeting(const core::Lookup& lookup, const SphereColumns& spheres) {
     std::uint32_t bits[kLanes];
     for (std::uint32_t k = 0; k < kLanes; ++k) {
@@ -81,7 +81,7 @@ struct LanesAny {
     return met;
   }
 
-  /// A bit for each sphere with its centre in a window.
+  /// Returns a bit for each sphere with its centre in a window.
   static std::uint32_t within(const CellWindow& window, const SphereColumns& spheres) {
     const Vec3f half = window.half;
     std::uint32_t bits = 0;
@@ -106,14 +106,14 @@ struct LanesAny {
     return c;
   }
 
-  /// A bit for each number that is not zero.
+  /// Returns a bit for each number that is not zero.
   static std::uint32_t bitsOf(const std::uint32_t* flags) {
     std::uint32_t bits = 0;
     for (std::uint32_t k = 0; k < kLanes; ++k) bits |= (flags[k] != 0 ? 1u : 0u) << k;
     return bits;
   }
 
-  /// Which of kLanes items are kept.
+  /// Says which of kLanes items are kept.
   struct Kept {
     explicit Kept(std::uint32_t bits) : count(0) {
       for (std::uint32_t k = 0; k < kLanes; ++k) {
@@ -130,7 +130,7 @@ struct LanesAny {
 
   static constexpr std::size_t kRows = 8;
 
-  /// A zero and seven columns, of kRows items from number k on, to rows.
+  /// Writes a zero and seven columns, of kRows items from number k on, to rows.
   static void writeRows(const double* const (&columns)[7], std::size_t k, ContactValues* rows) {
     for (std::size_t row = 0; row < kRows; ++row) {
       rows[row].of[0] = 0;
@@ -138,7 +138,7 @@ struct LanesAny {
     }
   }
 
-  /// Where the lists of some cells are; empty where there is no such cell.
+  /// Finds where the lists of some cells are; they are empty where there is no such cell.
   static void findCells(const core::GridView& grid, const std::uint64_t* keys, std::uint32_t count,
                         ListRange* lists) {
     for (std::uint32_t k = 0; k < count; ++k) __builtin_prefetch(grid.cells + core::hashCell(grid, keys[k]));
@@ -151,7 +151,7 @@ struct LanesAny {
 
 #ifdef INNERSPHERE_X86
 
-/// The numbers of the items in each set of 8 items, and then any others.
+/// Holds the numbers of the items in each set of 8 items, and then any others.
 struct KeptNumbers {
   alignas(32) std::uint32_t numbers[256][8] = {};
 
@@ -243,7 +243,7 @@ struct LanesAvx2 : LanesAny {
 
   struct Kept {
     explicit Kept(std::uint32_t kept) : bits(kept) {}
-    /// There must be room for kLanes.
+    /// Copies the items that are kept, in their order. There must be room for kLanes.
     template <typename T>
     INNERSPHERE_AVX2 void copy(const T* from, T* to) const {
       keep(bits & 255u, from, to);
@@ -327,7 +327,7 @@ struct LanesAvx512 : LanesAny {
 
   struct Kept {
     explicit Kept(std::uint32_t bits) : kept(static_cast<__mmask16>(bits)) {}
-    /// There must be room for kLanes.
+    /// Copies the items that are kept, in their order. There must be room for kLanes.
     template <typename T>
     INNERSPHERE_AVX512 void copy(const T* from, T* to) const {
       _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(kept, _mm512_loadu_si512(from)));

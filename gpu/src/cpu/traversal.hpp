@@ -1,5 +1,5 @@
-// The traversal on the CPU. Many query spheres go together, so that each step is done for all of them side by
-// side: where they are, where their cells are, and the tests.
+// Traverses grids on the CPU. Many query spheres go together, so that each step is done for all of them side
+// by side: where they are, where their cells are, and the tests.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@ namespace innersphere {
 
 static_assert(kLanes <= CellLists::kPastEnd, "lists are read in groups");
 
-/// What a traversal goes through: a grid, and the spheres that its cells list.
+/// Holds what a traversal goes through: a grid, and the spheres that its cells list.
 struct TraversedGrid {
   const core::GridView& grid;
   SphereColumns listed;
 };
 
-/// A bit for each of up to 32 balls of the searching body that can meet the grid.
+/// Returns a bit for each of up to 32 balls of the searching body that can meet the grid.
 inline std::uint32_t ballsMeeting(const core::Traversal& traversal, const Occupancy& occupancy,
                                   const Sphere* balls, std::uint32_t count) {
   constexpr std::uint32_t kMost = 32;
@@ -43,7 +43,7 @@ inline std::uint32_t ballsMeeting(const core::Traversal& traversal, const Occupa
   return left;
 }
 
-/// Query spheres that can meet the grid.
+/// Holds query spheres that can meet the grid.
 struct QuerySpheres {
   static constexpr std::uint32_t kSize = kMostCells;
   static constexpr std::uint32_t kRoom = kSize + kLanes;  ///< whole groups are written
@@ -54,7 +54,7 @@ struct QuerySpheres {
   bool hasRoom() const { return count + core::kClusterSize <= kSize; }
   core::Lookup lookup(std::uint32_t k) const { return {{x[k], y[k], z[k]}, reach[k], smallest[k]}; }
 
-  /// What core::makeLookup does, for the spheres of a cluster.
+  /// Does what core::makeLookup() does, for the spheres of a cluster.
   template <typename Lanes>
   void add(const core::Traversal& traversal, const core::Cluster& cluster) {
     constexpr std::uint32_t kAll = core::kClusterSize;
@@ -92,7 +92,7 @@ struct QuerySpheres {
   }
 };
 
-/// The lists where they look: what core::cellsOf does where that is one.
+/// Holds the lists where they look. It does what core::cellsOf() does, where that is one cell.
 struct QuerySphereLists {
   static constexpr std::uint32_t kSize = QuerySpheres::kSize;
   alignas(64) std::int32_t one[kSize];  ///< they look into one cell
@@ -128,8 +128,8 @@ struct QuerySphereLists {
   }
 };
 
-/// Query spheres whose lists are tested, a group of up to kLanes spheres of each at a time: no branch hangs
-/// on how long the list of a query sphere is.
+/// Holds query spheres whose lists are tested, a group of up to kLanes spheres of each at a time: no branch
+/// hangs on how long the list of a query sphere is.
 struct Testing {
   static constexpr std::uint32_t kRoom = QuerySpheres::kRoom;
   alignas(64) std::uint32_t query_sphere[kRoom], first[kRoom],
@@ -243,7 +243,7 @@ inline bool testAll(const core::GridView& grid, const core::Lookup& lookup, std:
   return true;
 }
 
-/// Some of the cells where a query sphere looks.
+/// Holds some of the cells where a query sphere looks.
 struct SomeCells {
   static constexpr std::uint32_t kSize = kMostCells;
   alignas(64) std::uint64_t keys[kSize] = {};  // all of them are looked up

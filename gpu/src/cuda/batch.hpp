@@ -1,4 +1,4 @@
-// What the kernels of a query read and write, in the memory of a device.
+// Declares what the kernels of a query read and write, in the memory of a device.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -16,12 +16,12 @@ static_assert(core::kClusterSize == kWarp, "a warp walks one cluster");
 constexpr unsigned kGroup = 32;        ///< clusters under one ball
 constexpr unsigned kTaskClusters = 8;  ///< neighbouring clusters in a task, which a warp takes from a batch
 
-/// Two neighbours in a list, as halves, the first one's below: see half_spheres.hpp.
+/// Holds two neighbours in a list, as halves, the first one's below: see half_spheres.hpp.
 struct alignas(16) EntryPair {
   unsigned x, y, z, radius;
 };
 
-/// A grid, with what only kernels read.
+/// Holds a grid, with what only kernels read.
 struct alignas(16) Grid {
   core::GridView view;
   /// The spheres of view.listed. After them come all spheres in their order, for query spheres that look at
@@ -31,7 +31,7 @@ struct alignas(16) Grid {
   const std::uint32_t* places;  ///< of the packing's spheres in the grid
 };
 
-/// One pair of bodies: core::Setup without the grids. Of arrays, the first is A's.
+/// Describes one pair of bodies: core::Setup without the grids. Of arrays, the first is A's.
 struct alignas(16) Query {
   core::Frame frame;
   core::Search searches[2];  ///< of that body's spheres in the grid of the other
@@ -40,13 +40,14 @@ struct alignas(16) Query {
   const Grid* grids[2];
 };
 
-/// A query with its grids, where a warp reads it fast.
+/// Holds a query with its grids, where a warp reads it fast.
 struct Scene {
   Query query;
   Grid grids[2];
 };
 
-/// The sum of one term as three numbers that any number of warps can add to without a carry between them.
+/// Holds the sum of one term as three numbers that any number of warps can add to without a carry between
+/// them.
 struct Limbs {
   unsigned long long fine;         ///< in units of the quantum
   unsigned long long coarse_low;   ///< in units of 2^fine_bits quanta
@@ -59,7 +60,7 @@ struct DeviceSums {
 };
 constexpr unsigned kSumWords = sizeof(DeviceSums) / sizeof(unsigned long long);
 
-/// What the kernels of one batch count; zero before each.
+/// Counts for the kernels of one batch; all are zero before each.
 struct Counters {
   unsigned tasks;            ///< of Batch::tasks
   unsigned taken;            ///< of these
@@ -69,7 +70,7 @@ struct Counters {
 
 constexpr unsigned kResultWords = sizeof(core::Totals) / sizeof(unsigned long long);
 
-/// What the host watches, in its own memory.
+/// Holds what the host watches, in its own memory.
 struct HostSignal {
   /// The result of a single query and the number of its overlapping pairs, as 32-bit halves of words, each
   /// below the number of its run. So every half says by itself that it has come, and none has to wait for
@@ -80,7 +81,7 @@ struct HostSignal {
   unsigned long long found;
 };
 
-/// Arguments of the launches; pointers to the device.
+/// Holds the arguments of the launches; pointers are to the device.
 struct Batch {
   const Query* queries;
   unsigned count;
@@ -100,7 +101,7 @@ struct Batch {
 
 constexpr unsigned kMostQueries = 1u << 14;  ///< in one batch
 
-/// What is computed.
+/// Says what is computed.
 enum class Goal { touch, volume, wrench };
 
 }  // namespace innersphere::device

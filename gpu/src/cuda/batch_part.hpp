@@ -1,4 +1,4 @@
-// Some neighbouring queries of a batch on their way over the device and back.
+// Takes some neighbouring queries of a batch over the device and back.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace innersphere::device {
 
-/// Where a part runs.
+/// Says where a part runs.
 struct Device {
   int number = 0;
   unsigned processors = 1;
@@ -19,9 +19,9 @@ struct Device {
   bool time_kernels = false;
 };
 
-/// Keeps its memory from one run to the next. What goes to the device is one copy, or for a single query the
-/// arguments of its launch; sums come home through memory of the host that the kernels write to, so the host
-/// needs no copy and no call to the driver to have them.
+/// Runs a part of a batch. Keeps its memory from one run to the next. What goes to the device is one copy, or
+/// for a single query the arguments of its launch; sums come home through memory of the host that the kernels
+/// write to, so the host needs no copy and no call to the driver to have them.
 class BatchPart {
  public:
   struct Range {
@@ -29,19 +29,19 @@ class BatchPart {
     std::size_t size() const { return end - begin; }
   };
 
-  /// Where the part that begins with query `begin` should end: its memory is bounded.
+  /// Returns where the part that begins with query `begin` should end: its memory is bounded.
   static std::size_t endOf(const std::vector<PreparedQuery>& queries, std::size_t begin);
 
   void start(const Device& device, const std::vector<PreparedQuery>& queries, Range range, Want want,
              Workers& workers);
 
-  /// Moves on what the device is done with. True if results() are there.
+  /// Moves on what the device is done with. Returns true if results() are there.
   bool advance();
   void wait();
 
   Range range() const { return range_; }
   const core::Totals* results() const { return results_.data(); }
-  /// Where contacts or pairs are wanted.
+  /// Returns the lists, where contacts or pairs are wanted.
   const PinnedLists& lists() const { return pair_sorter_.lists(); }
   double kernelTime() const { return kernel_time_; }
 

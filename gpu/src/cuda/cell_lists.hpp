@@ -1,4 +1,4 @@
-// What both ways to make lists share: the hash table, and all that follows it.
+// Holds what both ways to make lists share: the hash table, and all that follows it.
 #pragma once
 
 #include "cuda/build_grid.hpp"
@@ -10,7 +10,8 @@ namespace innersphere::device {
 constexpr unsigned kListThreads = 256;
 constexpr unsigned long long kNoKey = ~0ull;
 
-/// How many cells have a list, and how many places they take, in one number; so both are summed at once.
+/// One number holds how many cells have a list and, in so many low bits, how many places the lists take; so
+/// both are summed at once.
 constexpr int kPlaceBits = 36;
 inline __host__ __device__ std::uint64_t packed(std::uint32_t count) {
   return count == 0 ? 0 : std::uint64_t{1} << kPlaceBits | core::padded(count);
@@ -23,7 +24,8 @@ struct Packed {
   __host__ __device__ std::uint64_t operator()(std::uint32_t count) const { return packed(count); }
 };
 
-/// The cells as a build has them. `sums` are those of packed(counts) before each cell, and after the last.
+/// Describes the cells as a build has them. `sums` are those of packed(counts) before each cell, and after
+/// the last.
 struct CellCounts {
   const std::uint32_t* counts;
   std::uint64_t* sums;
@@ -41,7 +43,7 @@ inline __device__ std::uint64_t keyOf(const GridLevels& grid_levels, std::uint64
   return grid_levels.of[t].keyOf(static_cast<std::uint32_t>(cell - grid_levels.first[t]));
 }
 
-/// A counter for each cell of all grid levels. While the lists are filled, the sums of cells move on.
+/// Has a counter for each cell of all grid levels. While the lists are filled, the sums of cells move on.
 struct DenseCells : CellCounts {
   const core::Cell* used;  ///< those with a list, by rising key
 
@@ -57,7 +59,7 @@ struct DenseCells : CellCounts {
   }
 };
 
-/// Only cells with a list, by rising key.
+/// Has only cells with a list, by rising key.
 struct SortedCells : CellCounts {
   const std::uint64_t* keys;
 
@@ -95,7 +97,7 @@ inline __device__ CellFrame frameOf(const core::GridView& grid, std::uint64_t ke
   return frameOf(grid, static_cast<int>(key >> (3 * core::kAxisBits)), {axis(0), axis(1), axis(2)});
 }
 
-/// Two places of a list.
+/// Returns two places of a list.
 inline __device__ EntryPair entriesOf(const core::GridPlan& plan, const GridArrays& arrays,
                                       const CellFrame& frame, const uint2& places) {
   const auto ball = [&](std::uint32_t place) {
@@ -106,7 +108,7 @@ inline __device__ EntryPair entriesOf(const core::GridPlan& plan, const GridArra
   return pairOf(ball(places.x), ball(places.y));
 }
 
-/// A ball around the balls of a group of clusters; a warp calls it.
+/// Puts a ball around the balls of a group of clusters; a warp calls it.
 inline __device__ void fillGroup(const GridArrays& arrays, std::uint32_t clusters, std::uint64_t group,
                                  unsigned lane) {
   static_assert(kGroup == kWarp, "a lane takes a cluster");
@@ -122,14 +124,14 @@ inline __device__ void fillGroup(const GridArrays& arrays, std::uint32_t cluster
   if (lane == 0) arrays.groups[group] = {middle.x, middle.y, middle.z, __double2float_ru(radius)};
 }
 
-/// Entry `i` of those that follow the lists in Grid::entries.
+/// Fills entry `i` of those that follow the lists in Grid::entries.
 inline __device__ void fillEntryOfAll(const core::GridPlan& grid, const GridArrays& arrays,
                                       std::uint64_t listed, std::uint64_t i) {
   const auto first = static_cast<std::uint32_t>(2 * i);
   arrays.entries[listed / 2 + i] = entriesOf(grid, arrays, frameOfAll(grid.view), {first, first + 1});
 }
 
-/// The cells of the table, and the header: by all threads of a launch.
+/// Fills the cells of the table, and the header, with all threads of a launch.
 template <typename Cells>
 __device__ void finishGrid(const BuildPlan& plan, const GridArrays& arrays, const Cells& cells,
                            const BuildStatus& status, std::uint64_t thread, std::uint64_t threads) {

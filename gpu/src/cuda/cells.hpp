@@ -1,4 +1,4 @@
-// Which cells list the spheres of a cluster, found by a warp.
+// Finds, with a warp, which cells list the spheres of a cluster.
 #pragma once
 
 #include "cuda/build_grid.hpp"
@@ -6,7 +6,7 @@
 
 namespace innersphere::device {
 
-/// A cluster and a grid level for a warp, or a slice of these.
+/// Names a cluster and a grid level for a warp, or a slice of these.
 struct ListTask {
   unsigned cluster, slice, slices;
   int grid_level;
@@ -34,7 +34,7 @@ inline __device__ ListTask listTask(const BuildPlan& plan, unsigned number) {
 constexpr unsigned kTogether = 8;  ///< cells that a lane looks at together
 constexpr unsigned kBoxCells = 512;
 
-/// What a warp shares while it looks at cells.
+/// Holds what a warp shares while it looks at cells.
 struct WarpCells {
   core::CellsNear near[kWarp];
   std::uint32_t counts[kBoxCells];  ///< of the cells of a box; zero between uses
@@ -45,7 +45,7 @@ struct WarpCells {
   }
 };
 
-/// Some cells near one sphere.
+/// Holds some cells near one sphere.
 template <typename Cell>
 struct SomeCells {
   Cell cells[kTogether];
@@ -54,12 +54,12 @@ struct SomeCells {
   std::uint32_t place;              ///< of the sphere
 };
 
-/// The cells near all spheres of a warp.
+/// Holds the cells near all spheres of a warp.
 struct CellBoxOfWarp {
   int lo[3], size[3];
   bool fits;  ///< has no more than kBoxCells
 
-  /// All lanes call it.
+  /// Finds the box; all lanes call it.
   __device__ CellBoxOfWarp(const core::CellsNear& near, bool valid) {
     constexpr int kNone = -(1 << 30);
     float cells = 1;

@@ -1,4 +1,5 @@
-// Of the clusters of a batch, those that can meet the other body: bounds of groups first, then of clusters.
+// Finds those clusters of a batch that can meet the other body: bounds of groups come first, then those of
+// clusters.
 #pragma once
 
 #include "cuda/warp.hpp"

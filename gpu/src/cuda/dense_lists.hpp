@@ -1,5 +1,5 @@
-// The last steps of a build where all cells have a counter: lists are filled in any order, as counted, and
-// then put in order.
+// Does the last steps of a build where all cells have a counter: lists are filled in any order, as counted,
+// and then put in order.
 #pragma once
 
 #include "cuda/cell_lists.hpp"
@@ -78,7 +78,7 @@ inline __device__ void fillGrid(const BuildPlan& plan, const GridArrays& grid, c
 
 constexpr unsigned kLanes = 16;  ///< that put a list in order
 
-/// The memory of a list while it is put in order.
+/// Holds the memory of a list while it is put in order.
 struct alignas(16) ListInOrder {
   std::uint32_t filled[kLongestInOrder];
   std::uint32_t sorted[kLongestInOrder];
@@ -114,7 +114,7 @@ inline __device__ void orderList(const core::GridPlan& plan, const GridArrays& a
   __syncwarp(lanes);
 }
 
-/// kLanes take a cell.
+/// Puts all lists in order; kLanes take a cell.
 inline __device__ void orderLists(const BuildPlan& plan, const GridArrays& grid, const BuildArrays& arrays,
                                   const DenseCells& cells, ListInOrder& shared, const Threads& threads) {
   const unsigned lane = threadIdx.x % kLanes;

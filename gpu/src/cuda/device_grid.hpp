@@ -1,4 +1,4 @@
-// Grids in the memory of a device.
+// Keeps grids in the memory of a device.
 #pragma once
 
 #include "cuda/build_grid.hpp"
@@ -6,8 +6,8 @@
 
 namespace innersphere::device {
 
-/// A grid that the device builds, the same as that of the CPU. It has what the kernels of a query read: no
-/// tree of clusters and no occupancy.
+/// This is a grid that the device builds, the same as that of the CPU. It has what the kernels of a query
+/// read: no tree of clusters and no occupancy.
 class CudaGrid : public DeviceGrid {
  public:
   explicit CudaGrid(int device) : device_(device) {}
@@ -38,8 +38,8 @@ class CudaGrid : public DeviceGrid {
   std::unique_ptr<BuildScratch> scratch_;  ///< kept where it is built more than once
 };
 
-/// The grid on a device, which must be current; built there on first use and when the spheres have changed.
-/// Safe to call from several threads.
+/// Returns the grid on a device, which must be current; it is built there on first use and when the spheres
+/// have changed. Safe to call from several threads.
 const CudaGrid& gridOnDevice(const ModelGrid& grid, int device, cudaStream_t stream);
 
 }  // namespace innersphere::device

@@ -7,8 +7,8 @@
 
 namespace innersphere::device {
 
-/// The list that a sphere of the cluster goes through. A step tests up to kStepPairs pairs of its spheres
-/// that are `steps` apart, so that lanes with neighbouring steps read neighbours.
+/// Describes the list that a sphere of the cluster goes through. A step tests up to kStepPairs pairs of its
+/// spheres that are `steps` apart, so that lanes with neighbouring steps read neighbours.
 struct alignas(16) ListTraversal {
   HalfQuerySphere query_sphere;
   unsigned self;   ///< place, with flags
@@ -18,21 +18,21 @@ struct alignas(16) ListTraversal {
 };
 constexpr unsigned kStepPairs = 4;  ///< see entriesOfAll()
 
-/// The spheres of the cluster that have a list to go through, as all lanes read them.
+/// Holds the spheres of the cluster that have a list to go through, as all lanes read them.
 struct ListTraversals {
   ListTraversal of[kWarp];
   core::Lookup lookups[kWarp];  ///< of those that look into several cells
 };
 
-/// Flags of a query sphere's place.
+/// These are flags of a query sphere's place.
 constexpr unsigned kFromA = 1u << 31;
 constexpr unsigned kSeveral = 1u << 30;  ///< it looks into several cells
 constexpr unsigned kPlace = kSeveral - 1;
 
-/// A pair to decide: query sphere, and where its partner is listed.
+/// Names a pair to decide: the query sphere, and where its partner is listed.
 using Candidate = uint2;
 
-/// The bits of all lanes.
+/// Returns the bits that any lane has.
 inline __device__ unsigned anyLane(unsigned bits) {
 #if __CUDA_ARCH__ >= 800
   return __reduce_or_sync(kAll, bits);
@@ -42,7 +42,7 @@ inline __device__ unsigned anyLane(unsigned bits) {
 #endif
 }
 
-/// Pairs of spheres to test.
+/// Holds pairs of spheres to test.
 struct List {
   std::uint32_t first, count;
   unsigned flags;
@@ -62,8 +62,8 @@ inline __device__ core::Cell cellAt(const core::GridView& grid, std::uint64_t ke
   }
 }
 
-/// What a query sphere meets in the cell number `number` of those where it looks, `count` in all. Nearly all
-/// look into one; beyond the grid there is none.
+/// Returns what a query sphere meets in the cell number `number` of those where it looks, `count` in all.
+/// Nearly all look into one; beyond the grid there is none.
 inline __device__ List listOf(const core::GridView& grid, const core::Lookup& lookup, std::uint32_t number,
                               std::uint32_t& count) {
   constexpr float kEnd = 1 << core::kAxisBits;
@@ -98,8 +98,8 @@ inline __device__ List listOf(const core::GridView& grid, const core::Lookup& lo
   return list;
 }
 
-/// Whether the partner of a query sphere that looks into several cells, at this place of a list, counts in
-/// this one.
+/// Returns true if the partner of a query sphere that looks into several cells, at this place of a list,
+/// counts in this one.
 inline __device__ bool countsHere(const core::GridView& grid, const core::Lookup& lookup,
                                   std::uint32_t number, std::uint32_t listed) {
   const core::Cells cells = core::cellsOf(grid, lookup);
@@ -110,14 +110,14 @@ inline __device__ bool countsHere(const core::GridView& grid, const core::Lookup
                         {s.x - grid.centre.x, s.y - grid.centre.y, s.z - grid.centre.z, s.radius});
 }
 
-/// The lists of a warp, one after the other: a step is in the list that begins last before it.
+/// Holds the lists of a warp, one after the other: a step is in the list that begins last before it.
 struct Lists {
   unsigned begin;  ///< of this lane's list
   bool any;        ///< it has one
   unsigned total;  ///< steps
 
-  /// The number, of those that have a list, of the lane whose step is this lane's. All lanes call it; `first`
-  /// is the step of lane 0.
+  /// Returns the number, of those that have a list, of the lane whose step is this lane's. All lanes call it;
+  /// `first` is the step of lane 0.
   __device__ unsigned ownerOf(unsigned first, unsigned lane) const {
     const unsigned before = __popc(__ballot_sync(kAll, any && begin < first));
     const unsigned ahead = begin - first;
@@ -144,14 +144,14 @@ inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, uns
   return lists;
 }
 
-/// The candidates of a warp that wait to be decided. Most clusters have fewer.
+/// So many candidates of a warp can wait to be decided. Most clusters have fewer.
 constexpr unsigned kQueue = 288;
 using Queue = Candidate[kQueue];
 static_assert(kQueue >= kWarp - 1 + kWarp * 2 * kStepPairs,
               "room for one iteration beside what is left over");
 
-/// One iteration: each lane tests a step. `number` is that of the cell of query spheres that look into
-/// several. False, and nothing is queued, if there is no room. All lanes call it.
+/// Does one iteration: each lane tests a step. `number` is that of the cell of query spheres that look into
+/// several. Returns false, and nothing is queued, if there is no room. All lanes call it.
 inline __device__ bool testStep(const Grid& grid, const Lists& lists, std::uint32_t number, unsigned first,
                                 unsigned lane, const ListTraversals& traversals, Queue& queue,
                                 unsigned& queued) {

@@ -1,6 +1,6 @@
-// The spheres of lists as a traversal tests them: in half precision, two by two, so that one instruction does
-// two of them. Each is a little larger than its sphere, so that nothing is missed: core::Pair has the last
-// word.
+// Makes the spheres of lists what a traversal tests: in half precision, two by two, so that one instruction
+// does two of them. Each is a little larger than its sphere, so that nothing is missed: core::Pair has the
+// last word.
 //
 // Positions are relative to the middle of the list's cell, in its edges. If a query sphere meets a partner,
 // |q - p|
@@ -19,18 +19,18 @@
 
 namespace innersphere::device {
 
-/// Where a list's spheres are measured from.
+/// Says where a list's spheres are measured from.
 struct CellFrame {
   Vec3f middle;  ///< in edges, from the corner of the box around the grid
   float scale;   ///< edges in a metre
 };
 
-/// The frame of the cell with these coordinates; number 0 is before the first.
+/// Returns the frame of the cell with these coordinates; number 0 is before the first.
 inline __device__ CellFrame frameOf(const core::GridView& grid, int grid_level, const Vec3f& cell) {
   return {cell - Vec3f{0.5f, 0.5f, 0.5f}, core::powerOfTwo(-(grid.finest + grid_level))};
 }
 
-/// The frame of the list of all spheres: a cell around them.
+/// Returns the frame of the list of all spheres: a cell around them.
 inline __device__ CellFrame frameOfAll(const core::GridView& grid) {
   const Vec3f& half = grid.half;
   const float scale = core::powerOfTwo(-core::levelOf(fmaxf(fmaxf(half.x, half.y), half.z)));
@@ -48,7 +48,7 @@ inline __device__ __half2 halvesOf(unsigned bits) {
   return x;
 }
 
-/// A ball as halves.
+/// Holds a ball as halves.
 struct HalfBall {
   __half2 xy, z_radius;
 };
@@ -56,9 +56,9 @@ struct HalfBall {
 constexpr float kHalfGrown = 1 + 5.0f / (1 << 11);
 constexpr float kHalfFloor = 1.0f / (1 << 11);  ///< in edges
 
-/// A copy of a ball at `p`, relative to the centre of the grid; its radius is in edges. Squares of halves
-/// reach to 65504, so what is beyond `farthest` becomes a ball about the middle that meets all that has to do
-/// with the cell.
+/// Returns a copy of a ball at `p`, relative to the centre of the grid; its radius is in edges. Squares of
+/// halves reach to 65504, so what is beyond `farthest` becomes a ball about the middle that meets all that
+/// has to do with the cell.
 inline __device__ HalfBall halfBall(const core::GridView& grid, const CellFrame& frame, const Vec3f& p,
                                     float radius, float farthest, float everything) {
   const Vec3f at = frame.scale * (p + grid.half) - frame.middle;
@@ -70,12 +70,13 @@ inline __device__ HalfBall halfBall(const core::GridView& grid, const CellFrame&
   return {xy, __floats2half2_rn(z, kHalfGrown * (radius + moved))};
 }
 
-/// A sphere of a list. A query sphere that has to do with its cell is not farther than 60 edges from it.
+/// Returns the copy of a sphere of a list. A query sphere that has to do with its cell is not farther than 60
+/// edges from it.
 inline __device__ HalfBall partnerBall(const core::GridView& grid, const CellFrame& frame, const Sphere& s) {
   return halfBall(grid, frame, {s.x, s.y, s.z}, frame.scale * s.radius, 128, 120);
 }
 
-/// Meets nothing.
+/// Returns a copy that meets nothing.
 inline __device__ HalfBall noBall() {
   const float far = __int_as_float(0x7f800000);
   return {__floats2half2_rn(far, far), __floats2half2_rn(far, 0)};
@@ -86,7 +87,7 @@ inline __device__ EntryPair pairOf(const HalfBall& a, const HalfBall& b) {
           bitsOf(__lows2half2(a.z_radius, b.z_radius)), bitsOf(__highs2half2(a.z_radius, b.z_radius))};
 }
 
-/// A query sphere's copy.
+/// Holds a query sphere's copy.
 struct HalfQuerySphere {
   unsigned xy, z_reach;
   unsigned smallest;  ///< of copies that are not too small for it; twice
@@ -103,7 +104,7 @@ inline __device__ HalfQuerySphere makeHalfQuerySphere(const core::GridView& grid
 
 constexpr unsigned kFirstMet = 1u << 15, kSecondMet = 1u << 31;
 
-/// Bits for those of two that a query sphere meets.
+/// Returns bits for those of two that a query sphere meets.
 inline __device__ unsigned met(const HalfQuerySphere& query_sphere, const EntryPair& pair) {
   const __half2 xy = halvesOf(query_sphere.xy), z_reach = halvesOf(query_sphere.z_reach);
   const __half2 dx = __hsub2(halvesOf(pair.x), __low2half2(xy));

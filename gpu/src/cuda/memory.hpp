@@ -1,4 +1,4 @@
-// CUDA calls that throw, and memory of the device that frees itself.
+// Declares CUDA calls that throw, and memory of the device that frees itself.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -24,19 +24,19 @@ inline void checkCuda(cudaError_t status, const char* call, const char* file, in
 
 #define INNERSPHERE_CUDA(call) ::innersphere::checkCuda((call), #call, __FILE__, __LINE__)
 
-/// Memory of the device.
+/// Allocates memory of the device.
 struct OnDevice {
   static cudaError_t allocate(void** p, std::size_t bytes) { return cudaMalloc(p, bytes); }
   static void release(void* p) { cudaFree(p); }
 };
 
-/// Memory of the host that the device copies from and to without a detour.
+/// Allocates memory of the host that the device copies from and to without a detour.
 struct Pinned {
   static cudaError_t allocate(void** p, std::size_t bytes) { return cudaMallocHost(p, bytes); }
   static void release(void* p) { cudaFreeHost(p); }
 };
 
-/// An array that keeps its memory and only grows. Growing loses the content.
+/// This is an array that keeps its memory and only grows. Growing loses the content.
 template <typename T, typename Memory>
 class CudaArray {
  public:
@@ -75,7 +75,7 @@ void withScratch(DeviceArray<std::byte>& scratch, const F& f) {
   INNERSPHERE_CUDA(f(scratch.data(), size));
 }
 
-/// A moment in a stream, made on first use.
+/// This is a moment in a stream, made on first use.
 class Event {
  public:
   Event() = default;

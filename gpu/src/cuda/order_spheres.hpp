@@ -1,12 +1,12 @@
-// The first steps of a build: spheres come into their order, and clusters are made of them. Each function is
-// a step that all threads of a launch do together.
+// Does the first steps of a build: spheres come into their order, and clusters are made of them. Each
+// function is a step that all threads of a launch do together.
 #pragma once
 
 #include "cuda/cells.hpp"
 
 namespace innersphere::device {
 
-/// All threads of a launch.
+/// Describes all threads of a launch.
 struct Threads {
   std::uint64_t first, count;
 
@@ -14,7 +14,7 @@ struct Threads {
   __device__ void each(std::uint64_t items, const F& f) const {
     for (std::uint64_t i = first; i < items; i += count) f(i);
   }
-  /// The last warp is the first.
+  /// Returns the same threads with the last warp first.
   __device__ Threads reversed() const {
     return {count - kWarp - first / kWarp * kWarp + first % kWarp, count};
   }
@@ -28,7 +28,7 @@ struct Threads {
   }
 };
 
-/// What the steps work on.
+/// Holds what the steps work on.
 struct BuildArrays {
   const Sphere* given;
   std::uint64_t* keys;
@@ -51,7 +51,7 @@ inline __device__ std::uint32_t bucketOf(const BuildPlan& plan, std::uint64_t ke
   return plan.buckets.first[level] + static_cast<std::uint32_t>(place >> plan.buckets.shift[level]);
 }
 
-/// Each sphere's key, and its number in its bucket.
+/// Finds each sphere's key, and its number in its bucket.
 inline __device__ void makeKeys(const BuildPlan& plan, const BuildArrays& arrays,
                                 const core::HilbertTable& table, const Threads& threads) {
   threads.each(plan.grid.view.count, [&](std::uint64_t i) {
@@ -61,7 +61,7 @@ inline __device__ void makeKeys(const BuildPlan& plan, const BuildArrays& arrays
   });
 }
 
-/// Also clears what later steps, and the next build, find empty.
+/// Brings spheres into their buckets, and clears what later steps, and the next build, find empty.
 inline __device__ void fillBuckets(const BuildPlan& plan, const GridArrays& grid, const BuildArrays& arrays,
                                    std::uint64_t cells, const Threads& threads) {
   threads.each(plan.grid.view.count, [&](std::uint64_t i) {
@@ -76,7 +76,7 @@ inline __device__ void fillBuckets(const BuildPlan& plan, const GridArrays& grid
   if (threads.first == 0) *arrays.longest = 0;
 }
 
-/// Each sphere goes to its place: by its key, then by its index.
+/// Brings each sphere to its place: by its key, then by its index.
 inline __device__ void orderBuckets(const BuildPlan& plan, const GridArrays& grid, const BuildArrays& arrays,
                                     const Threads& threads) {
   threads.each(plan.grid.view.count, [&](std::uint64_t at) {
@@ -96,8 +96,8 @@ inline __device__ void orderBuckets(const BuildPlan& plan, const GridArrays& gri
   });
 }
 
-/// A ball about the middle of the centres of some spheres, around all of them: a lane has one each, which is
-/// not `valid` in those beyond.
+/// Returns a ball about the middle of the centres of some spheres, around all of them: a lane has one each,
+/// which is not `valid` in those beyond.
 inline __device__ Sphere ballAround(const Sphere& s, bool valid) {
   constexpr float kMax = 3.402823466e+38f;
   const auto upper = [&](float x) { return maximum(valid ? x : -kMax); };
@@ -125,7 +125,7 @@ inline __device__ void countCells(const SomeCells<std::uint32_t>& some, bool tog
   __syncwarp();
 }
 
-/// Clusters; with `count`, also what each cell will list.
+/// Makes the clusters; with `count`, also counts what each cell will list.
 inline __device__ void makeClusters(const BuildPlan& plan, const GridArrays& grid, const BuildArrays& arrays,
                                     bool count, WarpCells& shared, const Threads& threads) {
   shared.clear(threads.lane());

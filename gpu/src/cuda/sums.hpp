@@ -8,13 +8,14 @@ namespace innersphere::device {
 constexpr int kPass = 4;                                ///< terms that the lanes exchange at once
 constexpr unsigned kColumnLanes = kWarp / (2 * kPass);  ///< lanes that sum one column
 
-/// Coarse and fine parts of some terms, a row for each lane. Lanes that sum columns use different banks.
+/// Holds coarse and fine parts of some terms, a row for each lane. Lanes that sum columns use different
+/// banks.
 struct Columns {
   static constexpr unsigned kTwos = kWarp / kColumnLanes / 2;  ///< pairs of rows that a lane sums
   static constexpr unsigned kGap = 2 * kColumnLanes;
   alignas(16) double of[2 * kPass][kWarp + kGap];
 
-  /// The sum of the rows of one lane, as integers; see core::Parts.
+  /// Returns the sum of the rows of one lane, as integers; see core::Parts.
   __device__ unsigned long long sum(unsigned lane) const {
     const auto* rows = reinterpret_cast<const ulonglong2*>(of[lane / kColumnLanes]) + lane % kColumnLanes;
     unsigned long long sum = 0ull - 2 * kTwos * core::kMagicBits;
@@ -24,7 +25,7 @@ struct Columns {
   }
 };
 
-/// The sums of a warp: those of each lane, for every pass.
+/// Holds the sums of a warp: those of each lane, for every pass.
 struct Sums {
   static constexpr int kPasses = (core::kTerms + kPass - 1) / kPass;
   unsigned long long of[kPasses][kWarp];
@@ -51,14 +52,14 @@ inline __device__ void addTerm(Limbs& limbs, int bits, bool coarse, unsigned lon
   atomicAdd(&limbs.coarse_high, static_cast<unsigned long long>(whole >> 32));
 }
 
-/// The sums of a warp over one query. The lanes exchange the terms of their pairs, and each keeps its part
-/// of one column of every pass: that takes far fewer registers than sums of all terms in every lane.
+/// Sums for a warp over one query. The lanes exchange the terms of their pairs, and each keeps its part of
+/// one column of every pass: that takes far fewer registers than sums of all terms in every lane.
 template <Goal goal>
 class Summer {
  public:
   __device__ Summer(unsigned lane, Sums& sums) { clear(lane, sums); }
 
-  /// All lanes call it. True if anything overlaps.
+  /// Adds a candidate of each lane; all lanes call it. Returns true if anything overlaps.
   __device__ bool add(const Batch& batch, const Scene& scene, unsigned query, const Candidate& candidate,
                       bool valid, unsigned lane, Columns& columns, Sums& sums) {
     const bool from_a = candidate.x & kFromA;
@@ -83,7 +84,7 @@ class Summer {
     return found_pairs != 0;
   }
 
-  /// True if the next pairs could overflow the sums, also those of some such warps.
+  /// Returns true if the next pairs could overflow the sums, also those of some such warps.
   __device__ bool full() const { return additions_ + 1 > (1u << core::kShortSumBits) / (kWarp * kMostWarps); }
 
   /// Moves the sums to those of the query.
@@ -172,7 +173,7 @@ class Summer {
   unsigned pairs_, additions_;
 };
 
-/// One term of a query's sums, in floating point.
+/// Returns one term of a query's sums, in floating point.
 inline __device__ double totalOf(const DeviceSums& sums, const core::Units& units, int term) {
   const Limbs& limbs = sums.terms[term];
   const core::Unit& unit = unitOf(units, term);
@@ -186,7 +187,7 @@ inline __device__ double totalOf(const DeviceSums& sums, const core::Units& unit
                         unit);
 }
 
-/// What a query gives back: word `word` of core::Totals.
+/// Returns what a query gives back: word `word` of core::Totals.
 template <Goal goal>
 inline __device__ unsigned long long resultOf(const DeviceSums& sums, const core::Units& units,
                                               unsigned word) {

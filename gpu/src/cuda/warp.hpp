@@ -1,11 +1,11 @@
-// What several kernels call.
+// Declares what several kernels call.
 #pragma once
 
 #include "cuda/batch.hpp"
 
 namespace innersphere::device {
 
-/// Some of kTaskClusters neighbouring clusters of one body of a query.
+/// Names some of kTaskClusters neighbouring clusters of one body of a query.
 struct ClusterTask {
   unsigned query;
   unsigned side;   ///< 0: A
@@ -35,8 +35,8 @@ inline __device__ Sphere loadNew(const Sphere* sphere) {
   return {s.x, s.y, s.z, s.w};
 }
 
-/// Stays where it stands: to save registers the compiler would have each of several loads wait for the one
-/// before.
+/// Loads a pair of entries, and stays where it stands: to save registers the compiler would have each of
+/// several loads wait for the one before.
 inline __device__ EntryPair load(const EntryPair* pair) {
   EntryPair p;
   asm volatile("ld.global.v4.u32 {%0, %1, %2, %3}, [%4];"
@@ -46,12 +46,12 @@ inline __device__ EntryPair load(const EntryPair* pair) {
   return p;
 }
 
-/// False if nothing in the ball, which is in the query sphere's frame, can meet the grid.
+/// Returns false if nothing in the ball, which is in the query sphere's frame, can meet the grid.
 inline __device__ bool ballMeets(const core::GridView& grid, const core::Search& search, const Sphere& ball) {
   return core::ballMeets(search, grid, ball);
 }
 
-/// The maximum over all lanes.
+/// Returns the maximum over all lanes.
 template <typename T>
 inline __device__ T maximum(T x) {
   for (unsigned step = 1; step < kWarp; step *= 2) x = max(x, __shfl_xor_sync(kAll, x, step));
@@ -66,13 +66,13 @@ inline __device__ int maximum(int x) {
 #endif
 }
 
-/// The maximum over all lanes, by the order of their bits. Of zeros, the one without a sign.
+/// Returns the maximum over all lanes, by the order of their bits: of zeros, the one without a sign.
 inline __device__ float maximum(float x) {
   const auto swapped = [](int bits) { return bits < 0 ? bits ^ 0x7fffffff : bits; };
   return __int_as_float(swapped(maximum(swapped(__float_as_int(x)))));
 }
 
-/// The sum over this lane and all before it.
+/// Returns the sum over this lane and all before it.
 inline __device__ unsigned scan(unsigned x, unsigned lane) {
   for (unsigned step = 1; step < kWarp; step *= 2) {
     const unsigned before = __shfl_up_sync(kAll, x, step);

@@ -1,4 +1,4 @@
-// The cells of a grid and what they list.
+// Makes the cells of a grid and what they list.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,9 @@
 
 namespace innersphere {
 
-/// The lists come by rising key. The table has open addressing, and cells with smaller keys were there first:
-/// so both depend on nothing but the cells, in whatever order these are found.
+/// Holds a grid's cells and their lists. The lists come by rising key. The table has open addressing, and
+/// cells with smaller keys were there first: so both depend on nothing but the cells, in whatever order these
+/// are found.
 struct CellLists {
   static constexpr std::uint32_t kPastEnd = 16;  ///< so many places behind the last list may be read, too
 
@@ -26,12 +27,12 @@ struct CellLists {
 class CellLister {
  public:
   /// Lists each sphere in all cells where a query sphere can meet it: those of each grid level that are not
-  /// farther from its centre than its radius and the reach of the grid level's query spheres. `centred`: the
-  /// spheres in the order of the grid, relative to its centre.
+  /// farther from its centre than its radius and the reach of the grid level's query spheres. `centred` are
+  /// the spheres in the order of the grid, relative to its centre.
   void list(const core::GridPlan& plan, const Sphere* centred, CellLists& lists);
 
  private:
-  /// A cell of a grid level lists a sphere.
+  /// Says that a cell of a grid level lists a sphere.
   struct DenseEntry {
     std::uint32_t cell;
     std::uint32_t place;
@@ -41,7 +42,7 @@ class CellLister {
     std::uint32_t place;
   };
 
-  /// A vector that does not write to memory before its entries are.
+  /// This is a vector that does not write to memory before its entries are.
   template <typename Entry>
   struct Entries {
     std::unique_ptr<Entry[]> items;
@@ -51,7 +52,7 @@ class CellLister {
       count = 0;
       if (capacity < expected) grow(expected);
     }
-    /// Where the next ones go, up to `more` of them.
+    /// Returns where the next ones go, up to `more` of them.
     Entry* room(std::size_t more) {
       if (count + more > capacity) grow(2 * (count + more));
       return items.get() + count;

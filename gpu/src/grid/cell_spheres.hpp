@@ -1,5 +1,5 @@
-// The spheres that the cells of a grid list, as columns, so that a query sphere tests many of them with one
-// instruction and without looking each of them up.
+// Holds the spheres that the cells of a grid list as columns, so that a query sphere tests many of them with
+// one instruction and without looking each of them up.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace innersphere {
 
-/// Spheres as columns: an array for each coordinate.
+/// Points to spheres as columns: an array for each coordinate.
 struct SphereColumns {
   const float *x, *y, *z, *radius;
 
@@ -20,10 +20,11 @@ struct SphereColumns {
 
 class ListedSpheres {
  public:
-  /// `centred`: what the places in the lists mean. Allocates only where it needs more memory than ever.
+  /// Fills the columns. `centred` is what the places in the lists mean. Allocates only where it needs more
+  /// memory than ever.
   void build(const Sphere* centred, const std::vector<std::uint32_t>& listed);
 
-  /// Parallel to the lists.
+  /// Returns the columns, which are parallel to the lists.
   SphereColumns columns() const {
     const float* const first = memory_.get();
     return {first, first + capacity_, first + 2 * capacity_, first + 3 * capacity_};

@@ -1,5 +1,5 @@
-// Balls around the clusters of a grid, around runs of them, around runs of those, and so on: whole parts of a
-// packing that are far from the other one are passed over at once.
+// Builds balls around the clusters of a grid, around runs of them, around runs of those, and so on: whole
+// parts of a packing that are far from the other one are passed over at once.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,13 @@
 
 namespace innersphere {
 
-/// Clusters that follow each other are neighbours, because they follow a curve that fills space.
+/// Holds the balls of all levels. Clusters that follow each other are neighbours, because they follow a curve
+/// that fills space.
 class ClusterTree {
  public:
   static constexpr std::uint32_t kRun = 32;  ///< balls in one of the next level
 
-  /// Balls are rounded outwards. There must be a cluster.
+  /// Builds the balls, rounded outwards. There must be a cluster.
   void build(const std::vector<core::Cluster>& clusters);
 
   /// Calls f(cluster) for those of the clusters first..end that meet, by rising number, until it returns
@@ -28,7 +29,8 @@ class ClusterTree {
   }
 
  private:
-  /// `first` and `end` are numbers of clusters.
+  /// Visits the balls of one level, and what is below those that meet. `first` and `end` are numbers of
+  /// clusters.
   template <typename Meeting, typename F>
   bool visit(std::size_t level, std::size_t first, std::size_t end, const Meeting& meeting,
              const F& f) const {

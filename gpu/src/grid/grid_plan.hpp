@@ -1,4 +1,4 @@
-// What the grid of some spheres will be like.
+// Plans what the grid of some spheres will be like.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace innersphere {
 /// spheres, not on their order.
 core::GridPlan planGrid(const Sphere* spheres, std::size_t count);
 
-/// Returns a float that is not smaller.
+/// Returns a float that is not smaller than x.
 float roundUp(double x);
 
 }  // namespace innersphere

@@ -12,9 +12,10 @@
 
 namespace innersphere {
 
-/// What building a grid needs besides the grid. Whoever builds many keeps it, and saves its allocations.
+/// Holds what building a grid needs besides the grid. Whoever builds many keeps it, and saves its
+/// allocations.
 struct GridScratch {
-  /// A sphere's key in the order of the grid: its level, then its place on the curve.
+  /// Holds a sphere's key in the order of the grid: its level, then its place on the curve.
   struct Place {
     std::uint64_t key;
     std::uint32_t index;
@@ -23,8 +24,8 @@ struct GridScratch {
   CellLister lister;
 };
 
-/// What each cell lists is counted before it is written, so nothing can overflow, and the grid depends on
-/// nothing but the spheres: it is the same for any number of threads.
+/// Owns a grid on the CPU. What each cell lists is counted before it is written, so nothing can overflow, and
+/// the grid depends on nothing but the spheres: it is the same for any number of threads.
 ///
 /// With volume-true radii the spheres of one packing overlap a little and a cell lists a few more; nothing
 /// relies on how many.
@@ -40,21 +41,21 @@ class HashGrid {
   /// needs more memory than ever.
   void build(const Sphere* spheres, const core::GridPlan& plan, GridScratch& scratch);
 
-  /// Valid until the next build.
+  /// Returns the grid as a query reads it, valid until the next build.
   const core::GridView& view() const { return view_; }
 
-  /// Spheres of finer levels count as of this one.
+  /// Returns the lowest size level; spheres of finer levels count as of this one.
   int lowestLevel() const { return lowest_level_; }
 
   std::size_t tableSize() const { return lists_.table.size(); }
 
-  /// Where a sphere of the packing is in the grid's order.
+  /// Returns where a sphere of the packing is in the grid's order.
   std::uint32_t placeOf(std::uint32_t id) const { return places_[id]; }
 
   const ClusterTree& clusterTree() const { return cluster_tree_; }
   const Occupancy& occupancy() const { return occupancy_; }
 
-  /// The spheres of GridView::listed, as columns.
+  /// Returns the spheres of GridView::listed, as columns.
   SphereColumns listedSpheres() const { return listed_spheres_.columns(); }
 
  private:

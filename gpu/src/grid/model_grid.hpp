@@ -1,4 +1,4 @@
-// The grid of one prefix of a model and one set of radii, on whatever processors it is used.
+// Declares the grid of one prefix of a model and one set of radii, on whatever processors it is used.
 #pragma once
 
 #include <atomic>
@@ -13,30 +13,30 @@
 
 namespace innersphere {
 
-/// A grid in the memory of a device; the CUDA backend makes and knows it.
+/// This is a grid in the memory of a device; the CUDA backend makes and knows it.
 class DeviceGrid {
  public:
   virtual ~DeviceGrid() = default;
   virtual int device() const = 0;
 };
 
-/// Where the spheres of a grid come from.
+/// Gives the spheres of a grid.
 class GridSource {
  public:
   virtual ~GridSource() = default;
-  /// Counts their changes, from 1 on.
+  /// Returns a number that counts the changes of the spheres, from 1 on.
   virtual std::uint64_t version() const = 0;
   /// Calls use(spheres, scratch) with them, in the order of the packing.
   using Use = std::function<void(const Sphere*, GridScratch&)>;
   virtual void withSpheres(std::size_t count, const VolumeTrueRadii* radii, const Use& use) = 0;
 };
 
-/// What is known of a grid comes first; the grid itself is built by each processor when a query first needs
-/// it there, and anew, in its old memory, after the spheres have changed. Safe to use from several threads,
-/// but not while the spheres change.
+/// Holds the grid of one prefix and set of radii. What is known of a grid comes first; the grid itself is
+/// built by each processor when a query first needs it there, and anew, in its old memory, after the spheres
+/// have changed. Safe to use from several threads, but not while the spheres change.
 class ModelGrid {
  public:
-  /// radii: null for those of the spheres.
+  /// Makes a grid of the first `count` spheres; `radii` is null for those of the spheres. Builds nothing yet.
   ModelGrid(GridSource& source, std::size_t count, const VolumeTrueRadii* radii)
       : source_(source), count_(count), radii_(radii) {}
 
@@ -55,7 +55,7 @@ class ModelGrid {
 
   void withSpheres(const GridSource::Use& use) const { source_.withSpheres(count_, radii_, use); }
 
-  /// The lock guards them.
+  /// Holds the grids on devices; the lock guards them.
   struct DeviceGrids {
     std::mutex mutex;
     std::vector<std::unique_ptr<DeviceGrid>> grids;

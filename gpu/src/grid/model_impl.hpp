@@ -1,4 +1,4 @@
-// The grids of a model: one for each prefix and set of radii that was asked for.
+// Holds the grids of a model: one for each prefix and set of radii that was asked for.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@ namespace innersphere {
 struct CollisionModel::Impl : GridSource {
   explicit Impl(std::shared_ptr<const Packing> packing);
 
-  /// The grid for the first `prefix` spheres (0: all). Safe to call from several threads at once.
+  /// Returns the grid for the first `prefix` spheres (0: all). Safe to call from several threads at once.
   const ModelGrid& grid(std::uint32_t prefix, Estimator estimator);
 
-  /// See CollisionModel::update().
+  /// Does what CollisionModel::update() says.
   void update(const Sphere* spheres, std::size_t count);
 
   std::uint64_t version() const override { return version_; }
@@ -37,7 +37,7 @@ struct CollisionModel::Impl : GridSource {
   std::uint64_t version_ = 1;  ///< of the spheres
   std::vector<Sphere> moved_;  ///< those of the last update; empty: those of the packing
 
-  /// Kept from update to update.
+  /// Holds memory that is kept from update to update.
   struct Scratch {
     std::mutex mutex;
     GridScratch grid;

@@ -1,4 +1,4 @@
-// Where a grid has spheres at all, coarsely: a bit for each of 32^3 cells around it.
+// Says where a grid has spheres at all, coarsely: it has a bit for each of 32^3 cells around it.
 #pragma once
 
 #include <array>
@@ -9,15 +9,15 @@
 
 namespace innersphere {
 
-/// Bodies whose bounds meet may still be far apart, as links of a chain are: this says so of most parts of
-/// them, with one lookup.
+/// Tells which parts of a body need no look. Bodies whose bounds meet may still be far apart, as links of a
+/// chain are: this says so of most parts of them, with one lookup.
 class Occupancy {
  public:
   /// Marks the cells near the spheres of a grid, of which only clusters and bounds are used.
   void build(const core::GridView& grid);
 
-  /// False if the ball, which meets the bounds of the grid, meets none of its spheres. `p` is relative to the
-  /// centre of the grid.
+  /// Returns false if the ball, which meets the bounds of the grid, meets none of its spheres. `p` is
+  /// relative to the centre of the grid.
   bool mayMeet(const Vec3f& p, float radius) const {
     if (!(radius <= reach_)) return true;
     const auto cell = [&](float x, float lowest) {

@@ -1,4 +1,4 @@
-// Vectors grouped by direction.
+// Groups vectors by direction.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace innersphere {
 
-/// Keeps its memory for the next vectors.
+/// Groups vectors, and keeps its memory for the next ones.
 class DirectionGroups {
  public:
-  /// Makes room for some vectors.
+  /// Forgets all vectors and makes room for `most` of them.
   void clear(std::size_t most);
 
   /// Adds a vector whose length is not zero.
@@ -30,7 +30,7 @@ class DirectionGroups {
   /// bins.
   std::uint32_t group(double max_angle);
 
-  /// The group of vector number k, after group().
+  /// Returns the group of vector number k, after group().
   std::uint32_t groupOf(std::size_t k) const { return groups_[k]; }
 
  private:

@@ -1,4 +1,4 @@
-// An independent judge of packings, in double precision, that shares no code with the packer.
+// Judges packings in double precision, without any code of the packer's.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,8 @@
 
 namespace innersphere {
 
-/// The worst violations found. Positive lengths are violations; a valid packing has both at or below zero.
+/// Holds the worst violations that check() found. Positive lengths are violations; a valid packing has both
+/// at or below zero. A sphere that is not finite makes both infinite.
 struct CheckReport {
   double worst_overlap = 0;     ///< The largest r_i + r_j - |c_i - c_j| over all pairs of spheres [m].
   std::size_t overlap_i = 0;    ///< The first sphere of that pair.
@@ -22,7 +23,8 @@ struct CheckReport {
   bool valid() const { return worst_overlap <= 0 && worst_protrusion <= 0 && sorted; }
 };
 
-/// Checks a packing by itself and, if `solid` is not null, against its solid.
+/// Checks a packing by itself and, if `solid` is not null, against its solid. Takes any packing; what the
+/// solid throws is passed on.
 CheckReport check(const Packing& packing, const Solid* solid = nullptr);
 
 }  // namespace innersphere

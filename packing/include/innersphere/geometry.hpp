@@ -1,5 +1,5 @@
-// Plain value types that every part of InnerSphere exchanges. No library types appear here, so that a
-// simulation can include the query and the plug-in without Eigen, assimp or CUDA.
+// Declares plain value types that every part of InnerSphere exchanges. No library types appear here, so that
+// a simulation can include the query and the plug-in without Eigen, assimp or CUDA.
 #pragma once
 
 #include <array>
@@ -10,17 +10,17 @@
 
 namespace innersphere {
 
-/// A 3x3 matrix, row-major: element (i, j) is m[3 * i + j].
+/// This is a 3x3 matrix, row-major: element (i, j) is m[3 * i + j].
 using Mat3d = std::array<double, 9>;
 
-/// An axis-aligned box [m]. It is empty when min > max on any axis.
+/// This is an axis-aligned box [m]. It is empty when min > max on any axis.
 struct Bounds {
   Vec3d min{};  ///< The lower corner.
   Vec3d max{};  ///< The upper corner.
 };
 
-/// A ball in single precision: centre and radius [m], in the frame of its packing. It takes sixteen bytes, so
-/// that a GPU thread reads it with one load.
+/// This is a ball in single precision: centre and radius [m], in the frame of its packing. It takes sixteen
+/// bytes, so that a GPU thread reads it with one load.
 struct alignas(16) Sphere {
   float x = 0;       ///< The centre, along x.
   float y = 0;       ///< The centre, along y.
@@ -28,23 +28,24 @@ struct alignas(16) Sphere {
   float radius = 0;  ///< The radius.
 };
 
-/// What a rigid body needs to know of a homogeneous solid, for unit density: a body of density rho has mass
-/// rho * volume and inertia rho * inertia.
+/// Tells a rigid body what it needs to know of a homogeneous solid, for unit density: a body of density rho
+/// has mass rho * volume and inertia rho * inertia.
 struct MassProperties {
-  double volume = 0;       ///< The volume [m^3].
-  Vec3d centre_of_mass{};  ///< The centre of mass [m], in the frame of the solid or of the packing that holds
-                           ///< this.
-  Mat3d inertia{};         ///< The inertia [m^5] about the centre of mass, along the axes of the solid.
+  double volume = 0;  ///< The volume [m^3].
+  /// The centre of mass [m], in the frame of the solid or of the packing that holds this.
+  Vec3d centre_of_mass{};
+  Mat3d inertia{};  ///< The inertia [m^5] about the centre of mass, along the axes of the solid.
 };
 
-/// Triangles in double precision: vertices [m], and three indices of vertices for each triangle.
+/// This is a triangle mesh in double precision: vertices [m], and three indices of vertices for each
+/// triangle.
 struct Mesh {
-  std::vector<Vec3d> vertices;                          ///< Places [m].
+  std::vector<Vec3d> vertices;                          ///< The positions [m].
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into vertices.
 };
 
-/// A closed triangle surface, wound counter-clockwise seen from outside. It serves drawing, ray
-/// tests and convex sweeps, and gives the depth of contacts, which the spheres find.
+/// This is a closed triangle surface, wound counter-clockwise seen from outside. It serves drawing, ray tests
+/// and convex sweeps, and gives the depth of contacts, which the spheres find.
 struct Surface {
   std::vector<std::array<float, 3>> vertices;           ///< The vertices [m].
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into vertices.

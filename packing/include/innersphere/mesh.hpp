@@ -1,4 +1,4 @@
-// A user's triangle mesh: read, judged, mended where that is safe, and turned into a solid.
+// Reads and judges a user's triangle mesh, mends it where that is safe, and turns it into a solid.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace innersphere {
 
-/// How meshes are read and judged.
+/// Says how meshes are read and judged.
 struct MeshOptions {
   /// The factor by which readMesh() multiplies all coordinates: 0.001 for a file in millimetres. It must be
   /// positive. makeSolid() ignores it.
@@ -21,7 +21,7 @@ struct MeshOptions {
   bool repair = false;
 };
 
-/// What was found in a mesh.
+/// Tells what was found in a mesh.
 struct MeshReport {
   std::size_t vertices = 0;    ///< The number of vertices after equal positions were welded.
   std::size_t triangles = 0;   ///< The number of triangles without the degenerate ones.
@@ -40,21 +40,22 @@ struct MeshReport {
 };
 
 /// Reads a mesh through assimp (OBJ, STL, PLY, OFF, glTF, ...), with node transforms applied in double and
-/// equal positions welded. assimp keeps coordinates in single precision: what is far
-/// from its origin is read coarsely, and makeSolid() notes it. Throws Error: file_not_found,
-/// bad_format, empty_input, not_finite, bad_argument (the scale).
+/// equal positions welded. assimp keeps coordinates in single precision: what is far from its origin is read
+/// coarsely, and makeSolid() notes it. Throws Error: file_not_found, bad_format, empty_input, not_finite,
+/// bad_argument (the scale).
 Mesh readMesh(const std::string& path, const MeshOptions& options = {});
 
-/// Judges a mesh and makes it a solid with exact distances. Mends what is safe and notes it: welds equal
-/// positions, and those within 1e-7 of the diagonal if the mesh is open without that; drops degenerate
-/// triangles; winds triangles like their neighbours; turns shells that are inside-out; drops shells inside
-/// solid material that face outwards. A shell inside another that faces inwards stays: a cavity. Shells may
-/// cut themselves and each other: inside is where the winding number exceeds 1/2, mass properties count each
-/// point once (by sampling 64 cells along the longest side), and distances are to the nearest triangle, so
-/// that spheres keep away from inner ones too. Throws Error: not_a_solid if the mesh does not bound a volume
-/// and repair was not asked for, with the defect, its place and the way out; empty_input, not_finite,
-/// bad_argument (a triangle names a vertex that is not there). `report` may be null; it is filled in also
-/// when not_a_solid is thrown.
+/// Judges a mesh and makes it a solid with exact distances. It mends what is safe and notes it: it welds
+/// equal positions, and those within 1e-7 of the diagonal if the mesh is open without that; it drops
+/// degenerate triangles, winds triangles like their neighbours, turns shells that are inside-out, and drops
+/// shells inside solid material that face outwards. A shell inside another that faces inwards stays: a
+/// cavity. Shells may cut themselves and each other: inside is where the winding number exceeds 1/2, mass
+/// properties count each point once (by sampling 64 cells along the longest side), and distances are to the
+/// nearest triangle, so that spheres keep away from inner ones too.
+///
+/// Throws Error: not_a_solid if the mesh does not bound a volume and repair was not asked for, with the
+/// defect, its place and the way out; empty_input, not_finite, bad_argument (a triangle names a vertex that
+/// is not there). `report` may be null; it is filled in also when not_a_solid is thrown.
 std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshOptions& options = {},
                                  MeshReport* report = nullptr);
 

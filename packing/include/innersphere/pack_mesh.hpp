@@ -1,4 +1,4 @@
-// From triangles in memory to a packing, kept on disk so that the next start of a program reads it.
+// Packs triangles in memory, and keeps the packing on disk so that the next start of a program reads it.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace innersphere {
 
-/// A mesh from arrays: three coordinates [m] a vertex, three indices a triangle, both without gaps. Scalar is
-/// float or double, Index any integer type.
+/// Makes a mesh from arrays: three coordinates [m] a vertex, three indices a triangle, both without gaps.
+/// Scalar is float or double, Index any integer type. Indices are not checked here, but by makeSolid().
 template <typename Scalar, typename Index>
 Mesh meshFrom(const Scalar* coordinates, std::size_t vertex_count, const Index* indices,
               std::size_t triangle_count) {
@@ -26,22 +26,26 @@ Mesh meshFrom(const Scalar* coordinates, std::size_t vertex_count, const Index* 
   return mesh;
 }
 
-/// What a simulation needs of a packing when it starts: `spheres` of them. 256 are enough for contacts, whose
-/// depth is measured on the surface; overlap volumes and solids with thin walls need thousands. Errors of
-/// overlap volumes are not measured, which halves the time: BoundedOverlap::error is NaN for such packings.
+/// Returns what a simulation needs of a packing when it starts: `spheres` of them. 256 are enough for
+/// contacts, whose depth is measured on the surface; overlap volumes and solids with thin walls need
+/// thousands. Errors of overlap volumes are not measured, which halves the time: BoundedOverlap::error is NaN
+/// for such packings.
 PackOptions startUpOptions(std::size_t spheres = 256);
 
-/// How packMesh() packs, and where it keeps the result.
+/// Says how packMesh() packs, and where it keeps the result.
 struct PackMeshOptions {
-  PackOptions pack = startUpOptions();  ///< when to stop, and how greedy to be
-  /// The function accepts a mesh that does not bound a volume, see MeshOptions::repair.
+  /// When to stop, and how greedy to be; startUpOptions() by default.
+  PackOptions pack = startUpOptions();
+  /// Whether a mesh is accepted that does not bound a volume, see MeshOptions::repair. Off by default: such a
+  /// mesh is an Error.
   bool repair = false;
-  /// Folder of the cache; it is made where there is none. Files in it are never deleted and may be deleted at
-  /// any time. Empty, the default: every call packs. defaultCacheFolder() names a good place.
+  /// The folder of the cache; it is made where there is none. Files in it are never deleted by InnerSphere
+  /// and may be deleted at any time. Empty, the default: every call packs. defaultCacheFolder() names a good
+  /// place.
   std::string cache_folder;
-  /// The function hands it one sentence, without a line break, for everything that is wrong with the cache: a
-  /// damaged file, a folder that cannot be written to. None of these is an error: the mesh is packed, only
-  /// the time is lost, in the next start too. Null, the default, writes to the standard error stream.
+  /// Receives one sentence, without a line break, for everything that is wrong with the cache: a damaged
+  /// file, a folder that cannot be written to. None of these is an error: the mesh is packed, only the time
+  /// is lost, in the next start too. Null, the default, writes to the standard error stream.
   std::function<void(const std::string& message)> notice;
 };
 
@@ -58,8 +62,8 @@ struct PackMeshOptions {
 Packing packMesh(const Mesh& mesh, const std::string& name, const PackMeshOptions& options = {},
                  const Progress& progress = {});
 
-/// $XDG_CACHE_HOME/innersphere, or else $HOME/.cache/innersphere; empty, which is no cache, if neither is
-/// set.
+/// Returns $XDG_CACHE_HOME/innersphere, or else $HOME/.cache/innersphere. Returns an empty string, which is
+/// no cache, if neither variable is set.
 std::string defaultCacheFolder();
 
 }  // namespace innersphere

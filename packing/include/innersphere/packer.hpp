@@ -9,8 +9,8 @@
 
 namespace innersphere {
 
-/// When the packer stops, how greedy it is and what it measures. The first limit that is reached ends the
-/// packing. A limit of 0 is not set.
+/// Says when the packer stops, how greedy it is and what it measures. The first limit that is reached ends
+/// the packing. A limit of 0 is not set. Options out of range make pack() throw Error bad_argument.
 struct PackOptions {
   /// The number of spheres at which the packer stops. 0: no limit.
   std::size_t spheres = 10000;
@@ -18,9 +18,9 @@ struct PackOptions {
   /// is. 0: 1e-4 of the diagonal of the solid's bounding box. The packer uses at least 1e-5 of the longest
   /// side.
   double min_radius = 0;
-  /// The fraction of the solid, 0 to 1, at which the packer stops once the spheres fill it.
+  /// The fraction of the solid, 0 to 1, at which the packer stops once the spheres fill it. 0: no limit.
   double density = 0;
-  /// The packer stops when no point of the surface is farther than this from a sphere [m].
+  /// The packer stops when no point of the surface is farther than this from a sphere [m]. 0: no limit.
   double gap = 0;
   /// Each sphere has at least 1/(1+delta) of the largest radius possible when it is placed, 0.001 to 1. A
   /// smaller delta is denser and slower: 0.1 costs 0.1 points of density against 0.01 and is four times
@@ -36,11 +36,11 @@ struct PackOptions {
   int threads = 0;
 };
 
-/// Packs a solid by certified greedy insertion. Ends before all limits when the solid is full: a ball after
-/// one sphere. Whatever ended it, the certificate says how large a sphere could still fit. Size and place of
-/// the solid do not matter: the same solid gives the same spheres, to single precision. Where two places are
-/// equally good, as in symmetric solids or a million sizes away, rounding decides. Throws Error:
-/// bad_argument, no_sphere_fits, not_finite (the solid's distances), cancelled.
+/// Packs a solid by certified greedy insertion and returns the packing. It ends before all limits when the
+/// solid is full: a ball after one sphere. Whatever ended it, the certificate says how large a sphere could
+/// still fit. Size and place of the solid do not matter: the same solid gives the same spheres, to single
+/// precision. Where two places are equally good, as in symmetric solids or a million sizes away, rounding
+/// decides. Throws Error: bad_argument, no_sphere_fits, not_finite (the solid's distances), cancelled.
 Packing pack(const Solid& solid, const PackOptions& options = {}, const Progress& progress = {});
 
 }  // namespace innersphere

@@ -1,4 +1,4 @@
-// An inner-sphere packing: the result of packing/ and the input of gpu/.
+// Declares an inner-sphere packing: the result of packing/ and the input of gpu/.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace innersphere {
 
-/// Radii that make the first `count` spheres stand for the whole volume of the solid. A sphere's cell is the
-/// part of the solid that is nearer to its surface than to any other sphere's. Its volume-true radius is that
-/// of a ball with the volume of its cell, a little larger at the surface and a little smaller behind, so that
-/// shallow overlaps come out right as well. No sphere is smaller than it was. The balls' volumes sum to the
-/// solid's, so neighbouring volume-true spheres overlap a little, and some reach out of the surface.
+/// Holds radii that make the first `count` spheres stand for the whole volume of the solid. A sphere's cell
+/// is the part of the solid that is nearer to its surface than to any other sphere's. Its volume-true radius
+/// is that of a ball with the volume of its cell, a little larger at the surface and a little smaller behind,
+/// so that shallow overlaps come out right as well. No sphere is smaller than it was. The balls' volumes sum
+/// to the solid's, so neighbouring volume-true spheres overlap a little, and some reach out of the surface.
 struct VolumeTrueRadii {
   std::uint32_t count = 0;   ///< The length of the prefix.
   std::vector<float> radii;  ///< The radii [m], `count` of them, in the order of the spheres.
@@ -23,7 +23,7 @@ struct VolumeTrueRadii {
       0;  ///< The standard error of one cell's volume, relative to the mean volume, 0 to 1.
 };
 
-/// What the packer guarantees about the fill.
+/// Tells what the packer guarantees about the fill.
 struct Certificate {
   /// Each sphere had at least 1/(1+delta) of the largest radius that was possible when it was placed. 0 means
   /// that nothing is certified (an imported packing).
@@ -32,7 +32,7 @@ struct Certificate {
   double largest_missing_radius = 0;
 };
 
-/// How well the packing fills its solid.
+/// Tells how well the packing fills its solid.
 struct Quality {
   double density = 0;   ///< The volume of the spheres over the volume of the solid, 0 to 1.
   double gap_mean = 0;  ///< The mean distance from the surface to the nearest sphere [m].
@@ -40,14 +40,15 @@ struct Quality {
   double gap_max = 0;  ///< The largest sampled distance [m]: the covering radius, by which a contact is late.
 };
 
-/// Depths of overlaps, as volumes relative to the solid's. Errors are given for the bins between two depths.
+/// These are depths of overlaps, as volumes relative to the solid's. Errors are given for the four bins
+/// between two depths.
 inline constexpr std::array<double, 5> kOverlapBins{0, 0.01, 0.05, 0.15, 1};
 
-/// How far overlap volumes found with the spheres are from the truth. The packer measures this with the solid
-/// and copies of it at different places, 0.2 % to 45 % of its volume deep, unless PackOptions::overlap_errors
-/// is off. Each array has a number for each bin of kOverlapBins.
+/// Tells how far overlap volumes found with the spheres are from the truth. The packer measures this with the
+/// solid and copies of it at different places, 0.2 % to 45 % of its volume deep, unless
+/// PackOptions::overlap_errors is off. Each array has a number for each bin of kOverlapBins.
 struct OverlapErrors {
-  /// The errors of one prefix.
+  /// Holds the errors of one prefix.
   struct Prefix {
     std::uint32_t count = 0;              ///< The length of the prefix, one that has volume-true radii.
     std::array<double, 4> raw{};          ///< The mean |relative error| with the spheres' own radii.
@@ -59,7 +60,7 @@ struct OverlapErrors {
   std::vector<Prefix> prefixes;  ///< The errors by rising count. May be empty.
 };
 
-/// Where a packing comes from, so that a file can be traced and made again.
+/// Tells where a packing comes from, so that a file can be traced and made again.
 struct Provenance {
   std::string source;       ///< The path of the mesh or the name of the solid.
   std::string source_hash;  ///< The hash of the geometry, hexadecimal.
@@ -67,8 +68,8 @@ struct Provenance {
   std::string version;      ///< The version of InnerSphere that wrote it.
 };
 
-/// Spheres inside a solid that do not overlap each other, sorted by falling radius: the first n of them are a
-/// valid, coarser packing. A packing is immutable by convention once made; share it with
+/// Holds spheres inside a solid that do not overlap each other, sorted by falling radius: the first n of them
+/// are a valid, coarser packing. A packing is immutable by convention once made; share it with
 /// std::shared_ptr<const Packing>. All places are in the packing's own frame, which is the solid's, moved to
 /// `origin`.
 struct Packing {
@@ -89,7 +90,7 @@ struct Packing {
   std::vector<float> mass_weights;
   /// What a user should know, a sentence each, such as parts of the solid that got no sphere.
   std::vector<std::string> warnings;
-  Provenance provenance;  ///< where the packing comes from
+  Provenance provenance;  ///< Where the packing comes from.
 };
 
 /// Returns the stored volume-true radii of the longest prefix that is not longer than `count`, or null if

@@ -1,4 +1,4 @@
-// What can be packed: anything with a distance to its surface.
+// Declares what can be packed: anything with a distance to its surface.
 #pragma once
 
 #include <limits>
@@ -9,14 +9,15 @@
 
 namespace innersphere {
 
-/// The point of a solid's surface that is nearest to a query point.
+/// This is the point of a solid's surface that is nearest to a query point.
 struct ClosestPoint {
   double distance = 0;  ///< The unsigned distance [m].
   Vec3d point{};        ///< The nearest point [m].
 };
 
-/// A bounded solid. Implementations are immutable and safe to query from several threads at once. Only
-/// distances from the inside need to be exact; outside, a lower bound is enough.
+/// This is a bounded solid with a distance to its surface. Implementations are immutable and safe to query
+/// from several threads at once. Only distances from the inside need to be exact; outside, a lower bound is
+/// enough.
 class Solid {
  public:
   virtual ~Solid() = default;

@@ -1,4 +1,4 @@
-// The project's own solids, so that demos and tests need no mesh files.
+// Makes the project's own solids, so that demos and tests need no mesh files.
 #pragma once
 
 #include <functional>
@@ -10,19 +10,22 @@
 
 namespace innersphere {
 
-// Solids with an exact distance. Centred at the origin; lengths in metres; Error bad_argument where a length
-// is not > 0.
-std::unique_ptr<Solid> makeBall(double radius);     ///< Its centre is the origin.
-std::unique_ptr<Solid> makeBox(const Vec3d& size);  ///< The edges have these full lengths.
-std::unique_ptr<Solid> makeTorus(double ring_radius,
-                                 double tube_radius);               ///< The ring lies about the z axis.
-std::unique_ptr<Solid> makeCylinder(double radius, double height);  ///< Its axis is the z axis.
+// These solids have an exact distance. Their makers throw Error bad_argument where a length is not > 0.
+
+/// Makes a ball with its centre at the origin [m].
+std::unique_ptr<Solid> makeBall(double radius);
+/// Makes a box around the origin whose edges have these full lengths [m].
+std::unique_ptr<Solid> makeBox(const Vec3d& size);
+/// Makes a torus around the origin whose ring lies about the z axis [m].
+std::unique_ptr<Solid> makeTorus(double ring_radius, double tube_radius);
+/// Makes a cylinder around the origin along the z axis, of this full height [m].
+std::unique_ptr<Solid> makeCylinder(double radius, double height);
 
 /// Makes a solid from a signed distance, which is negative and exact inside. Outside it may be too small.
 /// Mass properties are found by sampling the box `bounds`, which has to hold the solid, at `resolution` cells
 /// (1 to 1024) along its longest side, to a relative error of about 1 / resolution^2 for smooth shapes; the
-/// surface at half the resolution, with rounded edges. Throws Error: bad_argument, not_a_solid (the distance
-/// is negative nowhere).
+/// surface at half the resolution, with rounded edges. Throws Error: bad_argument (bounds, resolution, no
+/// function), not_a_solid (the distance is negative nowhere).
 std::unique_ptr<Solid> makeDistanceSolid(const std::string& name,
                                          std::function<double(const Vec3d&)> signed_distance,
                                          const Bounds& bounds, int resolution = 128);
@@ -41,7 +44,7 @@ std::unique_ptr<Solid> makeDifference(std::shared_ptr<const Solid> a, std::share
 /// of radial clearance, where it is moved up by h and turned by 2 pi h / 0.125 counter-clockwise seen from
 /// above. The tray is an open container, 2 x 2 x 1, standing on z = 0, with walls and a floor of 0.2.
 std::unique_ptr<Solid> makeNamedSolid(const std::string& name);
-/// The names that makeNamedSolid() knows.
+/// Returns the names that makeNamedSolid() knows.
 std::vector<std::string> namedSolids();
 
 }  // namespace innersphere

@@ -1,4 +1,4 @@
-// Boxes along the axes.
+// Computes with boxes along the axes.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ inline bool isFinite(const Vec3d& a) {
   return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
 }
 
-/// A box that holds nothing and grows by extend().
+/// Returns a box that holds nothing and grows by extend().
 inline Bounds emptyBounds() {
   constexpr double inf = std::numeric_limits<double>::infinity();
   return {{inf, inf, inf}, {-inf, -inf, -inf}};

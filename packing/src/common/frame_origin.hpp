@@ -1,12 +1,13 @@
-// Where a packing has its origin.
+// Decides where a packing has its origin.
 #pragma once
 
 #include "common/bounds.hpp"
 
 namespace innersphere {
 
-/// The middle of the box, rounded to about its size, so that spheres in it lose little in single precision.
-/// Zero if the box is nearer than eight of its sizes: such a solid shall keep its coordinates.
+/// Returns the middle of the box [m], rounded to about its size, so that spheres in it lose little in single
+/// precision. Returns zero if the box is nearer than eight of its sizes: such a solid shall keep its
+/// coordinates.
 inline Vec3d frameOrigin(const Bounds& box) {
   const Vec3d size = box.max - box.min;
   const double longest = std::max({size[0], size[1], size[2]});

@@ -1,4 +1,4 @@
-// A hash that is the same on every machine, to recognise a geometry again.
+// Hashes numbers and text, the same on every machine, to recognise a geometry again.
 #pragma once
 
 #include <bit>
@@ -7,7 +7,7 @@
 
 namespace innersphere {
 
-/// FNV-1a, 64 bits, fed with numbers in little-endian order.
+/// This is the hash FNV-1a of 64 bits, fed with numbers in little-endian order.
 class Hash {
  public:
   void add(std::uint64_t x) {
@@ -21,6 +21,7 @@ class Hash {
     for (unsigned char c : text) add(std::uint64_t{c});
   }
 
+  /// Returns the hash as 16 hexadecimal digits.
   std::string text() const {
     std::string digits(16, '0');
     for (int i = 0; i < 16; ++i) digits[i] = "0123456789abcdef"[(state_ >> (60 - 4 * i)) & 15];

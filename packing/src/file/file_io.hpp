@@ -1,14 +1,14 @@
-// Whole files, read with a limit and written all or nothing.
+// Reads whole files with a limit, and writes them all or nothing.
 #pragma once
 
 #include <string>
 
 namespace innersphere {
 
-/// The ending of a path in lower case, without the dot.
+/// Returns the ending of a path in lower case, without the dot.
 std::string endingOf(const std::string& path);
 
-/// Throws Error: file_not_found, bad_format (over 2 GiB, or not readable).
+/// Returns the bytes of a file. Throws Error: file_not_found, bad_format (over 2 GiB, or not readable).
 std::string readFile(const std::string& path);
 
 /// Writes to a temporary name in the same folder and renames that, so that nobody ever sees half a file. A

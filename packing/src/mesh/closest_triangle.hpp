@@ -1,4 +1,4 @@
-// Nearest point of a set of triangles.
+// Finds the nearest point of a set of triangles.
 #pragma once
 
 #include <memory>
@@ -11,13 +11,15 @@
 
 namespace innersphere {
 
-/// Embree's tree over the triangles. Embree works in float, so the tree is built over a centred copy of unit
-/// diagonal with boxes rounded outwards, and serves only to leave out triangles that are certainly too far;
-/// distances and the choice among the rest are in double and equal brute force bit for bit (the lowest index
-/// wins a tie).
+/// Holds Embree's tree over the triangles. Embree works in float, so the tree is built over a centred copy of
+/// unit diagonal with boxes rounded outwards, and serves only to leave out triangles that are certainly too
+/// far; distances and the choice among the rest are in double and equal brute force bit for bit (the lowest
+/// index wins a tie).
 class ClosestTriangle {
  public:
+  /// Builds the tree. Throws std::runtime_error if Embree cannot be started or has no memory for it.
   explicit ClosestTriangle(const Mesh& mesh);
+  /// Returns the nearest point; beyond `cutoff` [m] the distance is infinity.
   ClosestPoint closest(const Vec3d& p, double cutoff) const;
 
  private:

@@ -1,4 +1,4 @@
-// Making one vertex of what is one point.
+// Makes one vertex of what is one point, and removes triangles that are none.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,13 @@ void weldEqual(Mesh& mesh);
 /// Merges each vertex into the first earlier one within `tolerance` [m]. Returns how many went.
 std::size_t weldClose(Mesh& mesh, double tolerance);
 
-/// Removes triangles with two equal corners. Returns how many.
+/// Removes triangles with two equal corners. Returns how many went.
 std::size_t dropCollapsed(Mesh& mesh);
 
-/// Removes triangles with three different corners and no area. Returns how many.
+/// Removes triangles with three different corners and no area. Returns how many went.
 std::size_t dropFlat(Mesh& mesh);
 
+/// Turns a triangle over.
 void flip(std::array<std::uint32_t, 3>& triangle);
 
 }  // namespace innersphere

@@ -1,4 +1,4 @@
-// Triangles that cut each other.
+// Finds triangles that cut each other.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,10 @@
 
 namespace innersphere {
 
+/// Holds how many pairs of triangles cut each other.
 struct Cuts {
   std::size_t pairs = 0;
-  Vec3d at{};  ///< a corner of one of the first pair
+  Vec3d at{};  ///< a corner of one of the first pair [m]
 };
 
 /// Finds the pairs of triangles of which one has an edge that passes through the other, away from common

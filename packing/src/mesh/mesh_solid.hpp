@@ -1,4 +1,4 @@
-// A triangle mesh as a solid.
+// Makes a solid of a triangle mesh.
 #pragma once
 
 #include "innersphere/mesh.hpp"
@@ -10,9 +10,9 @@ namespace innersphere {
 
 class MeshSolid : public Solid {
  public:
-  /// `closed`: each edge is used as often in one direction as in the other. Inside is where the winding
-  /// number exceeds 1/2. If it may be other than 0 and 1 somewhere, `count_once` corrects the mass properties
-  /// for that by sampling.
+  /// Makes a solid of a closed mesh: each edge is used as often in one direction as in the other. Inside is
+  /// where the winding number exceeds 1/2. If it may be other than 0 and 1 somewhere, `count_once` corrects
+  /// the mass properties for that by sampling.
   MeshSolid(Mesh closed, const std::string& name, bool count_once);
 
   ClosestPoint closestPoint(const Vec3d& p, double cutoff) const override;

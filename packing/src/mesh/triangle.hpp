@@ -1,11 +1,11 @@
-// The nearest point of one triangle, in double.
+// Finds the nearest point of one triangle, in double.
 #pragma once
 
 #include "common/bounds.hpp"
 
 namespace innersphere {
 
-/// A triangle with what its nearest-point query needs again and again.
+/// This is a triangle with what its nearest-point query needs again and again.
 class Triangle {
  public:
   Triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) : a_(a), ab_(b - a), ac_(c - a) {
@@ -27,8 +27,8 @@ class Triangle {
     }
   }
 
-  /// The nearest point to p and its squared distance. The point lies on the triangle even where rounding
-  /// picks a wrong one, so the distance errs upwards only, and by no more than rounding.
+  /// Finds the nearest point to p and returns its squared distance [m^2]. The point lies on the triangle even
+  /// where rounding picks a wrong one, so the distance errs upwards only, and by no more than rounding.
   double closest(const Vec3d& p, Vec3d& point) const {
     const Vec3d ap = p - a_;
     const double s = dot(to_s_, ap);

@@ -1,5 +1,5 @@
-// Inside or outside, by the generalised winding number: 1 inside and 0 outside of a closed mesh, in between
-// near the holes of an open one (Jacobson et al. 2013).
+// Tells inside from outside by the generalised winding number: 1 inside and 0 outside of a closed mesh, in
+// between near the holes of an open one (Jacobson et al. 2013).
 #pragma once
 
 #include <vector>
@@ -8,14 +8,16 @@
 
 namespace innersphere {
 
-/// Solid angle of a triangle as seen from p, over 4 pi; positive where p is on its inner side.
+/// Returns the solid angle of a triangle as seen from p, over 4 pi; it is positive where p is on its inner
+/// side.
 double windingNumber(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
-/// A tree that lets far triangles count as one dipole (Barill et al. 2018). For a closed mesh the sum is an
-/// integer, and the error of the dipoles, under 0.2, is far from changing it.
+/// This is a tree that lets far triangles count as one dipole (Barill et al. 2018). For a closed mesh the sum
+/// is an integer, and the error of the dipoles, under 0.2, is far from changing it.
 class WindingTree {
  public:
   explicit WindingTree(const Mesh& mesh);
+  /// Returns the winding number of the mesh around p.
   double windingNumber(const Vec3d& p) const;
 
  private:

@@ -1,4 +1,4 @@
-// Branch and bound in one block of the octree.
+// Searches one block of the octree by branch and bound.
 #pragma once
 
 #include <span>
@@ -24,19 +24,21 @@ namespace innersphere {
 /// where the usual Lipschitz bound is tight to first order: cells need not become small.
 class CellSearch {
  public:
+  /// This is a sphere that was found to fit.
   struct Candidate {
     Ball ball;
     std::uint64_t order = 0;  ///< place along the Z-order curve, decides between equal radii
   };
 
+  /// Tells what a search has found.
   struct Result {
     std::vector<Cell> cells;            ///< the live leaves, with their bounds
     std::vector<Candidate> candidates;  ///< disjoint within this block, larger than `wanted`
   };
 
-  /// `top`: no sphere larger than this fits. `wanted`: spheres larger than this are looked for. `bound`: a
-  /// cell that holds none larger than this is done. As bound > wanted, a cell is decided before it is much
-  /// smaller than their difference.
+  /// Prepares a search. `top`: no sphere larger than this fits. `wanted`: spheres larger than this are looked
+  /// for. `bound`: a cell that holds none larger than this is done. As bound > wanted, a cell is decided
+  /// before it is much smaller than their difference.
   CellSearch(const Container& container, const SphereGrid& placed, double top, double bound, double wanted)
       : container_(container),
         placed_(placed),
@@ -45,6 +47,7 @@ class CellSearch {
         wanted_(wanted),
         clearances_(container.margin()) {}
 
+  /// Searches the cells of one block.
   Result search(std::span<const Cell> cells);
 
  private:
@@ -53,7 +56,7 @@ class CellSearch {
 
   enum class Verdict { below, found, undecided };
 
-  /// The obstacle that determines the radius at a point x.
+  /// This is the obstacle that determines the radius at a point x.
   struct Probe {
     double value;          ///< about x, a sphere has at most this radius; exactly this if it exceeds `enough`
     Point gradient;        ///< of value, away from the obstacle
@@ -70,20 +73,20 @@ class CellSearch {
   /// Lowers the cell's bound. The balls that can matter in it are balls_[begin, ...).
   Verdict bound(Cell& cell, std::size_t begin);
 
-  /// The bound proven by the programme's dual variables. Cut k of the programme is cuts[k].
+  /// Returns the bound proven by the programme's dual variables. Cut k of the programme is cuts[k].
   double provenBound(const DualSimplex& program, std::span<const Probe> cuts, const Point& centre,
                      double half) const;
 
-  /// Puts larger balls behind the walls that hold the optimum down, for they curve less; false if there are
-  /// none.
+  /// Puts larger balls behind the walls that hold the optimum down, for they curve less. Returns false if
+  /// there are none.
   bool flatten(const DualSimplex& program, double half, std::vector<Probe>& cuts);
 
-  /// The largest empty ball, up to `radius`, that touches the surface at `wall` from outside; or just the
-  /// point.
+  /// Returns the largest empty ball, up to `radius`, that touches the surface at `wall` from outside; or just
+  /// the point.
   Ball ballBehind(const Point& wall, const Point& normal, double radius);
 
-  /// Moves up from x, where a sphere that is wanted fits, to a local maximum, and makes it a candidate. False
-  /// if the solid contradicts itself there.
+  /// Moves up from x, where a sphere that is wanted fits, to a local maximum, and makes it a candidate.
+  /// Returns false if the solid contradicts itself there.
   bool climb(Point x);
 
   /// Looks at balls_[begin, end) and, if those leave more than `enough`, at the surface. The side of a point
@@ -91,7 +94,7 @@ class CellSearch {
   Probe probe(const Point& x, std::size_t begin, std::size_t end, double enough, double negligible);
   Probe nearestBall(const Point& x, std::size_t begin, std::size_t end) const;
 
-  /// True if x, which is `distance` away from the surface, is inside.
+  /// Returns true if x, which is `distance` away from the surface, is inside.
   bool isInside(const Point& x, double distance);
 
   static Point direction(const Point& from, const Point& to);

@@ -1,4 +1,4 @@
-// Which part of the solid each sphere stands for.
+// Finds which part of the solid each sphere stands for.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace innersphere {
 
-/// The volumes of the balls' cells. A ball's cell is the part of the solid that is nearer to its surface than
-/// to any other ball's (an Apollonius diagram, also called additively weighted Voronoi diagram).
+/// Holds the volumes of the balls' cells. A ball's cell is the part of the solid that is nearer to its
+/// surface than to any other ball's (an Apollonius diagram, also called additively weighted Voronoi diagram).
 struct CellVolumes {
   std::vector<double> volumes;  ///< One for each ball, in units of the unit cube. They sum to the solid's.
   double sampling_error = 0;    ///< The standard error of one volume, relative to the mean volume.

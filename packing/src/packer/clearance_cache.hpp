@@ -1,4 +1,4 @@
-// What is known of the surface around the points that were looked at.
+// Remembers what is known of the surface around the points that were looked at.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +9,19 @@
 
 namespace innersphere {
 
-/// Points with a distance that the surface certainly keeps from them, and the side that they lie on. Asking a
-/// solid whether a point is inside is expensive; mostly it follows from an entry nearby.
+/// Holds points with a distance that the surface certainly keeps from them, and the side that they lie on.
+/// Asking a solid whether a point is inside is expensive; mostly it follows from an entry nearby.
 class ClearanceCache {
  public:
   struct Entry {
     Point at;
     double distance;  ///< positive inside, negative outside
 
-    /// How far the surface stays away from x; not positive if x is out of reach.
+    /// Returns how far the surface stays away from x; it is not positive if x is out of reach.
     double clearance(const Point& x) const { return std::abs(distance) - (x - at).norm(); }
   };
 
-  /// `margin` is more than the rounding error of any distance.
+  /// Makes an empty cache. `margin` is more than the rounding error of any distance.
   explicit ClearanceCache(double margin) : margin_(margin) {}
 
   void add(const Point& at, double distance) {
@@ -32,7 +32,7 @@ class ClearanceCache {
     }
   }
 
-  /// The entry with the largest clearance at x, or null if none reaches x.
+  /// Returns the entry with the largest clearance at x, or null if none reaches x.
   const Entry* around(const Point& x) const {
     const Entry* best = nullptr;
     double most = margin_;
@@ -48,8 +48,8 @@ class ClearanceCache {
     return best;
   }
 
-  /// 1 inside, -1 outside, 0 unknown; `clear` is the distance of x from the surface. If that empty ball meets
-  /// the empty ball of an entry, both are on the same side.
+  /// Returns 1 inside, -1 outside, 0 if unknown; `clear` is the distance of x from the surface. If that empty
+  /// ball meets the empty ball of an entry, both are on the same side.
   int side(const Point& x, double clear) const {
     for (const Entry& entry : entries_) {
       if (entry.clearance(x) + clear > margin_) return entry.distance > 0 ? 1 : -1;
@@ -57,8 +57,8 @@ class ClearanceCache {
     return 0;
   }
 
-  /// Whether x is inside the solid, asked of the solid only if the entries do not tell. What is learnt is
-  /// kept; `reach` bounds the distances that are of use.
+  /// Returns true if x is inside the solid, asked of the solid only if the entries do not tell. What is
+  /// learnt is kept; `reach` bounds the distances that are of use.
   bool contains(const Container& container, const Point& x, double reach) {
     if (const Entry* known = around(x)) return known->distance > 0;
     const double distance = std::min(container.closest(x, reach).distance, reach);

@@ -1,4 +1,4 @@
-// The solid to be packed, in the packer's own coordinates.
+// Shows the solid to be packed in the packer's own coordinates.
 #pragma once
 
 #include "innersphere/solid.hpp"
@@ -15,37 +15,38 @@ class Container {
     Point point;
   };
 
-  /// Throws Error bad_argument if the bounds are not finite or out of range, no_sphere_fits if they are empty
-  /// or too far away for double precision.
+  /// Maps a solid, which must outlive the container. Throws Error: bad_argument if the bounds are not finite
+  /// or out of range, no_sphere_fits if they are empty or too far away for double precision.
   explicit Container(const Solid& solid);
 
   const Solid& solid() const { return solid_; }
   double side() const { return side_; }  ///< metres per unit
 
-  /// The origin of the packing's frame (see Packing::origin).
+  /// Returns the origin of the packing's frame [m] (see Packing::origin).
   const Vec3d& origin() const { return origin_; }
 
+  /// Returns the nearest point of the surface. Throws Error not_finite if the solid gives no number.
   Nearest closest(const Point& x, double cutoff) const;
   bool contains(const Point& x) const { return solid_.contains(toWorld(x)); }
 
   Vec3d toWorld(const Point& x) const;
   Point fromWorld(const Vec3d& p) const;
 
-  /// More than the rounding error of a distance.
+  /// Returns more than the rounding error of a distance, in units of the cube.
   double margin() const { return margin_; }
 
-  /// The largest ball inside this one that a Sphere can be, less a margin, so that whoever computes distances
-  /// in double agrees that it is inside. Single precision comes in here, after all decisions, so that these
-  /// are the same for all sizes and places.
+  /// Returns the largest ball inside this one that a Sphere can be, less a margin, so that whoever computes
+  /// distances in double agrees that it is inside. Single precision comes in here, after all decisions, so
+  /// that these are the same for all sizes and places.
   Ball rounded(const Ball& ball) const;
 
-  /// A radius is at most this much smaller than before rounding, and a relative 1e-7.
+  /// Returns by how much a radius is smaller after rounding, at most, beside a relative 1e-7.
   double coarseness() const { return coarseness_; }
 
-  /// The ball as it is stored, in the packing's frame; exact for rounded ones.
+  /// Returns the ball as it is stored, in the packing's frame [m]; it is exact for rounded ones.
   Sphere toSphere(const Ball& ball) const;
 
-  /// The mesh as it is stored.
+  /// Returns the mesh as it is stored, in the packing's frame [m].
   Surface toSurface(const Mesh& mesh) const;
 
  private:

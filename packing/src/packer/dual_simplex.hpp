@@ -1,4 +1,4 @@
-// The small linear programme at the heart of the search.
+// Solves the small linear programme at the heart of the search.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +16,10 @@ class DualSimplex {
  public:
   explicit DualSimplex(double half) : half_(half) {}
 
+  /// Adds a function and finds the new optimum.
   void add(double value, const Point& gradient);
 
+  /// Returns how many functions were added.
   int size() const { return static_cast<int>(rows_.size()) - kFaces; }
   double optimum() const { return optimum_[0]; }
   Point argmax() const { return optimum_.tail<3>(); }
@@ -36,7 +38,7 @@ class DualSimplex {
  private:
   static constexpr int kFaces = 6;
 
-  /// A constraint normal . (optimum, y) <= bound.
+  /// This is a constraint normal . (optimum, y) <= bound.
   struct Row {
     Eigen::Vector4d normal;
     double bound;

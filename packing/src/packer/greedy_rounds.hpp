@@ -1,4 +1,4 @@
-// The greedy packing in rounds.
+// Packs greedily, in rounds.
 #pragma once
 
 #include <tbb/task_arena.h>
@@ -17,7 +17,7 @@ namespace innersphere {
 /// the Z-order curve, so the result does not depend on threads.
 class GreedyRounds {
  public:
-  /// What has been placed, in the order of placing.
+  /// Holds what has been placed, in the order of placing.
   struct Placed {
     SphereGrid grid;
     std::vector<Ball> rounded;  ///< the balls as they are stored
@@ -36,7 +36,7 @@ class GreedyRounds {
   /// searches run in `arena`.
   Placed run(tbb::task_arena& arena, const Stop& stop, const Pause& pause) const;
 
-  /// A cell to be searched, and the block of the octree that it is in.
+  /// This is a cell to be searched, and the block of the octree that it is in.
   struct Active {
     std::uint64_t block;
     Cell cell;
@@ -48,7 +48,7 @@ class GreedyRounds {
   /// Searches all active cells, which it sorts into blocks, in parallel.
   std::vector<CellSearch::Result> search(std::vector<Active>& active, const Round& round,
                                          const SphereGrid& grid) const;
-  /// Inserts the candidates that do not overlap what was placed before them. True if `stop` says so.
+  /// Inserts the candidates that do not overlap what was placed before them. Returns true if `stop` says so.
   bool insert(const std::vector<CellSearch::Candidate>& candidates, float top, const Stop& stop,
               Placed& placed) const;
 

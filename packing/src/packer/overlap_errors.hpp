@@ -1,4 +1,4 @@
-// How far overlap volumes found with the spheres are from the truth.
+// Measures how far overlap volumes found with the spheres are from the truth.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Packings kept on disk, each in a file named after what it was made from.
+// Keeps packings on disk, each in a file named after what it was made from.
 #pragma once
 
 #include <optional>
@@ -9,20 +9,23 @@
 
 namespace innersphere {
 
-/// One entry of a folder. Its file is a line that says what it belongs to and what its bytes add up to, and
-/// then the packing as in a .cbor file.
+/// This is one entry of a folder. Its file is a line that says what it belongs to and what its bytes add up
+/// to, and then the packing as in a .cbor file.
 class PackCache {
  public:
-  /// Of a mesh, the options that it is packed with, and this version of InnerSphere; hexadecimal.
+  /// Returns the key of a mesh, the options that it is packed with, and this version of InnerSphere; it is
+  /// hexadecimal.
   static std::string keyOf(const Mesh& mesh, const std::string& options);
 
+  /// Names an entry; touches no file.
   PackCache(const std::string& folder, const std::string& key);
 
-  /// Nothing if there is no file. Throws Error bad_format if the file belongs to something else or is
-  /// damaged, file_not_found if it cannot be opened.
+  /// Returns the packing, or nothing if there is no file. Throws Error: bad_format if the file belongs to
+  /// something else or is damaged, file_not_found if it cannot be opened.
   std::optional<Packing> read() const;
 
-  /// Makes the folder, too. The file appears only when it is complete. Throws Error write_failed.
+  /// Writes the file, and makes the folder where there is none. The file appears only when it is complete.
+  /// Throws Error write_failed.
   void write(const Packing& packing) const;
 
  private:

@@ -1,4 +1,4 @@
-// The options of a packing as text.
+// Writes the options of a packing as text.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace innersphere {
 
-/// Those that change the result, as a command line.
+/// Returns the options that change the spheres, as a command line.
 std::string commandLine(const PackOptions& options);
 
 }  // namespace innersphere

@@ -11,9 +11,9 @@
 
 namespace innersphere {
 
-/// A hierarchical hash grid of balls inside the unit cube: a ball is listed once, in the cell of its centre
-/// on the level whose cells are just as wide as the ball or up to twice as wide. Reading from several threads
-/// is safe.
+/// This is a hierarchical hash grid of balls inside the unit cube: a ball is listed once, in the cell of its
+/// centre on the level whose cells are just as wide as the ball or up to twice as wide. Reading from several
+/// threads is safe.
 class SphereGrid {
  public:
   SphereGrid();
@@ -31,10 +31,10 @@ class SphereGrid {
     std::uint32_t index = 0;
   };
 
-  /// The ball with the smallest distance below `cutoff`; infinity if there is none.
+  /// Returns the ball with the smallest distance below `cutoff`; the distance is infinity if there is none.
   Nearest nearest(const Point& x, double cutoff) const;
 
-  /// The ball with the smallest distance; `guess` is about what is expected. There must be a ball.
+  /// Returns the ball with the smallest distance; `guess` is about what is expected. There must be a ball.
   Nearest nearestOfAll(const Point& x, double guess) const;
 
  private:

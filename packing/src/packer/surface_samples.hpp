@@ -1,4 +1,4 @@
-// Points on the surface, to see how near the spheres come to it.
+// Samples points on the surface, to see how near the spheres come to it.
 #pragma once
 
 #include <optional>
@@ -10,23 +10,24 @@
 
 namespace innersphere {
 
-/// Points spread over a triangle surface, equally dense everywhere and the same on every run.
+/// Holds points spread over a triangle surface, equally dense everywhere and the same on every run.
 class SurfaceSamples {
  public:
-  /// `surface` in metres; no points if it has no area.
+  /// Samples a surface in metres; there are no points if it has no area.
   SurfaceSamples(const Mesh& surface, const Container& container);
 
   bool empty() const { return points_.empty(); }
 
-  /// True if no point is farther than `gap` from a ball. Starts at point `first` and moves it to the first
-  /// that is too far, so that asking again after more balls were added costs little.
+  /// Returns true if no point is farther than `gap` from a ball. Starts at point `first` and moves it to the
+  /// first that is too far, so that asking again after more balls were added costs little.
   bool covered(const SphereGrid& grid, double gap, std::size_t& first) const;
 
-  /// The first n balls that leave no point farther than `gap` from a ball; nothing if all together do not.
+  /// Returns how many of the first balls leave no point farther than `gap` from a ball; nothing if all
+  /// together do not.
   std::optional<std::size_t> prefixWithin(const SphereGrid& grid, double gap) const;
 
-  /// The distances' mean, 95th percentile and maximum, in units of the unit cube. Runs in the current TBB
-  /// arena.
+  /// Returns the distances' mean, 95th percentile and maximum, in units of the unit cube. Runs in the current
+  /// TBB arena.
   Quality measure(const SphereGrid& grid) const;
 
  private:

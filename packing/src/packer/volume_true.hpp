@@ -1,4 +1,4 @@
-// Radii with which spheres stand for the whole solid.
+// Finds radii with which spheres stand for the whole solid.
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@
 
 namespace innersphere {
 
-/// Radii [m] of balls with the volumes of their cells, then adjusted near the surface (see VolumeTrueRadii).
-/// Runs in the current TBB arena.
+/// Returns the radii [m] of balls with the volumes of their cells, then adjusted near the surface (see
+/// VolumeTrueRadii). Runs in the current TBB arena.
 VolumeTrueRadii volumeTrueRadii(const Container& container, std::span<const Ball> balls,
                                 const CellVolumes& cells);
 

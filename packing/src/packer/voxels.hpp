@@ -1,4 +1,4 @@
-// A solid as a set of sample points, to find how much of it two placements share.
+// Makes a set of sample points of a solid, to find how much of it two placements share.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 
 namespace innersphere {
 
-/// Where a copy of the solid is, in the packer's coordinates: x -> rotation x + shift.
+/// Says where a copy of the solid is, in the packer's coordinates: x -> rotation x + shift.
 struct Pose {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Point shift = Point::Zero();
@@ -18,12 +18,12 @@ struct Pose {
   Point apply(const Point& x) const { return rotation * x + shift; }
 };
 
-/// A lattice with a jittered point in each cell, and whether that is inside the solid. Both solids of an
-/// overlap are sampled so: the points of the copy are looked up in the cells of the original. The mean over
-/// many jitters would be exact, whatever the shape.
+/// This is a lattice with a jittered point in each cell, and whether that is inside the solid. Both solids of
+/// an overlap are sampled so: the points of the copy are looked up in the cells of the original. The mean
+/// over many jitters would be exact, whatever the shape.
 class Voxels {
  public:
-  /// About `wanted` points inside; fewer if the solid is thin. Runs in the current TBB arena.
+  /// Takes about `wanted` points inside; fewer if the solid is thin. Runs in the current TBB arena.
   Voxels(const Container& container, double volume, double wanted);
 
   struct Shared {
@@ -31,20 +31,20 @@ class Voxels {
     double error = 0;     ///< standard error of it: half of the difference of two halves of the points
   };
 
-  /// What the solid shares with its copy; from every `stride`-th point.
+  /// Returns what the solid shares with its copy, by every `stride`-th point.
   Shared shared(const Pose& pose, std::size_t stride = 1) const;
 
-  /// A length by which x is at least outside of the solid, or 0 if that is not known.
+  /// Returns a length by which x is at least outside of the solid, or 0 if that is not known.
   double outsideBy(const Point& x) const;
 
  private:
   using Index = std::array<std::uint32_t, 3>;
 
-  /// A cube of cells with its points, and how far its middle is from the surface: negative outside. The
-  /// points of a copy's block that lands far from the surface need not be looked at one by one.
+  /// This is a cube of cells with its points. The points of a copy's block that lands far from the surface
+  /// need not be looked at one by one.
   struct Block {
     Point centre;
-    double distance = 0;
+    double distance = 0;  ///< of its middle from the surface; negative outside
     std::array<std::size_t, 2> begin{}, end{};
   };
 

@@ -1,4 +1,4 @@
-// Ball, box, torus and cylinder with a name of one's choice.
+// Makes ball, box, torus and cylinder with a name of one's choice.
 #pragma once
 
 #include <memory>

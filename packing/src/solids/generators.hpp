@@ -1,4 +1,4 @@
-// Clean closed triangle meshes from a few curves.
+// Makes clean closed triangle meshes from a few curves.
 #pragma once
 
 #include <array>
@@ -11,14 +11,15 @@ namespace innersphere {
 using Ring = std::vector<Vec3d>;
 using Polygon = std::vector<std::array<double, 2>>;
 
-/// n points of a circle about the z axis at height z, counter-clockwise seen from above, the first at angle
-/// 0.
+/// Returns n points of a circle about the z axis at height z, counter-clockwise seen from above, the first at
+/// angle 0.
 Ring circle(double radius, double z, int n);
 
-/// A polygon of the xy plane, lifted to height z.
+/// Returns a polygon of the xy plane, lifted to height z.
 Ring lifted(const Polygon& polygon, double z);
 
-/// Triangulates a simple polygon, counter-clockwise, by cutting ears: indices into its points, wound alike.
+/// Triangulates a simple polygon, counter-clockwise, by cutting ears. Returns indices into its points, wound
+/// alike.
 std::vector<std::array<std::uint32_t, 3>> triangulate(const Polygon& polygon);
 
 /// Joins rings of equal length, each to the next, by strips whose diagonals run from point i to i + 1 of the
@@ -27,7 +28,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const Polygon& polygon);
 /// has to be flat, level and simple.
 Mesh loft(const std::vector<Ring>& rings, bool closed);
 
-/// The mesh with its inside outside.
+/// Returns the mesh with its inside outside.
 Mesh turned(Mesh mesh);
 
 }  // namespace innersphere

@@ -1,4 +1,4 @@
-// The meshes of the named solids: closed, wound outwards, free of self-intersections.
+// Makes the meshes of the named solids: closed, wound outwards, free of self-intersections.
 #pragma once
 
 #include "innersphere/mesh.hpp"
@@ -15,7 +15,7 @@ Mesh nutMesh();
 Mesh boltMesh();
 Mesh chazelleMesh();
 
-/// Chazelle's polyhedron with this many wedges from below and from above.
+/// Returns Chazelle's polyhedron with this many wedges from below and from above.
 Mesh wedgedCube(int wedges);
 
 }  // namespace innersphere

@@ -1,5 +1,5 @@
-// From the triangles of a Bullet program to a model for PackingShape. modelFrom() needs InnerSphere::packer;
-// the plug-in itself does not.
+// Turns the triangles of a Bullet program into a model for PackingShape. A program that calls modelFrom() has
+// to link InnerSphere::packer, which the plug-in itself does not need.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,16 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// The triangles of all sub-parts [m], scaled by getScaling(). Vertices may be PHY_FLOAT or PHY_DOUBLE,
-/// indices PHY_INTEGER, PHY_SHORT or PHY_UCHAR, which are unsigned, as everywhere in Bullet. Throws Error
-/// bad_argument: another type, a sub-part without arrays, or an index beyond its number of vertices.
+/// Returns the triangles of all sub-parts as one mesh [m], scaled by getScaling(). Vertices may be PHY_FLOAT
+/// or PHY_DOUBLE, indices PHY_INTEGER, PHY_SHORT or PHY_UCHAR, which are unsigned, as everywhere in Bullet.
+/// Throws Error bad_argument for another type, a sub-part without arrays, or an index beyond its number of
+/// vertices.
 Mesh meshFrom(const btStridingMeshInterface& triangles);
 
-/// Packs the triangles, or reads what an earlier start of the program has packed, if options.cache_folder is
-/// set: see packMesh(), whose errors it throws, too. The frame of the model is that of the triangles; see
+/// Packs the triangles and returns the model, or reads what an earlier start of the program has packed, if
+/// options.cache_folder is set: see packMesh(). The frame of the model is that of the triangles; see
 /// PackingShape for what that means for bodies. Where a body was scaled before, scale either the triangles,
-/// on each axis as you like, or, by one factor, the shape. A program that calls it links InnerSphere::packer.
+/// on each axis as you like, or, by one factor, the shape. Throws what meshFrom() and packMesh() throw.
 ///
 ///     innersphere::PackMeshOptions options;
 ///     options.cache_folder = innersphere::defaultCacheFolder();

@@ -1,4 +1,4 @@
-// Contacts, overlaps and spheres in Bullet's debug drawer.
+// Draws contacts, overlaps and spheres with Bullet's debug drawer.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
@@ -9,17 +9,23 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// What is drawn.
+/// Says what a ContactDrawer draws.
 struct ContactDrawerOptions {
-  bool patches = true;  ///< outline of the points of each patch, blue
-  bool normals = true;  ///< from each point out of the second body, as long as the body's size times how much
-                        ///< of its weight in a step, m 9.81 dt, the point carries; red, at least a tenth
-  bool volumes = true;  ///< a ball of the shared volume at its centroid, magenta; costs a query a pair
-  bool spheres = false;  ///< the spheres that bodies collide with, each as three circles: slow, yellow
+  /// Whether the points of each patch of contact are joined by blue lines.
+  bool patches = true;
+  /// Whether a red line leads from each point out of the second body. It is as long as the smaller body's
+  /// size, times the part of the heavier body's weight in a step, m 9.81 dt, that the point carries: a tenth
+  /// to all of the size.
+  bool normals = true;
+  /// Whether a magenta ball of the volume that both bodies share is drawn at its centroid. It costs a volume
+  /// query for each pair, as pairOverlaps() does.
+  bool volumes = true;
+  /// Whether the spheres that bodies collide with are drawn in yellow, which is slow.
+  bool spheres = false;
 };
 
-/// Add it to a world, and the world's debugDrawWorld() calls it, where the drawer's mode has wireframes,
-/// boxes or normals:
+/// Draws the contacts of a world. Add it to the world, and debugDrawWorld() calls it, where the drawer's mode
+/// has wireframes, boxes or normals:
 ///
 ///     ContactDrawer drawer(world);
 ///     world.addAction(&drawer);
@@ -27,19 +33,19 @@ struct ContactDrawerOptions {
 /// The world must outlive it. Without a registration in the world's dispatcher nothing is drawn.
 class ContactDrawer : public btActionInterface {
  public:
-  /// Draws what the dispatcher of this world knows.
+  /// Draws what the dispatcher of `world` knows. The world must outlive the drawer.
   explicit ContactDrawer(btCollisionWorld& world, const ContactDrawerOptions& options = {})
       : world_(world), options_(options) {}
 
-  /// Bullet calls it in each step.
+  /// Notes the time step. Bullet calls it in each step, so programs need not.
   void updateAction(btCollisionWorld* world, btScalar time_step) override;
-  /// Bullet calls it from debugDrawWorld().
+  /// Draws with `drawer`; null draws nothing. Bullet calls it from debugDrawWorld().
   void debugDraw(btIDebugDraw* drawer) override;
 
  private:
   btCollisionWorld& world_;
   ContactDrawerOptions options_;
-  btScalar time_step_ = btScalar(1) / 60;  ///< of the last step [s]
+  btScalar time_step_ = btScalar(1) / 60;  ///< The length of the last step [s].
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,4 +1,4 @@
-// Where the plug-in says what it cannot throw: it runs inside Bullet's callbacks.
+// Lets the plug-in say what it cannot throw, because it runs inside Bullet's callbacks.
 #pragma once
 
 #include <functional>
@@ -9,11 +9,12 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Takes one sentence without a line break.
+/// Receives one message for people, without a line break.
 using LogCallback = std::function<void(const std::string& message)>;
 
-/// Replaces the receiver; null restores the default, which writes to the standard error stream. Messages come
-/// from the thread that steps the world, one at a time.
+/// Replaces the receiver of messages. Null restores the default, which writes to the standard error stream.
+/// Messages come one at a time, from whichever thread has found something wrong. The callback must not call
+/// setLogCallback(), which would wait for it to return.
 void setLogCallback(LogCallback callback);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,4 +1,4 @@
-// The narrow phase for packings: one line to add to a Bullet program.
+// Adds the narrow phase for packings to a Bullet program, with one line.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -17,18 +17,22 @@ struct PackingCollisionAlgorithm {
   /// which Bullet itself walks down to their children. Call it after
   /// btGImpactCollisionAlgorithm::registerAlgorithm, which overwrites every row of its own. Calling it again
   /// replaces the options. `dispatcher` is a btCollisionDispatcher, or derived from it, as every dispatcher
-  /// of Bullet's is. Throws Error: bad_argument (null, another kind of dispatcher, options out of range),
-  /// no_device.
+  /// of Bullet's is.
+  ///
   /// Contacts are written to the dispatcher's manifolds by all threads, when Bullet asks for the first pair
   /// of a step. Where the user has set a near-callback, or any of Bullet's global callbacks of contacts, they
-  /// are written as Bullet asks for them, pair by pair and by the thread that asks, which takes longer.
-  /// A dispatcher that collides pairs with a btManifoldResult of its own class must do so in a near-callback.
-  /// A dispatcher may ask for several pairs at once, as btCollisionDispatcherMt does: they are processed in
-  /// parallel, and bodies move the same, but that penalty forces act in the order in which it asks.
-  /// Shapes are read by all threads, too; a concave shape of the user's own is asked for its triangles by one
-  /// after the other.
+  /// are written as Bullet asks for them, pair by pair and by the thread that asks, which takes longer. A
+  /// dispatcher that collides pairs with a btManifoldResult of its own class must do so in a near-callback. A
+  /// dispatcher may ask for several pairs at once, as btCollisionDispatcherMt does: they are processed in
+  /// parallel, and bodies move the same, but that penalty forces act in the order in which it asks. Shapes
+  /// are read by all threads, too; a concave shape of the user's own is asked for its triangles by one after
+  /// the other.
+  ///
+  /// Throws Error: bad_argument (a null pointer, another kind of dispatcher, one without a collision
+  /// configuration, a pool of algorithms whose elements are too small, options out of range), no_device
+  /// (Backend::cuda without a device).
   static void registerAlgorithm(btDispatcher* dispatcher, const ContactOptions& options = {});
-  /// The same for the dispatcher of a world. Contacts then follow the settings of its solver
+  /// Registers with the dispatcher of a world, as above. Contacts then follow the settings of its solver
   /// (btContactSolverInfo: warm starting, friction ERP, split impulse), as they are in each step; else they
   /// are made for Bullet's defaults, as they are after a registration of the dispatcher alone. The world must
   /// live as long as its dispatcher is used.
@@ -41,14 +45,15 @@ struct PackingCollisionAlgorithm {
   /// dispatcher that is not registered.
   static void unregisterAlgorithm(btDispatcher* dispatcher);
 
-  /// Whether packings collide in the worlds of a dispatcher. Where one was forgotten, Bullet collides convex
-  /// shapes with the triangles of a packing, as with a hollow mesh, and lets packings fall through each
-  /// other, through planes and through meshes. The log names the packing when Bullet's narrow phase asks for
-  /// its triangles first. Where it never does, the log says so within some hundred steps, but only if no
-  /// dispatcher was ever registered in this process: Bullet does not tell which world a shape is in.
+  /// Returns true if packings collide in the worlds of a dispatcher. Where a registration was forgotten,
+  /// Bullet collides convex shapes with the triangles of a packing, as with a hollow mesh, and lets packings
+  /// fall through each other, through planes and through meshes. The log names the packing when Bullet's
+  /// narrow phase asks for its triangles first. Where it never does, the log says so within some hundred
+  /// steps, but only if no dispatcher was ever registered in this process: Bullet does not tell which world a
+  /// shape is in.
   static bool isRegistered(const btDispatcher* dispatcher);
 
-  /// The options that the dispatcher was registered with last. Throws Error bad_argument if it is not
+  /// Returns the options that the dispatcher was registered with last. Throws Error bad_argument if it is not
   /// registered.
   static ContactOptions options(const btDispatcher* dispatcher);
 };

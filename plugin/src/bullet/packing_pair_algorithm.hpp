@@ -1,4 +1,4 @@
-// Bullet's collision algorithm for a pair with a packing in it.
+// Declares Bullet's collision algorithm for a pair with a packing in it.
 #pragma once
 
 #include <memory>
@@ -10,15 +10,18 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Holds a pair of the table, and hands on what Bullet asks of it.
 class PairAlgorithm : public btCollisionAlgorithm {
  public:
-  /// `closest`: answers closest-point queries, without touching the dispatcher's manifolds.
+  /// Adds a pair to the table, or, if `closest`, answers closest-point queries without touching the
+  /// dispatcher's manifolds.
   PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, std::shared_ptr<Registration> registration,
                 bool closest);
   ~PairAlgorithm() override;
 
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo& dispatch, btManifoldResult* result) override;
+  /// Returns 1, the end of the step: the algorithm looks for no earlier impact.
   btScalar calculateTimeOfImpact(btCollisionObject* body0, btCollisionObject* body1,
                                  const btDispatcherInfo& dispatch, btManifoldResult* result) override;
   void getAllContactManifolds(btManifoldArray& manifolds) override;

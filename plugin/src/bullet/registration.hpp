@@ -1,4 +1,4 @@
-// What one dispatcher was told, shared by its algorithms.
+// Holds what one dispatcher was told, shared by its algorithms.
 #pragma once
 
 #include <deque>
@@ -14,7 +14,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 class Registration;
 
-/// An entry of a dispatcher's table.
+/// This is an entry of a dispatcher's table. Pairs without a packing go to what was there before.
 class CreateFunc : public btCollisionAlgorithmCreateFunc {
  public:
   CreateFunc(Registration& registration, btCollisionAlgorithmCreateFunc* previous, bool closest)
@@ -31,16 +31,18 @@ class CreateFunc : public btCollisionAlgorithmCreateFunc {
   bool closest_;
 };
 
+/// Holds the table of pairs of one dispatcher, and fills the dispatcher's own table of algorithms.
 class Registration : public std::enable_shared_from_this<Registration> {
  public:
   explicit Registration(btCollisionDispatcher* dispatcher) : table_(dispatcher) {}
 
-  /// The registration of a dispatcher, made on first use and kept until remove(), or to the end of the
-  /// process: a dispatcher does not tell when it goes, and its table refers to our functions until then.
+  /// Returns the registration of a dispatcher, which is made on first use and kept until remove(), or to the
+  /// end of the process: a dispatcher does not tell when it goes, and its table refers to our functions until
+  /// then.
   static Registration& of(btCollisionDispatcher* dispatcher);
-  /// The same, or null if there is none.
+  /// Returns the registration, or null if there is none.
   static std::shared_ptr<Registration> find(const btCollisionDispatcher* dispatcher);
-  /// From now on the dispatcher has none. What is kept lives as long as pairs do.
+  /// Takes the registration from a dispatcher. What is kept for it lives as long as pairs do.
   static void remove(btCollisionDispatcher* dispatcher);
 
   PairTable& table() { return table_; }

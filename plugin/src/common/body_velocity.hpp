@@ -1,4 +1,4 @@
-// How fast a body moves, whatever kind of body it is.
+// Finds how fast a body moves, whatever kind of body it is.
 #pragma once
 
 #include <LinearMath/btVector3.h>
@@ -10,7 +10,7 @@ class btCollisionObject;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Zero for what is neither a rigid body nor part of a multi-body.
+/// Holds the velocity of a rigid body or of a part of a multi-body. It is zero for any other body.
 struct BodyVelocity {
   explicit BodyVelocity(const btCollisionObject& object);
 

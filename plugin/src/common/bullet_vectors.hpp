@@ -1,4 +1,4 @@
-// Between the plain arrays of the query and Bullet's vectors.
+// Converts between the plain arrays of the query and Bullet's vectors.
 #pragma once
 
 #include <cmath>

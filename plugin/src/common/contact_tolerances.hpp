@@ -1,4 +1,4 @@
-// The tuned numbers of the contact geometry, each with its unit and its reason.
+// Holds the tuned numbers of the contact geometry, each with its unit and its reason.
 //
 // Cosines compare unit vectors: a larger cosine asks for a smaller angle. Numbers in spheres, spacings,
 // separations or lengths are fractions of that length, so that nothing depends on the size of a solid.
@@ -63,9 +63,10 @@ constexpr btScalar kOneNormal = btScalar(1e-3);
 constexpr btScalar kConforming = btScalar(0.3);
 /// Cosine, 60 degrees: a surface that leans more from the line has no usable slope.
 constexpr btScalar kUsableCosine = btScalar(0.5);
-/// Steps of an ascent to a top, at most: each is one of Newton's method, whose error falls quadratically.
+/// An ascent to a top takes so many steps at most: each is one of Newton's method, whose error falls
+/// quadratically.
 constexpr int kAscentSteps = 8;
-/// Steps of the other samples, which only have to get nearer.
+/// The other samples, which only have to get nearer, take so many.
 constexpr int kAscentStepsBeside = 2;
 /// Ratio of two steps: the estimate of how fast the slope falls is not believed below this part of the last.
 constexpr btScalar kSlowestFall = btScalar(0.1);
@@ -75,12 +76,13 @@ constexpr btScalar kSlopeBeside = btScalar(0.1);
 constexpr btScalar kSteepSlope = btScalar(0.5);
 /// In ways to a top: a top that is guessed this near to one that was reached is that one.
 constexpr btScalar kSameHill = btScalar(0.5);
-/// In separations: the same for tops that are close by.
+/// In separations: a top that is guessed this near to one that was reached is that one, too, however short
+/// the way to it.
 constexpr btScalar kSameTop = btScalar(0.1);
 
 // --- Crossing edges --------------------------------------------------------------------------------------
 
-/// How often edges are looked for at most, each time where those before would cross.
+/// Edges are looked for at most so often, each time where those before would cross.
 constexpr int kEdgeLooks = 4;
 /// Sine, 5 degrees: edges that are closer to parallel do not cross at a place.
 constexpr btScalar kCrossingSine = btScalar(0.087);
@@ -96,13 +98,15 @@ constexpr btScalar kShallow = btScalar(0.01);
 
 // --- Selection of samples --------------------------------------------------------------------------------
 
-/// Directions in which the outermost spheres of a patch are samples: an octagon spans what the patch spans.
+/// This is the number of directions in which the outermost spheres of a patch are samples: an octagon spans
+/// what the patch spans.
 constexpr int kOutermostDirections = 8;
-/// Sectors of the patch in which the spheres that stand out most of each solid are samples.
+/// This is the number of sectors of the patch in which the spheres that stand out most of each solid are
+/// samples.
 constexpr std::size_t kSectors = 8;
-/// How many of the spheres that face the other solid most are samples.
+/// This is how many of the spheres that face the other solid most are samples.
 constexpr std::size_t kMostFacing = 6;
-/// How many others are samples, evenly spaced in the list.
+/// This is how many others are samples, evenly spaced in the list.
 constexpr std::size_t kEvenlySpaced = 6;
 /// In spacings: a sphere that is this much less deep than the deepest only touches as it was enlarged.
 constexpr btScalar kLessDeep = 2;
@@ -113,7 +117,8 @@ constexpr btScalar kLessDeep = 2;
 constexpr btScalar kKeepSpan = btScalar(1.3);
 /// In spacings: a point of the step before is kept until another one is this much deeper.
 constexpr btScalar kKeepDepth = btScalar(1e-3);
-/// In the depth above: what a point at the rim of the patch may lack, as flat faces are as deep everywhere.
+/// In the depth above: a point at the rim of the patch may lack this much, as flat faces are as deep
+/// everywhere.
 constexpr btScalar kPreferRim = btScalar(0.5);
 /// In spacings: a point that is less deep than the deepest by this much is worth 1/e of it.
 constexpr btScalar kWorthFalls = btScalar(0.1);
@@ -121,7 +126,7 @@ constexpr btScalar kWorthFalls = btScalar(0.1);
 constexpr btScalar kSameManifoldCosine = btScalar(0.966);
 /// More manifolds of one pair than this are merged.
 constexpr std::size_t kMaxManifolds = 8;
-/// In depths: how far around a crossing edges have sunk in.
+/// In depths: edges have sunk into each other this far around their crossing.
 constexpr btScalar kSunkAround = 3;
 
 // --- Patches by volume -------------------------------------------------------------------------------------
@@ -132,13 +137,13 @@ constexpr btScalar kThinPatch = btScalar(1e-4);
 
 // --- Shapes that are no packings -------------------------------------------------------------------------
 
-/// In search radii: what a place may lack to be the outermost of a shape, for rounding.
+/// In search radii: a place that lacks no more than this is the outermost of a shape, for rounding.
 constexpr btScalar kOutermostTolerance = btScalar(1e-3);
 /// Cosine, 30 degrees: directions in which one sphere meets a mesh that are closer are one contact.
 constexpr btScalar kSameDirectionCosine = btScalar(0.866);
 /// In median radii: nearest points of triangles that are closer are the same place of a mesh.
 constexpr btScalar kSamePlace = btScalar(1e-4);
-/// In sizes of the contact: how far around it the triangles of a mesh are kept for the next steps.
+/// In sizes of the contact: the triangles of a mesh are kept this far around it for the next steps.
 constexpr btScalar kKeptAround = btScalar(0.1);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

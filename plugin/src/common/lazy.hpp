@@ -1,4 +1,4 @@
-// A value that is made when it is first asked for.
+// Makes a value when it is first asked for.
 #pragma once
 
 #include <atomic>
@@ -10,10 +10,11 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Safe to ask from several threads at once.
+/// Holds a value that is made when it is first asked for. It is safe to ask from several threads at once.
 template <typename T>
 class Lazy {
  public:
+  /// Returns the value, after make() has made it the first time.
   template <typename Make>
   const T& get(const Make& make) const {
     if (!made_.load(std::memory_order_acquire)) {
@@ -24,7 +25,7 @@ class Lazy {
     }
     return *value_;
   }
-  /// Whether it has been asked for.
+  /// Returns true if it has been made.
   bool made() const { return made_; }
 
  private:

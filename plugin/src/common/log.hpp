@@ -1,4 +1,4 @@
-// The plug-in side of the log callback.
+// Declares the plug-in's side of the log callback.
 #pragma once
 
 #include "innersphere/log.hpp"
@@ -6,7 +6,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Hands a message to the user's callback.
+/// Hands a message to the user's callback, or writes it to the standard error stream if there is none.
 void log(const std::string& message);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

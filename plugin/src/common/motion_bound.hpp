@@ -1,4 +1,4 @@
-// How far bodies can move in a step, and have moved.
+// Bounds how far bodies can move in a step, and have moved.
 #pragma once
 
 #include <LinearMath/btTransform.h>
@@ -11,7 +11,7 @@ class btCollisionObject;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// How fast the points of a body move.
+/// Tells how fast the points of a body move.
 struct Motion {
   Motion(const btCollisionObject& object, const BodyVelocity& velocity_now);
 
@@ -20,13 +20,13 @@ struct Motion {
   btScalar size = 0;            ///< no point is further from its origin [m]; BT_LARGE_FLOAT: it is infinite
 };
 
-/// An upper bound for how much nearer two points of the bodies can come in `time_step` at the present
+/// Returns an upper bound for how much nearer two points of the bodies can come in `time_step` at the present
 /// velocities [m], at most half the size of the smaller body. Contacts that far apart are handed to the
 /// solver already, which lets them close but not pass, so that a fast body does not go deep into another
 /// before its first contact.
 btScalar speculativeDistance(const Motion& a, const Motion& b, btScalar time_step);
 
-/// An upper bound for how far any point of a body of this size has moved [m].
+/// Returns an upper bound for how far any point of a body of this size has moved [m].
 btScalar travelBetween(const btTransform& before, const btTransform& now, btScalar size);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,4 +1,4 @@
-// All threads for one job of many parts.
+// Runs one job of many parts with all threads.
 #pragma once
 
 #include <atomic>
@@ -20,8 +20,8 @@ void inParallel(std::size_t count, const Job& job) {
   tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t(0), count, job); });
 }
 
-/// The same, while this thread first does something else: here(working), where `working` turns false when all
-/// jobs are done. It must not wait for that: there may be no other thread for them.
+/// Does the same, while this thread first calls here(working), where `working` turns false when all jobs are
+/// done. It must not wait for that: there may be no other thread for them.
 template <typename Here, typename Job>
 void inParallelBeside(const Here& here, std::size_t count, const Job& job) {
   tbb::this_task_arena::isolate([&] {

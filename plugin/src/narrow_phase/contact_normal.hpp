@@ -1,4 +1,4 @@
-// The direction of contact between two surfaces that were probed.
+// Finds the direction of contact between two surfaces that were probed.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// The surfaces lie on each other: their normals differ by less than 20 degrees.
+/// Returns true if the surfaces lie on each other: their normals differ by less than 20 degrees.
 bool opposed(const OpposedPoints& points);
 
-/// A first estimate from one sample alone: where a line across the contact should point.
+/// Returns a first estimate from one sample alone: where a line across the contact should point.
 btVector3 normalAlone(const OpposedPoints& points, const btVector3& direction);
 
 /// Tells where faces end.
@@ -22,20 +22,21 @@ class FaceExtents {
     btScalar a;
     btScalar b;
   };
-  /// How far the faces at opposed points go on in direction `towards` (unit) until they end in a sharp edge
-  /// [m]. BT_LARGE_FLOAT where no edge is near.
+  /// Returns how far the faces at opposed points go on in direction `towards` (unit) until they end in a
+  /// sharp edge [m]. It is BT_LARGE_FLOAT where no edge is near.
   virtual EdgeDistances edgeDistances(const OpposedPoints& points, const btVector3& towards) const = 0;
 };
 
-/// The direction of contact at each of the samples of a patch. Beside the deepest point both normals lean
-/// away from it, each in proportion to its curvature, so the flatter surface counts for more; a flat one
+/// Finds the direction of contact at each of the samples of a patch. Beside the deepest point both normals
+/// lean away from it, each in proportion to its curvature, so the flatter surface counts for more; a flat one
 /// counts alone. Of two faces that meet at an angle, that one counts which the other one's edge lies on.
 class ContactNormal {
  public:
-  /// `extents` is null where nothing is known of B but its distance: its faces are then taken as endless.
+  /// Takes the samples of one patch. `extents` is null where nothing is known of B but its distance: its
+  /// faces are then taken as endless.
   ContactNormal(const std::vector<ProbedSample>& samples, const FaceExtents* extents);
 
-  /// Unit, from A to B.
+  /// Returns the direction at a sample: unit, from A to B.
   btVector3 at(const ProbedSample& sample) const;
 
  private:

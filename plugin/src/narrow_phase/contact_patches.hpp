@@ -1,4 +1,4 @@
-// From the contacts of single spheres to patches with points.
+// Turns the contacts of single spheres into patches with points.
 #pragma once
 
 #include <vector>
@@ -22,8 +22,8 @@ void selectSamples(const std::vector<SphereContact>& contacts, const ShapeProbe&
 
 /// Replaces `patches`, which hold those of the step before, by such whose depth is that of the solids'
 /// surfaces: points are contacts of spheres, the deepest and those that span the patch, the old ones by
-/// preference. False if none is near touching: the solids are apart, or so deep in each other that no surface
-/// is near.
+/// preference. Returns false if none is near touching: the solids are apart, or so deep in each other that no
+/// surface is near.
 bool refinePatches(Samples& samples, const PackingProbe& probe, const ContactSettings& settings,
                    std::vector<ContactPatch>& patches);
 bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSettings& settings,

@@ -1,4 +1,4 @@
-// What the narrow phase hands to Bullet.
+// Declares what the narrow phase hands to Bullet.
 #pragma once
 
 #include <array>
@@ -11,14 +11,15 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bullet keeps four points in a manifold.
+/// A patch has as many points, at most, as Bullet keeps in a manifold.
 constexpr int kPatchPoints = 4;
 
-/// Id of the deepest point between curved surfaces, and before it those of the next three; no sphere has
-/// them.
+/// This is the id of the deepest point between curved surfaces. Those of the next three come before it; no
+/// sphere has them.
 constexpr std::uint64_t kDeepestId = ~std::uint64_t(0);
 
-/// A point of contact. Axes of the world, positions relative to the origin of A's packing.
+/// This is a point of contact. It has the axes of the world, and positions are relative to the origin of A's
+/// packing.
 struct ContactPoint {
   btVector3 on_b{0, 0, 0};    ///< on the surface of B [m]
   btVector3 normal{0, 0, 0};  ///< unit, from A to B
@@ -29,7 +30,7 @@ struct ContactPoint {
   btScalar turn_a = btScalar(0.5);  ///< how much of A's turning the normal takes part in, the rest of B's
 };
 
-/// A part of the overlap region with one direction of contact: one manifold.
+/// This is a part of the overlap region with one direction of contact. It becomes one manifold.
 struct ContactPatch {
   btVector3 normal{0, 0, 0};  ///< unit, from A to B
   btVector3 centre{0, 0, 0};

@@ -1,4 +1,4 @@
-// Contacts of a patch, found on the solids' surfaces.
+// Finds the contacts of a patch on the solids' surfaces.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,9 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A point of contact and the part of a patch of spheres that it stands for.
+/// This is a point of contact, with the part of a patch of spheres that it stands for.
 struct WeightedPoint {
-  /// What it lies between.
+  /// Says what it lies between.
   enum class Kind {
     faces,
     edge,      ///< and a face, somewhere along it
@@ -27,7 +27,7 @@ struct WeightedPoint {
   btScalar radius;   ///< mean distance of the patch's area from there [m]
 };
 
-/// Room to work in.
+/// Keeps room to work in from one patch to the next.
 struct SampleScratch {
   SampleScratch();
   struct Tried {

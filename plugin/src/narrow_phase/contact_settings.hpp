@@ -1,4 +1,4 @@
-// How far is near, and on what depth is found.
+// Says how far is near, and on what depth is found.
 #pragma once
 
 #include "innersphere/contact_options.hpp"
@@ -7,7 +7,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// What the narrow phase needs to know of a pair, beside where its bodies are.
+/// Tells the narrow phase what it needs to know of a pair, beside where its bodies are.
 struct ContactSettings {
   /// Bodies that are not further apart than `needed` [m] still have a contact, if depth is found on the
   /// surfaces. The search goes a little further, so that its contacts are good for the next steps too, and at
@@ -15,11 +15,11 @@ struct ContactSettings {
   ContactSettings(const ContactOptions& options, const PackingShape& a, const btCollisionShape& b,
                   btScalar needed);
 
-  /// Of both bodies [m].
+  /// Returns the search margins of both bodies together [m].
   btScalar search_margin() const { return search_margin_a + search_margin_b; }
 
-  /// Depth is found on the surfaces of the solids. Otherwise it is volume over area, which a given stiffness
-  /// (force per volume) asks for, and a packing without a surface.
+  /// Whether depth is found on the surfaces of the solids. Otherwise it is volume over area, which a given
+  /// stiffness (force per volume) asks for, and a packing without a surface.
   bool on_surfaces = false;
   Estimator estimator = Estimator::raw;  ///< radii of the spheres
   btScalar spacing;                      ///< points closer to each other are one [m]

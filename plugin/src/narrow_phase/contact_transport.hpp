@@ -1,4 +1,4 @@
-// What is known of a contact from the steps before.
+// Remembers what is known of a contact from the steps before.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Where the two bodies of a pair are: the frames of their shapes.
+/// Says where the two bodies of a pair are: it has the frames of their shapes.
 struct Placed {
   btTransform a;
   btTransform b;
@@ -26,28 +26,29 @@ constexpr btScalar kSearchAgain = btScalar(0.5);
 /// depths were evaluated. The error is of second order: on a ball of five spacings a hundredth of this.
 constexpr btScalar kRefineAgain = btScalar(0.1);
 
-/// An upper bound for how far a place on one body moves, as seen from the other, where both reach: that is
-/// within the smaller one.
+/// Returns an upper bound for how far a place on one body moves, as seen from the other, where both reach:
+/// within the smaller one [m].
 btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a, btScalar size_b);
 
-/// While bodies do not move much against each other, the spheres that were found in contact are good for
-/// being measured again, and while they hardly move, the contacts themselves are, if they go along.
+/// Carries contacts along. While bodies do not move much against each other, the spheres that were found in
+/// contact are good for being measured again, and while they hardly move, the contacts themselves are, if
+/// they go along.
 class ContactTransport {
  public:
   bool isEmpty() const { return samples.indices.empty(); }
   const Placed& searchedAt() const { return searched_at_; }
   const Placed& measuredAt() const { return measured_at_; }
-  /// A nut on its thread, a peg, teeth that mesh: bodies that rattle in their clearance touch now here and
-  /// now there, so that contact is searched for whenever they move.
+  /// Returns true for a nut on its thread, a peg, teeth that mesh: bodies that rattle in their clearance
+  /// touch now here and now there, so that contact is searched for whenever they move.
   bool isEnclosed() const { return enclosed_; }
-  /// The narrowest one when depths were evaluated [m]; negative: overlap.
+  /// Returns the narrowest gap when depths were evaluated [m]; it is negative where the bodies overlap.
   btScalar gap() const { return gap_; }
 
-  /// samples have been found anew.
+  /// Notes that samples have been found anew.
   void noteSearch(const Placed& now);
   /// Turns the samples along, to be measured again.
   void turnTo(const Placed& now);
-  /// patches have been measured, with all contacts up to `found` [m] apart.
+  /// Notes that patches have been measured, with all contacts up to `found` [m] apart.
   void noteDepths(const Placed& now, btScalar found);
   /// Moves the patches along: each contact has a point that moves with A and one that moves with B, and rolls
   /// on where surfaces are curved. A's is the packing that positions are relative to the origin of.

@@ -1,4 +1,4 @@
-// The deepest points between curved surfaces.
+// Finds the deepest points between curved surfaces.
 #pragma once
 
 #include <vector>
@@ -17,8 +17,8 @@ void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::ve
 /// Moves the first `count` samples a little uphill where they are near a top.
 void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples);
 
-/// Whether surfaces that touch are flat, or curved so that one lies in the other: their curvatures add up to
-/// nothing, or to a small part of themselves. Then there is no deepest point to speak of.
+/// Returns true if surfaces that touch are flat, or curved so that one lies in the other: their curvatures
+/// add up to nothing, or to a small part of themselves. Then there is no deepest point to speak of.
 bool fitTogether(btScalar curvature_a, btScalar curvature_b);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,4 +1,4 @@
-// Contacts at corners and at crossing edges.
+// Declares contacts at corners and at crossing edges.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A corner over a face, or two edges that cross.
+/// This is a corner over a face, or two edges that cross.
 struct EdgeContact {
   OpposedPoints points;
   std::uint64_t id = 0;   ///< no sphere has it
@@ -29,9 +29,9 @@ class EdgeProbe {
   /// with the point of the face that it is over. `vertices` is room to work in.
   virtual void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                        std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const = 0;
-  /// Where, not far from opposed points of two flat faces, an edge of A crosses one of B, and both solids
-  /// have nothing further out along the normal to both nearby. False if none is found. `direction` is about
-  /// that in which the solids are in contact, from A to B.
+  /// Finds where, not far from opposed points of two flat faces, an edge of A crosses one of B, and both
+  /// solids have nothing further out along the normal to both nearby. Returns false if none is found.
+  /// `direction` is about that in which the solids are in contact, from A to B.
   virtual bool crossing(const OpposedPoints& points, const btVector3& direction,
                         EdgeContact& crossing) const = 0;
 };

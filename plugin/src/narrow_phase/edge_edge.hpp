@@ -1,4 +1,4 @@
-// Where sharp edges of two solids cross.
+// Finds where sharp edges of two solids cross.
 #pragma once
 
 #include "narrow_phase/edge_contacts.hpp"
@@ -7,7 +7,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// See EdgeProbe::crossing(). Positions are relative to A's origin, axes are those of the world.
+/// Does what EdgeProbe::crossing() says. Positions are relative to A's origin, axes are those of the world.
 bool crossEdges(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& points,
                 const btVector3& direction, EdgeContact& crossing);
 

@@ -1,4 +1,4 @@
-// Which points of contact become manifolds.
+// Decides which points of contact become manifolds.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Room to work in.
+/// Keeps room to work in from one pair to the next.
 struct ReductionScratch {
   ReductionScratch();
   std::vector<WeightedPoint> all;

@@ -1,4 +1,4 @@
-// The surfaces of two packings, probed at the spheres in contact.
+// Probes the surfaces of two packings at the spheres in contact.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Of the contacts the first `count_a` are of A's spheres, the others of B's.
+/// Probes two packings. Of the contacts the first `count_a` are of A's spheres, the others of B's.
 class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExtents, public ContactSpheres {
  public:
   PackingProbe(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
@@ -20,10 +20,10 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
       : a_(a), b_(b), contacts_(contacts), count_a_(count_a) {}
 
   /// Probes a sample for the first time: towards the nearest point of the other surface, or, where the
-  /// surfaces do not oppose each other there, in the direction of the patch. False if the line met no
+  /// surfaces do not oppose each other there, in the direction of the patch. Returns false if the line met no
   /// surfaces.
   bool probe(const btVector3& patch_normal, ProbedSample& sample) const;
-  /// Probes a sample where it was probed before.
+  /// Probes a sample where it was probed before. Returns false as probe() does.
   bool probeAgain(const Samples::Line& line, ProbedSample& sample) const;
 
   bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
@@ -39,7 +39,7 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
 
  private:
   btVector3 apart() const { return b_.origin() - a_.origin(); }
-  /// How far away the solid of a contact's sphere may end [m].
+  /// Returns how far away the solid of a contact's sphere may end [m].
   btScalar surfaceDistance(std::size_t index) const {
     const PlacedPacking& own = index < count_a_ ? a_ : b_;
     return own.ownRadius(contacts_[index].sphere) + own.search_margin;

@@ -1,4 +1,4 @@
-// The contact of two packings.
+// Finds the contact of two packings.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A search takes up to three passes, each a query that many pairs can share; the result of one tells whether
-/// there is another.
+/// Names a pass of a search. A search takes up to three passes, each a query that many pairs can share; the
+/// result of one tells whether there is another.
 enum class SearchPass : std::uint8_t {
   none,      ///< the search is over
   surfaces,  ///< with spheres enlarged so that they find all contact of the surfaces that they stand for
@@ -21,16 +21,18 @@ enum class SearchPass : std::uint8_t {
   volumes,   ///< where the volume of overlap is all that is wanted
 };
 
-/// `estimator`: of the options, for volumes.
+/// Returns what the query of a pass computes. `estimator` is that of the options, for volumes.
 QueryOptions queryOptionsOf(SearchPass pass, Estimator estimator);
 
+/// Holds the contact of two packings, which must outlive it.
 class PackingVsPacking : public FoundContact {
  public:
   PackingVsPacking(const PackingShape& a, const PackingShape& b) : a_(&a), b_(&b) {}
 
-  /// The first pass of a search for contacts up to `needed` [m] apart. Until the last pass is over, the
-  /// contact is not known.
+  /// Begins a search and returns its first pass. It looks for contacts up to `needed` [m] apart. Until the
+  /// last pass is over, the contact is not known.
   SearchPass begin(const ContactOptions& options, const Placed& now, btScalar needed);
+  /// Returns the query of a pass.
   PairQuery makeQuery(SearchPass pass) const;
   /// Takes the result number `index` and returns the next pass.
   SearchPass take(SearchPass pass, const QueryResult& result, std::size_t index);
@@ -39,7 +41,7 @@ class PackingVsPacking : public FoundContact {
   const Overlap* overlap() const override {
     return isKnown() && !settings->on_surfaces ? &overlap_ : nullptr;
   }
-  /// Asks for the volume that both share at `now`.
+  /// Returns the query for the volume that both share at `now`.
   PairQuery makeVolumeQuery(const ContactOptions& options, const Placed& now) const;
 
  private:

@@ -1,4 +1,4 @@
-// The contact of a packing with a shape of another kind.
+// Finds the contact of a packing with a shape of another kind.
 #pragma once
 
 #include <memory>
@@ -15,10 +15,10 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A is the packing, B the shape.
+/// Holds the contact of a packing, A, with another shape, B.
 class PackingVsShape : public FoundContact {
  public:
-  /// Both must outlive it.
+  /// Takes the packing and the shape, which must both outlive it.
   PackingVsShape(const PackingShape& packing, const btCollisionShape& other);
 
   /// Searches for contacts up to `needed` [m] apart.
@@ -27,7 +27,7 @@ class PackingVsShape : public FoundContact {
   bool hasSameShapes() override;
   bool refine(const Placed& now, btScalar needed) override;
   const Overlap* overlap() const override { return overlap_ ? &*overlap_ : nullptr; }
-  /// What both share at `now`.
+  /// Returns what both share at `now`.
   Overlap volumesAt(const ContactOptions& options, const Placed& now) const;
 
  private:

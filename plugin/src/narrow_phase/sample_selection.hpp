@@ -1,4 +1,4 @@
-// Which spheres in contact are worth probing on the surfaces.
+// Chooses which spheres in contact are worth probing on the surfaces.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Contacts of spheres to probe, patch after patch.
+/// Holds contacts of spheres to probe, patch after patch.
 struct Samples {
   struct OfPatch {
     btVector3 normal;  ///< unit, from A to B
@@ -20,7 +20,7 @@ struct Samples {
     btScalar radius;   ///< mean distance of the area from its centre [m]
     std::size_t end;   ///< behind its last index
   };
-  /// Where a sample was probed last. It is probed there again first.
+  /// Says where a sample was probed last. It is probed there again first.
   struct Line {
     btVector3 direction{0, 0, 0};  ///< unit, from A to B; 0 if the line met no surfaces
     std::size_t triangle_a = 0;
@@ -31,14 +31,14 @@ struct Samples {
   std::vector<OfPatch> patches;
 };
 
-/// The spheres behind a list of contacts.
+/// Knows the spheres behind a list of contacts.
 class ContactSpheres {
  public:
   virtual ~ContactSpheres() = default;
-  /// The same from step to step.
+  /// Returns a number of the sphere that is the same from step to step.
   virtual std::uint64_t id(std::size_t index) const = 0;
-  /// How far a sphere stands out of its solid along `normal` (from A to B), or, where that is known, towards
-  /// the other surface. Only differences between spheres of one solid matter [m].
+  /// Says how far a sphere stands out of its solid along `normal` (from A to B), or, where that is known,
+  /// towards the other surface. Only differences between spheres of one solid matter [m].
   struct Protrusion {
     bool of_a;
     btScalar distance;
@@ -46,6 +46,7 @@ class ContactSpheres {
   virtual Protrusion protrusion(std::size_t index, const btVector3& normal) const = 0;
 };
 
+/// Holds what appendSamples() chooses from.
 struct PatchContacts {
   const std::vector<SphereContact>& contacts;
   const std::vector<std::size_t>& indices;  ///< those of the patch
@@ -54,25 +55,25 @@ struct PatchContacts {
   const ContactSpheres& spheres;
 };
 
-/// Room to work in.
+/// Keeps room to work in from one patch to the next.
 struct SelectionScratch {
   std::vector<std::size_t> indices;
   std::vector<std::size_t> picked;
 };
 
-/// Turns all directions.
+/// Turns all directions of the samples.
 void turn(const btMatrix3x3& by, Samples& samples);
 
-/// Leaves those whose lines met the surfaces, and that were near enough to be probed again.
+/// Drops the samples without a line: it met no surfaces, or these were too far apart to be probed again.
 void dropUnprobed(Samples& samples);
 
 /// Drops contacts that are far less deep than the deepest of them: these only touch because they were
-/// enlarged. `spacing`: see ContactSettings.
+/// enlarged. `spacing` is that of ContactSettings [m].
 void dropShallow(const std::vector<SphereContact>& contacts, btScalar spacing,
                  std::vector<std::size_t>& indices);
 
 /// Appends some contacts of a patch: those of the step before, those that span the patch, those that stand
-/// out or face the other body most, and some of the others. All of them if they are few.
+/// out or face the other body most, and some of the others. It appends all of them if they are few.
 void appendSamples(const PatchContacts& from, SelectionScratch& scratch, Samples& samples);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

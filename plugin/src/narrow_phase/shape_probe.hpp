@@ -1,4 +1,4 @@
-// The surfaces of a packing and of a shape of another kind, probed at the spheres near it.
+// Probes the surfaces of a packing and of a shape of another kind at the spheres near it.
 #pragma once
 
 #include <vector>
@@ -11,19 +11,19 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Of the other shape, B, only the nearest point of each sphere is known, with a normal that does not come
-/// from triangles. `near_spheres` are parallel to the contacts.
+/// Probes a packing, A, and another shape. Of the other shape, B, only the nearest point of each sphere is
+/// known, with a normal that does not come from triangles. `near_spheres` are parallel to the contacts.
 class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSpheres {
  public:
-  /// `world`: where the other shape is.
+  /// Takes what it probes, all of which must outlive it. `world` is where the other shape is.
   ShapeProbe(const PlacedPacking& a, ShapeSurface& other, const btTransform& world,
              const std::vector<NearSphere>& near_spheres)
       : a_(a), other_(other), world_(world), near_spheres_(near_spheres) {}
 
-  /// Probes a sample for the first time, towards the nearest point of the other shape. False if the line does
-  /// not leave A.
+  /// Probes a sample for the first time, towards the nearest point of the other shape. Returns false if the
+  /// line does not leave A.
   bool probe(ProbedSample& sample) const;
-  /// Probes a sample again, where the nearest point is now.
+  /// Probes a sample again, where the nearest point is now. Returns false as probe() does.
   bool probeAgain(const Samples::Line& line, ProbedSample& sample) const;
 
   bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
@@ -37,13 +37,13 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   Protrusion protrusion(std::size_t index, const btVector3& normal) const override;
 
  private:
-  /// How far away the solid of a sphere may end [m].
+  /// Returns how far away the solid of a sphere may end [m].
   btScalar surfaceDistance(const NearSphere& near_sphere) const {
     return a_.ownRadius(near_sphere.sphere) + a_.search_margin;
   }
-  /// Whether the plane that a sphere is nearest to is still the surface of B at `place` of it.
+  /// Returns true if the plane that a sphere is nearest to is still the surface of B at `place` of it.
   bool goesOn(const NearSphere& near_sphere, const btVector3& place) const;
-  /// The sphere nearest to a corner that knows the face under it; null if there is none.
+  /// Returns the sphere nearest to a corner that knows the face under it, or null if there is none.
   const NearSphere* sphereOver(const btVector3& corner, const btVector3& normal) const;
 
   const PlacedPacking& a_;

@@ -1,4 +1,4 @@
-// Depth of contact, probed on the surfaces of the solids.
+// Probes the depth of contact on the surfaces of the solids.
 //
 // Spheres find a contact, but they end a little inside of the surface, or, with volume-true radii, stand out
 // of it. So the depth at a contact is found along a line: where it leaves A and where it enters B.
@@ -14,8 +14,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Two opposed points of the surfaces. Axes are those of the world, positions are relative to the origin of
-/// A's packing.
+/// Holds two opposed points of the surfaces. Axes are those of the world, positions are relative to the
+/// origin of A's packing.
 struct OpposedPoints {
   btVector3 on_a{0, 0, 0};
   btVector3 on_b{0, 0, 0};
@@ -28,13 +28,13 @@ struct OpposedPoints {
 
   static constexpr std::size_t kNone = ~std::size_t(0);
 
-  /// How deep the solids are in each other along a unit vector from A to B [m].
+  /// Returns how deep the solids are in each other along a unit vector from A to B [m].
   btScalar depthAlong(const btVector3& direction) const { return (on_a - on_b).dot(direction); }
-  /// Both surfaces are flat there.
+  /// Returns true if both surfaces are flat there.
   bool areFlat() const { return curvature_a == 0 && curvature_b == 0; }
 };
 
-/// A sphere in contact that was chosen as a sample, and what was found along its line.
+/// This is a sphere in contact that was chosen as a sample, with what was found along its line.
 struct ProbedSample {
   OpposedPoints points;
   btVector3 direction{0, 0, 0};  ///< of the line, unit, from A to B
@@ -49,14 +49,14 @@ class SurfaceProbe {
  public:
   virtual ~SurfaceProbe() = default;
   /// Probes along `direction` from A to B (a shape that is no packing chooses its own), with the line moved
-  /// sideways by `shift` [m]. False if the line does not pass both surfaces near there. The triangles that
-  /// `points` comes with, or those around them, are taken if the line passes them; all are looked at only
-  /// where they are kNone, or missed. Where B is no packing, `points` then holds a face of A all the same:
-  /// that by which the line leaves A sideways, or one near the sphere.
+  /// sideways by `shift` [m]. Returns false if the line does not pass both surfaces near there. The triangles
+  /// that `points` comes with, or those around them, are taken if the line passes them; all are looked at
+  /// only where they are kNone, or missed. Where B is no packing, `points` then holds a face of A all the
+  /// same: that by which the line leaves A sideways, or one near the sphere.
   virtual bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
                          OpposedPoints& points) const = 0;
-  /// The direction from A to B in which the sphere is nearest to the other solid's surface. False if it is
-  /// too far away to tell. Leaves the triangles near the sphere in `points`.
+  /// Finds the direction from A to B in which the sphere is nearest to the other solid's surface. Returns
+  /// false if it is too far away to tell. Leaves the triangles near the sphere in `points`.
   virtual bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const = 0;
 };
 

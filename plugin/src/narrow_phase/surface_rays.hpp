@@ -1,4 +1,5 @@
-// Where lines leave and enter a packed solid, and its corners uphill: what both kinds of surface probe share.
+// Finds where lines leave and enter a packed solid, and its corners uphill: what both kinds of surface probe
+// share.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A point of a body's surface, with the shape's margin. It is relative to the body's origin, axes are those
-/// of the world.
+/// This is a point of a body's surface, with the shape's margin. It is relative to the body's origin, axes
+/// are those of the world.
 struct SurfacePoint {
   btVector3 at{0, 0, 0};
   btVector3 normal{0, 0, 0};  ///< unit, out of the solid
@@ -20,28 +21,28 @@ struct SurfacePoint {
   std::size_t triangle = OpposedPoints::kNone;
 };
 
-/// Where a ray from inside the solid leaves it, no further than `length` [m] away. Triangle `known`, or one
-/// near it, is taken if the ray passes it. False if nothing is met, or the side of the solid, which `point`
-/// then holds.
+/// Finds where a ray from inside the solid leaves it, no further than `length` [m] away. Triangle `known`, or
+/// one near it, is taken if the ray passes it. Returns false if nothing is met, or the side of the solid,
+/// which `point` then holds.
 bool leaveSolid(const PlacedPacking& body, const btVector3& from, const btVector3& direction, btScalar length,
                 std::size_t known, SurfacePoint& point);
 
-/// Where the line of a ray enters the solid: ahead of its start, or behind if it starts inside. On an edge it
-/// is the face whose normal points most against `opposed`.
+/// Finds where the line of a ray enters the solid: ahead of its start, or behind if it starts inside. On an
+/// edge it is the face whose normal points most against `opposed`. Returns false as leaveSolid() does.
 bool enterSolid(const PlacedPacking& body, const btVector3& from, const btVector3& direction, btScalar length,
                 std::size_t known, const btVector3& opposed, SurfacePoint& point);
 
-/// The face with about this normal that a place is over or under, if there is one. `size` [m] is that of the
-/// spheres there.
+/// Finds the face with about this normal that a place is over or under. Returns false if there is none.
+/// `size` [m] is that of the spheres there.
 bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar size,
                SurfacePoint& point);
 
-/// The corners uphill from a triangle along `direction` (unit), no further than `distance` [m] from `start`:
-/// their vertices replace `vertices`. True if the first of them is a peak.
+/// Finds the corners uphill from a triangle along `direction` (unit), no further than `distance` [m] from
+/// `start`: their vertices replace `vertices`. Returns true if the first of them is a peak.
 bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,
                    const btVector3& start, btScalar distance, std::vector<std::uint32_t>& vertices);
 
-/// Where a vertex is, moved out along `direction` by the shape's margin.
+/// Returns where a vertex is, moved out along `direction` by the shape's margin.
 btVector3 cornerAt(const PlacedPacking& body, std::uint32_t vertex, const btVector3& direction);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,4 +1,4 @@
-// A body as it was at one moment.
+// Shows a body as it was at one moment.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +17,19 @@ class btRigidBody;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Holds where a body is, how fast, how far it has travelled, and which shape it has.
 class BodySnapshot {
  public:
+  /// Takes a first snapshot of a body.
   explicit BodySnapshot(const btCollisionObject& object);
-  /// Of the body of a shape that is where the wrapper says, whatever the body's own place.
+  /// Takes one of the body of a shape that is where the wrapper says, whatever the body's own place.
   explicit BodySnapshot(const btCollisionObjectWrapper& wrapper);
 
   /// Takes another one.
   void take();
-  /// Whether the body, as Bullet asks for it, is as it was in the snapshot.
+  /// Returns true if the body, as Bullet asks for it, is as it was in the snapshot.
   bool isAsTaken(const btCollisionObjectWrapper& wrapper) const;
-  /// The same, for where the body is and how fast: its shape may be a child of a compound.
+  /// Returns true if the body is where it was, and as fast; its shape may be a child of a compound.
   bool isAsTaken() const { return isAsTaken(object_->getWorldTransform()); }
   /// Notes that, for all pairs of the body.
   void compare() { changed_ = !isAsTaken(); }
@@ -35,14 +37,14 @@ class BodySnapshot {
 
   const btCollisionObject* object() const { return object_; }
   const btTransform& transform() const { return transform_; }
-  /// Where the shape is, if that was said.
+  /// Returns where the shape is, if that was said.
   const std::optional<btTransform>& shapePlace() const { return shape_place_; }
   const BodyVelocity& velocity() const { return velocity_; }
   const Motion& motion() const { return motion_; }
   bool isActive() const { return active_; }
-  /// How often a snapshot has found another shape, or another packing in it.
+  /// Returns how often a snapshot has found another shape, or another packing in it.
   std::uint32_t changes() const { return changes_; }
-  /// No point of the body has travelled further than this since the first snapshot [m].
+  /// Returns a distance that no point of the body has exceeded since the first snapshot [m].
   double travel() const { return travel_; }
 
   std::size_t users = 0;       ///< pairs

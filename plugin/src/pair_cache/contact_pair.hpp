@@ -1,4 +1,4 @@
-// A pair of bodies with a packing in it: what is known of its contact, and what Bullet was told of it.
+// Holds a pair of bodies with a packing in it: what is known of its contact, and what Bullet was told of it.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bodies without contacts stay apart until they have travelled too far, or could close too wide a gap within
-/// one step.
+/// Says how long bodies stay apart. Bodies without contacts stay apart until they have travelled too far, or
+/// could close too wide a gap within one step.
 struct SafeDistance {
   bool known = false;
   std::uint32_t changes = 0;  ///< of both bodies' shapes, together
@@ -29,49 +29,50 @@ struct SafeDistance {
   double travel = 0;          ///< until both together have travelled this far [m]
 };
 
-/// What holds for all pairs in a step.
+/// Holds what is the same for all pairs in a step.
 struct StepSettings {
   ContactOptions options;  ///< of the dispatcher
   SolverSettings solver;
   btScalar time_step = 0;  ///< [s]
 };
 
-/// A is the body with the packing, or the first of two packings.
+/// Holds one pair. A is the body with the packing, or the first of two packings.
 struct ContactPair {
   explicit ContactPair(btDispatcher* dispatcher) : manifolds(dispatcher) {}
 
-  /// Takes the pair as Bullet asks for it. `is_swapped`: B is the first body for Bullet.
+  /// Takes the pair as Bullet asks for it. `is_swapped` says that B is the first body for Bullet.
   void set(const btCollisionObjectWrapper& wrapper_a, const btCollisionObjectWrapper& wrapper_b,
            bool is_swapped);
   /// Notes the shapes as they are when a search begins, with the options that they have together.
   void noteShapes(const ContactOptions& world_options);
-  /// Nothing is known any more of contacts that were found.
+  /// Forgets all contacts that were found.
   void forgetContact();
-  /// As a new pair; gives the manifolds back.
+  /// Makes it a new pair, and gives the manifolds back.
   void clear();
 
-  /// Where both were in the last update.
+  /// Returns where both were in the last update.
   Placed placed() const { return {a.transform, b.transform}; }
-  /// Of A's packing in the world: contacts are relative to it.
+  /// Returns the origin of A's packing in the world, which contacts are relative to.
   btVector3 origin() const;
 
-  /// Whether any thread may write the contacts, at any time of a step: Bullet asks for the pair as it does of
-  /// itself, and for no child of a compound, which it names in the points; no code of the user's has a part
-  /// in it; and there are manifolds enough, which only the dispatcher makes.
+  /// Returns true if any thread may write the contacts, at any time of a step: Bullet asks for the pair as it
+  /// does of itself, and for no child of a compound, which it names in the points; no code of the user's has
+  /// a part in it; and there are manifolds enough, which only the dispatcher makes.
   bool canBePublished() const;
   /// Writes the contacts into the manifolds through a result of its own.
   void publish(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b);
-  /// Writes them through Bullet's `result`.
+  /// Writes the contacts through Bullet's `result`.
   void write(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
              btManifoldResult* result);
-  /// Tells `result` of them, and leaves the manifolds alone.
+  /// Tells `result` of the contacts, and leaves the manifolds alone.
   void report(btManifoldResult* result) const;
 
+  /// Returns the law of the pair in a step. A law of the user's own on a body takes the place of ours.
   ContactLaw lawOf(const StepSettings& settings) const;
-  /// True if the manifolds hold contact points.
+  /// Returns true if the manifolds hold contact points.
   bool hasPoints() const;
-  /// What the user is told of the pair: `shared` by both, and the impulses that the solver has found for its
-  /// points, of which there are some.
+  /// Returns what the user is told of the pair: what is `shared` by both, and the impulses that the solver
+  /// has found for its points, of which there are some.
   PairOverlap read(const Overlap& shared) const;
   /// Logs an error, once for each pair: a body that is lost stays lost.
   void logOnce(const std::string& message);

@@ -12,8 +12,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// All pairs go through the same passes together, each pass one query. The first one can be under way on a
-/// device while the caller does something else.
+/// Runs searches. All pairs go through the same passes together, each pass one query. The first one can be
+/// under way on a device while the caller does something else.
 class PackingSearch {
  public:
   PackingSearch(Backend backend, std::size_t room);
@@ -23,14 +23,14 @@ class PackingSearch {
 
   void clear();
   bool isEmpty() const { return items_.empty(); }
-  /// Adds a pair whose search has begun; `index`: what tells done() which one it is.
+  /// Adds a pair whose search has begun; `index` tells done() which one it is.
   void add(PackingVsPacking& pair, SearchPass pass, std::size_t index) {
     items_.push_back({&pair, pass, index});
   }
 
   /// Starts the first pass. Throws Error from the query, as do the functions below.
   void start(Estimator estimator);
-  /// Whether finish() can begin without waiting.
+  /// Returns true if finish() can begin without waiting.
   bool isReady() { return !started_ || context_.ready(); }
   /// Waits for the first pass, takes its results and runs the others. Calls done(index), by any thread, for
   /// each pair once its search is over.
@@ -49,7 +49,7 @@ class PackingSearch {
     }
     clear();
   }
-  /// One query for volumes.
+  /// Runs one query for volumes and returns its sums.
   Overlap overlap(const PairQuery& query, Estimator estimator) {
     return context_.overlap(query, {Want::wrench, estimator});
   }

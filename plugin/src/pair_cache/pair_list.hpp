@@ -1,4 +1,4 @@
-// Pairs that come and go.
+// Lists pairs that come and go.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Things that have a list_index, in the order in which they came. One that goes leaves a gap, and gaps are
-/// closed when they are more than half of the list: so each costs the same, however many there are and
+/// Lists things that have a list_index, in the order in which they came. One that goes leaves a gap, and gaps
+/// are closed when they are more than half of the list: so each costs the same, however many there are and
 /// whichever goes first.
 template <typename Pair>
 class PairList {
@@ -25,12 +25,12 @@ class PairList {
     if (2 * ++gaps_ > pairs_.size()) closeGaps();
   }
 
-  /// No fewer than there are.
+  /// Returns a number of places, no fewer than there are things.
   std::size_t size() const { return pairs_.size(); }
-  /// What it has room for; grows by multiples.
+  /// Returns what it has room for; this grows by multiples.
   std::size_t capacity() const { return pairs_.capacity(); }
 
-  /// Null where one has gone.
+  /// Returns what is at a place; null where one has gone.
   Pair* at(std::size_t index) const { return pairs_[index]; }
 
   template <typename Visit>
@@ -39,7 +39,7 @@ class PairList {
       if (pair != nullptr) visit(*pair);
     }
   }
-  /// With all threads.
+  /// Visits all of them with all threads.
   template <typename Visit>
   void forEachInParallel(const Visit& visit) const {
     inParallel(pairs_.size(), [&](std::size_t i) {

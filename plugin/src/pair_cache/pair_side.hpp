@@ -1,4 +1,4 @@
-// One side of a pair: a body, and the shape of it that takes part.
+// Describes one side of a pair: a body, and the shape of it that takes part.
 #pragma once
 
 #include <array>
@@ -12,20 +12,21 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Names a body and its shape, and says where that was.
 struct PairSide {
   PairSide() = default;
   explicit PairSide(const btCollisionObjectWrapper& wrapper);
 
-  /// The shape is the body's own, and not a child of a compound.
+  /// Returns true if the shape is the body's own, and not a child of a compound.
   bool isWhole() const { return nesting == 0; }
-  /// Where the shape is in a snapshot of its body. Nothing if that cannot be known: the body has another
-  /// shape, is at NaN, or the compounds are nested too deeply.
+  /// Returns where the shape is in a snapshot of its body. Returns nothing if that cannot be known: the body
+  /// has another shape, is at NaN, or the compounds are nested too deeply.
   std::optional<btTransform> placeIn(const BodySnapshot& body) const;
-  /// The wrapper holds the same shape of the same body.
+  /// Returns true if the wrapper holds the same shape of the same body.
   bool isFor(const btCollisionObjectWrapper& wrapper) const {
     return object == wrapper.getCollisionObject() && shape == wrapper.getCollisionShape();
   }
-  /// The packing has not been changed since noteShape(). True for other shapes.
+  /// Returns true if the packing has not been changed since noteShape(), and for other shapes.
   bool hasSameShape() const { return packing == nullptr || packing->impl().version == version; }
   void noteShape() { version = packing == nullptr ? 0 : packing->impl().version; }
 

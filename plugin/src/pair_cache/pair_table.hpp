@@ -1,4 +1,4 @@
-// All pairs of one dispatcher that have a packing in them.
+// Holds all pairs of one dispatcher that have a packing in them.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,10 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bullet asks for one pair at a time and does not say when a step begins. But where a pair has moved since
-/// the last update of all pairs, time has gone on, and another update brings all of them up to date that were
-/// asked for since, with all threads and one query. Pairs that are new since then, or that it has left out,
-/// are brought up to date alone.
+/// Keeps all pairs up to date. Bullet asks for one pair at a time and does not say when a step begins. But
+/// where a pair has moved since the last update of all pairs, time has gone on, and another update brings all
+/// of them up to date that were asked for since, with all threads and one query. Pairs that are new since
+/// then, or that it has left out, are brought up to date alone.
 ///
 /// An update goes through these stages: snapshots of the bodies; for each pair, what can be reused (see
 /// reuse.hpp); searches begin; meanwhile contacts are transported and refined; the results of the searches;
@@ -34,38 +34,42 @@ class PairTable {
  public:
   explicit PairTable(btDispatcher* dispatcher) : dispatcher_(dispatcher) {}
 
-  /// Error no_device if the options ask for CUDA by name and there is none.
+  /// Sets the options, and forgets all contacts that were found with others. They are checked by who
+  /// registers.
   void setOptions(const ContactOptions& options);
   ContactOptions options() const;
-  /// Whose settings contacts are for; it must live as long as pairs are dispatched. Null: Bullet's defaults.
+  /// Sets the solver whose settings contacts are for; it must live as long as pairs are dispatched. Null
+  /// means Bullet's defaults.
   void setSolver(const btContactSolverInfo* solver);
 
-  /// A new pair. It stays at its address until it is removed, which gives its manifolds back.
+  /// Returns a new pair. It stays at its address until it is removed, which gives its manifolds back.
   ContactPair& add();
   void remove(ContactPair& pair);
 
   /// Does what there is to do for a pair that Bullet asks for: writes its contacts through `result`, unless
-  /// the last update, or one that is due now, has published them. `swapped`: B is Bullet's first body.
+  /// the last update, or one that is due now, has published them. `swapped` says that B is Bullet's first
+  /// body.
   void process(ContactPair& pair, const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
                bool swapped, const btDispatcherInfo& dispatch, btManifoldResult* result);
   /// Answers one closest-point query, for a pair that is in no table.
   void report(ContactPair& pair, const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
               btManifoldResult* result);
 
-  /// Takes part in the next update though Bullet has not asked for it yet.
+  /// Makes a pair take part in the next update though Bullet has not asked for it yet.
   void announce(ContactPair& pair, const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b);
   /// Begins an update of all pairs that were asked for since the last one. A device works on while Bullet
   /// collides other pairs: the first one of the table that is asked for waits for it.
   void beginUpdate(btScalar time_step);
-  /// Waits for it.
+  /// Waits for the update that beginUpdate() began.
   void finishUpdate();
   /// Compares all bodies with what they were in the last update: for the isDone() that follow.
   void compareBodies();
-  /// Whether the last update has published the contacts of a pair of whole bodies as they are now. Does not
-  /// lock the table: for one that nobody else uses meanwhile.
+  /// Returns true if the last update has published the contacts of a pair of whole bodies as they are now.
+  /// Does not lock the table: for one that nobody else uses meanwhile.
   bool isDone(const ContactPair& pair, btScalar time_step) const;
 
-  /// All pairs that touch, in the order in which they came.
+  /// Returns all pairs that touch, in the order in which they came. Throws Error from the queries for their
+  /// volumes.
   std::vector<PairOverlap> overlaps();
   void appendManifolds(btManifoldArray& manifolds) const;
 
@@ -95,14 +99,15 @@ class PairTable {
   void publish(ContactPair& pair) const;
   void finish();
 
-  /// The last update has published the pair, and Bullet has not asked for it since.
+  /// Returns true if the last update has published the pair, and Bullet has not asked for it since.
   bool isFresh(const ContactPair& pair, btScalar time_step) const {
     return pair.published && pair.step == number_ && !pair.asked && time_step == settings_.time_step;
   }
-  /// Brings one pair up to date; the table is not locked. False if that cannot be done, which the log says.
+  /// Brings one pair up to date; the table is not locked. Returns false if that cannot be done, which the log
+  /// says.
   bool updateOrLog(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                    const StepSettings& settings);
-  /// The same. Throws Error from the query.
+  /// Does the same without the log. Throws Error from the query.
   void updateAlone(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                    const StepSettings& settings);
   void push(ContactPair& pair, const StepSettings& settings, const btDispatcherInfo& dispatch);

@@ -1,4 +1,4 @@
-// What of a pair's contact can be used again in a new step.
+// Decides what of a pair's contact can be used again in a new step.
 #pragma once
 
 #include "pair_cache/body_snapshot.hpp"
@@ -7,17 +7,18 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// The one rule of reuse: what has to be done for `pair` in a step of `time_step` [s] whose bodies are `a`
-/// and `b`, if nothing less than `least` is allowed. Asks the shapes whether they have changed, which they
-/// tell once a step.
+/// Returns, as the one rule of reuse, what has to be done for `pair` in a step of `time_step` [s] whose
+/// bodies are `a` and `b`, if nothing less than `least` is allowed. Asks the shapes whether they have
+/// changed, which they tell once a step.
 Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step,
               Reuse least = Reuse::idle);
 
-/// Gaps of the pair up to this width are to have a contact in the step [m]: they might close in it.
+/// Returns the width up to which gaps of the pair are to have a contact in the step [m]: they might close in
+/// it.
 btScalar neededSeparation(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                           btScalar time_step);
 
-/// For how far the bodies of a pair without contacts stay apart, after an update that is published.
+/// Returns for how far the bodies of a pair without contacts stay apart, after an update that is published.
 SafeDistance safeDistanceOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

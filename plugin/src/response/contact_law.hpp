@@ -1,4 +1,4 @@
-// How strongly a patch of contact pushes.
+// Says how strongly a patch of contact pushes.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ class btCollisionObject;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// What Bullet's solver is told of one contact point.
+/// Tells Bullet's solver of one contact point.
 struct PointLaw {
   bool spring = false;     ///< the solver is to use stiffness and damping
   bool penalty = false;    ///< the solver is to leave the point alone
@@ -25,8 +25,8 @@ struct PointLaw {
   btScalar time_step = 0;  ///< [s]
 };
 
-/// The law of one pair of bodies in one step. A contact with stiffness k and damping c is, in Bullet's
-/// solver, exactly a backward-Euler spring-damper: any stiffness is stable.
+/// This is the law of one pair of bodies in one step. A contact with stiffness k and damping c is, in
+/// Bullet's solver, exactly a backward-Euler spring-damper: any stiffness is stable.
 ///
 /// With m the reduced mass of the pair, dt the step, and T = sum A max(0, n n') the area that pushes along n:
 ///   stiffness along n   K = options.stiffness T;
@@ -41,16 +41,18 @@ struct PointLaw {
 /// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second.
 class ContactLaw {
  public:
-  /// `size` [m] is that of the smaller body.
+  /// Makes the law of a pair. `reduced_mass` is in kg, and 0 counts as 1; `time_step` is in s, and 0 counts
+  /// as 1/60; `size` [m] is that of the smaller body.
   ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step, btScalar size,
              const SolverSettings& solver = {});
 
-  /// For the points of one patch.
+  /// This is the law for the points of one patch.
   class OfPatch {
    public:
+    /// Returns the law of a point with this depth [m], negative where the bodies do not touch yet.
     PointLaw at(btScalar depth) const;
-    /// Slip of the reduced mass that Bullet's friction anchors undo by this impulse [N s] in a step: of a
-    /// slip s they undo the part e by m e s / dt [m].
+    /// Returns the slip of the reduced mass that Bullet's friction anchors undo by this impulse [N s] in a
+    /// step: of a slip s they undo the part e by m e s / dt [m].
     btScalar slipUndoneBy(btScalar impulse) const;
 
    private:
@@ -60,11 +62,12 @@ class ContactLaw {
     btScalar damping_;
     btScalar rolling_;
   };
+  /// Returns the law of patch `index`. All patches of the pair share its stiffness.
   OfPatch of(const std::vector<ContactPatch>& patches, std::size_t index) const;
 
   bool penalty() const { return response_ == Response::penalty; }
   const SolverSettings& solver() const { return solver_; }
-  /// Of Response::penalty [N/m^3].
+  /// Returns the stiffness of Response::penalty [N/m^3].
   btScalar penaltyStiffness() const { return given_stiffness_; }
 
  private:
@@ -79,7 +82,7 @@ class ContactLaw {
   SolverSettings solver_;
 };
 
-/// 1 / (1/m_a + 1/m_b), static and kinematic bodies counting as infinitely heavy; 0 if both are.
+/// Returns 1 / (1/m_a + 1/m_b) [kg], static and kinematic bodies counting as infinitely heavy; 0 if both are.
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,4 +1,4 @@
-// A body as impulses see it.
+// Shows a body as impulses see it.
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
@@ -15,23 +15,26 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// have a velocity.
 class PushedBody {
  public:
-  /// With the velocity that the body will have at the end of a step without contacts: gravity and the user's
-  /// forces are in it.
+  /// Takes the body with the velocity that it will have at the end of a step without contacts: gravity and
+  /// the user's forces are in it.
   PushedBody(const btCollisionObject& object, btScalar time_step);
 
   const btVector3& centre() const { return centre_; }
   const btVector3& spin() const { return spin_; }
   btVector3 velocityAt(const btVector3& point) const { return velocity_ + spin_.cross(point - centre_); }
-  /// Change of the velocity at a point along a unit vector, for a unit impulse there [1/kg].
+  /// Returns the change of the velocity at a point along a unit vector, for a unit impulse there [1/kg].
   btScalar inverseMassAt(const btVector3& point, const btVector3& direction) const;
-  /// The same for its spin [1/(kg m^2)].
+  /// Returns the change of its spin about a unit vector, for a unit angular impulse [1/(kg m^2)].
   btScalar inverseInertiaAbout(const btVector3& direction) const;
-  /// At most 1/m + r^2 / I, for a push in any direction at a point this far from the centre [1/kg].
+  /// Returns an upper bound of inverseMassAt() for a push in any direction at a point this far from the
+  /// centre [1/kg].
   btScalar largestInverseMass(btScalar distance) const;
 
+  /// Pushes it at a point of the world [N s].
   void push(const btVector3& impulse, const btVector3& point);
-  /// Through the centre.
+  /// Pushes it through the centre [N s].
   void push(const btVector3& impulse);
+  /// Turns it by an angular impulse [N m s].
   void turn(const btVector3& angular_impulse);
 
   /// Adds everything that was collected to the velocity of the body itself.

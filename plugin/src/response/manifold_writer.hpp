@@ -1,4 +1,4 @@
-// The persistent manifolds of one pair of bodies.
+// Keeps the persistent manifolds of one pair of bodies.
 #pragma once
 
 #include <vector>
@@ -13,9 +13,10 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// One manifold a patch. A patch keeps its manifold from step to step, and a point its place in it, so that
-/// Bullet's warm starting works; points that were not found again are removed. Manifolds are given back only
-/// at the end, because btCollisionDispatcherMt cannot release a manifold in the dispatch that made it.
+/// Has one manifold for each patch. A patch keeps its manifold from step to step, and a point its place in
+/// it, so that Bullet's warm starting works; points that were not found again are removed. Manifolds are
+/// given back only at the end, because btCollisionDispatcherMt cannot release a manifold in the dispatch that
+/// made it.
 class ManifoldWriter {
  public:
   explicit ManifoldWriter(btDispatcher* dispatcher) : dispatcher_(dispatcher) {}
@@ -23,17 +24,18 @@ class ManifoldWriter {
   ManifoldWriter(const ManifoldWriter&) = delete;
   ManifoldWriter& operator=(const ManifoldWriter&) = delete;
 
-  /// Replaces the contacts between `a` and `b`, which move like `motion`. `origin`: of A's packing in the
-  /// world. `separation` [m]: points that far apart are kept.
+  /// Replaces the contacts between `a` and `b`, which move like `motion`. `origin` is that of A's packing in
+  /// the world. Points up to `separation` [m] apart are kept.
   void write(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
              const btVector3& origin, const std::vector<ContactPatch>& patches, const ContactLaw& law,
              btScalar separation, btManifoldResult* result);
 
-  /// Only tells `result` of them, as closest-point queries want it: keeps nothing and makes no manifold.
+  /// Only tells `result` of the contacts, as closest-point queries want it: keeps nothing and makes no
+  /// manifold.
   static void report(const btCollisionObject& a, const btCollisionObject& b, const btVector3& origin,
                      const std::vector<ContactPatch>& patches, btManifoldResult* result);
 
-  /// Gives the manifolds back.
+  /// Gives the manifolds back to the dispatcher.
   void clear();
   void append(btManifoldArray& manifolds) const;
   std::size_t size() const { return entries_.size(); }

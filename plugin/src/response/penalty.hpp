@@ -1,4 +1,4 @@
-// Penalty forces: impulses on the bodies, past Bullet's solver.
+// Pushes bodies by penalty forces: impulses, past Bullet's solver.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// What was done to a pair of bodies in a step.
+/// Tells what was done to a pair of bodies in a step.
 struct PenaltyReport {
   btVector3 force{0, 0, 0};                ///< on B, without damping and friction [N]
   double energy = 0;                       ///< potential of that force [J]
@@ -33,11 +33,11 @@ class Penalty {
   Penalty(const btCollisionObject& a, const btCollisionObject& b, btScalar damping, btScalar time_step)
       : a_(a, time_step), b_(b, time_step), damping_(damping), time_step_(time_step) {}
 
-  /// Whether both bodies take impulses, or stand still; links of a btMultiBody do not.
+  /// Returns true if both bodies take impulses, or stand still; links of a btMultiBody do not.
   static bool applies(const btCollisionObject& a, const btCollisionObject& b);
 
-  /// Pushes the bodies. `arm`: the place in the world that overlap.torque is about. `manifolds` hold the
-  /// points of this overlap, A first; they are told their impulses.
+  /// Pushes the bodies. `stiffness` is in N/m^3. `arm` is the place in the world that overlap.torque is
+  /// about. `manifolds` hold the points of this overlap, A first; they are told their impulses.
   PenaltyReport push(const Overlap& overlap, btScalar stiffness, const btVector3& arm,
                      const btManifoldArray& manifolds);
 

@@ -1,4 +1,4 @@
-// What contacts have to know of the solver that they are for.
+// Says what contacts have to know of the solver that they are for.
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
@@ -8,7 +8,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bullet's defaults, or those of a world.
+/// Holds Bullet's defaults, or the settings of a world.
 struct SolverSettings {
   SolverSettings() = default;
   explicit SolverSettings(const btContactSolverInfo& info)

@@ -1,4 +1,4 @@
-// Which options are allowed, and which hold for a pair.
+// Says which options are allowed, and which hold for a pair.
 #pragma once
 
 #include "innersphere/contact_options.hpp"
@@ -8,10 +8,10 @@ class btCollisionShape;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Throws Error bad_argument for a number out of range.
+/// Throws Error bad_argument if stiffness, damping or accuracy is negative or not finite.
 void checkOptions(const ContactOptions& options);
 
-/// What combine() says for two shapes, each a packing or not.
+/// Returns what combine() says for two shapes, each a packing or not.
 ContactOptions optionsOfPair(const ContactOptions& world, const btCollisionShape& a,
                              const btCollisionShape& b);
 

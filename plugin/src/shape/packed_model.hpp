@@ -1,4 +1,4 @@
-// What all shapes of one collision model share.
+// Holds what all shapes of one collision model share.
 #pragma once
 
 #include <atomic>
@@ -17,14 +17,14 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// The first spheres of a packing. Lengths are for scale 1 [m].
+/// Holds the first spheres of a packing. Lengths are for scale 1 [m].
 class Prefix {
  public:
   Prefix(const Packing& packing, std::size_t count);
 
   const SphereBvh& tree() const;
   bool hasTree() const { return tree_.made(); }
-  /// How far the spheres may end inside of the surface; 0 if the packing has none.
+  /// Returns how far the spheres may end inside of the surface; 0 if the packing has none.
   btScalar inset() const;
 
   const std::size_t count;
@@ -38,27 +38,27 @@ class Prefix {
   Lazy<btScalar> inset_;
 };
 
-/// Trees are built when they are first asked for. Const members are safe to call from several threads at
-/// once.
+/// Holds what a model's shapes share. Trees are built when they are first asked for. Const members are safe
+/// to call from several threads at once.
 class PackedModel {
  public:
   explicit PackedModel(std::shared_ptr<const CollisionModel> collision_model);
-  /// The one of a model: the same as long as somebody holds it.
+  /// Returns the one of a model: the same as long as somebody holds it.
   static std::shared_ptr<const PackedModel> of(std::shared_ptr<const CollisionModel> model);
 
   const Packing& packing() const { return model->packing(); }
   bool hasSurface() const { return !packing().surface.triangles.empty(); }
-  /// `count` from 1 to the number of spheres.
+  /// Returns the first `count` spheres, from 1 to all of them. It stays valid as long as this object.
   const Prefix& prefix(std::size_t count) const;
-  /// The shortest of 64, 128, 256, ... spheres, fewer than `most`, that are nowhere further than `gap` [m]
-  /// from the surface; `most` if there is none, or no surface.
+  /// Returns the shortest of 64, 128, 256, ... spheres, fewer than `most`, that are nowhere further than
+  /// `gap` [m] from the surface; `most` if there is none, or no surface.
   const Prefix& prefixWithin(btScalar gap, const Prefix& most) const;
-  /// Only if hasSurface(). In the packing's frame.
+  /// Returns the searches on the surface, in the packing's frame. Call it only if hasSurface().
   const SurfaceQueries& surfaceQueries() const;
-  /// The triangle that is nearest to the centre of a sphere.
+  /// Returns the triangle that is nearest to the centre of a sphere. Call it only if hasSurface().
   std::size_t triangleNear(std::size_t sphere) const;
   const VertexHillClimb& vertexHillClimb() const;
-  /// What has been built so far.
+  /// Tells what has been built so far.
   struct Built {
     bool sphere_bvh, surface_queries, vertex_hill_climb;
   };
@@ -72,7 +72,7 @@ class PackedModel {
   mutable std::mutex mutex_;
   mutable std::map<std::size_t, Prefix> prefixes_;
   Lazy<SurfaceQueries> surface_queries_;
-  /// Plus one; 0 until it is asked for.
+  /// Holds the nearest triangle of each sphere, plus one; 0 until it is asked for.
   using Triangles = std::unique_ptr<std::atomic<std::uint32_t>[]>;
   Lazy<Triangles> triangles_near_;
   Lazy<VertexHillClimb> vertex_hill_climb_;

@@ -1,4 +1,4 @@
-// What the collision algorithm knows of a PackingShape beyond its public face.
+// Declares what the collision algorithm knows of a PackingShape beyond its public face.
 #pragma once
 
 #include <optional>
@@ -24,24 +24,27 @@ struct PackingShape::Impl {
   bool hasSurface() const { return solid->hasSurface(); }
   const SurfaceQueries& surfaceQueries() const { return solid->surfaceQueries(); }
   const VertexHillClimb& vertexHillClimb() const { return solid->vertexHillClimb(); }
-  /// By how much volume-true spheres reach out of the boxes below: without a surface they are what collides.
+  /// Returns by how much volume-true spheres reach out of the boxes below: without a surface they are what
+  /// collides.
   btScalar overshoot() const { return hasSurface() ? btScalar(0) : prefix->largest_overshoot; }
-  /// The spheres to use where gaps of `accuracy` [m] at the surface are allowed; 0: those the user chose.
+  /// Returns the spheres to use where gaps of `accuracy` [m] at the surface are allowed; 0: those the user
+  /// chose.
   const Prefix& prefixFor(btScalar accuracy) const {
     return accuracy > 0 ? solid->prefixWithin(accuracy / scaling.x(), *prefix) : *prefix;
   }
-  /// From the packing's frame to the world for a body at `body`: x_world = result(scale * x).
+  /// Returns the transform from the packing's frame to the world for a body at `body`: x_world = result(scale
+  /// * x).
   btTransform toWorld(const btTransform& body) const;
 
-  /// The moments for mass 1 and scale 1 in the shape's frame [m^2].
+  /// Returns the moments for mass 1 and scale 1 in the shape's frame [m^2].
   btVector3 moments() const;
 
   const std::shared_ptr<const PackedModel> solid;
   const ShapeFrame frame;
   const Prefix* prefix;  ///< that the user chose
   btVector3 scaling{1, 1, 1};
-  btScalar disc = 0;  ///< asked for many times in a step
-  /// The same in the principal frame: how large the solid is, wherever the origin lies [m].
+  btScalar disc = 0;  ///< the angular motion disc, asked for many times in a step [m]
+  /// The same in the principal frame: it says how large the solid is, wherever the origin lies [m].
   btScalar size = 0;
   std::optional<ContactOptions> options;  ///< of its own
   std::uint64_t version = 0;              ///< another one after each change, and for each shape

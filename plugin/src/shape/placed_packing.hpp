@@ -1,4 +1,4 @@
-// A packing placed in the world, for one collision.
+// Places a packing in the world, for one collision.
 #pragma once
 
 #include "common/bullet_vectors.hpp"
@@ -10,9 +10,9 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 struct PlacedPacking {
-  /// `search_margin` [m]: how far beyond its radius and the shape's margin a sphere looks for contacts.
-  /// `prefix`: the spheres to use, null for those the shape uses; with Estimator::volume_true as many of them
-  /// as there are such radii for.
+  /// `search_margin` [m] is how far beyond its radius and the shape's margin a sphere looks for contacts.
+  /// `prefix` says which spheres to use, null for those the shape uses; with Estimator::volume_true as many
+  /// of them as there are such radii for.
   PlacedPacking(const PackingShape& packing_shape, const btTransform& body, Estimator estimator,
                 btScalar search_margin, const Prefix* prefix = nullptr);
 
@@ -22,25 +22,26 @@ struct PlacedPacking {
   btScalar scale() const { return impl->scaling.x(); }
   const btVector3& origin() const { return world.getOrigin(); }
 
-  /// Centre of sphere i relative to origin(), axes of the world.
+  /// Returns the centre of sphere i relative to origin(), in axes of the world [m].
   btVector3 centreOf(std::size_t i) const {
     return world.getBasis() * (centre(impl->packing().spheres[i]) * scale());
   }
-  /// The sphere's own radius [m].
+  /// Returns the sphere's own radius [m].
   btScalar ownRadius(std::size_t i) const { return btScalar(impl->packing().spheres[i].radius) * scale(); }
-  /// Its radius for the estimator [m].
+  /// Returns the sphere's radius for the estimator [m].
   btScalar radiusOf(std::size_t i) const {
     return radii == nullptr ? ownRadius(i) : btScalar(radii[i]) * scale();
   }
-  /// How close to the other surface its centre must be to be reported.
+  /// Returns how close to the other surface its centre must be to be reported [m].
   btScalar searchRadius(std::size_t i) const { return radiusOf(i) + margin + search_margin; }
-  /// No sphere reaches further beyond its own radius than this.
+  /// Returns how far any sphere reaches beyond its own radius, at most [m].
   btScalar largestExcess() const { return search_margin + margin + excess; }
 
   Placement placement() const;
 
-  /// Of the solid's surface, without the margin: `place` relative to origin(), axes of the world, and the
-  /// normal of the result, too. False if the surface is further away than `max_distance` [m].
+  /// Finds the nearest point of the solid's surface, without the margin. `place` is relative to origin(), in
+  /// axes of the world, and so is the normal of the result. Returns false if the surface is further away than
+  /// `max_distance` [m].
   bool nearest(const btVector3& place, btScalar max_distance, SurfaceQueries::Nearest& nearest) const;
 
   const PackingShape::Impl* impl;

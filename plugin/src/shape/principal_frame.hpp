@@ -1,4 +1,4 @@
-// Mass properties of a packed solid in the frame that Bullet's rigid bodies need.
+// Finds the mass properties of a packed solid in the frame that Bullet's rigid bodies need.
 #pragma once
 
 #include <LinearMath/btTransform.h>
@@ -14,8 +14,9 @@ struct PrincipalFrame {
   btVector3 moments{0, 0, 0};  ///< principal moments for unit mass [m^2]
 };
 
-/// From packing.solid, or, if it has no volume (imported spheres), from the spheres at equal density. Axes
-/// that are principal already, to within 1e-5, are kept, so that a box or a torus does not turn.
+/// Returns the frame by packing.solid or, if that has no volume (imported spheres), by the spheres at equal
+/// density. Axes that are principal already, to within 1e-5, are kept, so that a box or a torus does not
+/// turn.
 PrincipalFrame principalFrame(const Packing& packing);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

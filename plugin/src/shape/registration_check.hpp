@@ -1,4 +1,4 @@
-// A world that nobody told of packings.
+// Notices a world that nobody told of packings.
 #pragma once
 
 #include <atomic>
@@ -11,11 +11,11 @@ class btTriangleCallback;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A dispatcher was registered.
+/// Notes that a dispatcher was registered.
 void noticeRegistration();
 
-/// A shape's box is asked for, as Bullet does for each body in each step. Says in the log, once in a process,
-/// if that has happened often and no dispatcher was ever registered.
+/// Notes that a shape's box is asked for, as Bullet does for each body in each step. Says in the log, once in
+/// a process, if that has happened often and no dispatcher was ever registered.
 void noticeBox();
 
 /// Looks at who asks a shape for its triangles. Safe to use from several threads at once.

@@ -1,4 +1,4 @@
-// A packing in a .bullet file.
+// Writes a packing to a .bullet file.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,12 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bullet's importer knows only its own shapes, so that a packing is written as a compound of spheres. The
-/// serialiser tells shapes apart by their addresses: the spheres must stay until it is done, and so they do
-/// until the packing's shape goes or is written again.
+/// Holds the spheres that are written. Bullet's importer knows only its own shapes, so that a packing is
+/// written as a compound of spheres. The serialiser tells shapes apart by their addresses: the spheres must
+/// stay until it is done, and so they do until the packing's shape goes or is written again.
 class SerializedSpheres {
  public:
+  /// Returns the size of what write() fills [bytes].
   static int bufferSize() { return sizeof(btCompoundShapeData); }
   /// Fills a btCompoundShapeData and returns its name.
   const char* write(const PackingShape& shape, void* buffer, btSerializer* serializer);

@@ -1,4 +1,4 @@
-// Where a packed solid lies in the frame of a shape.
+// Says where a packed solid lies in the frame of a shape.
 #pragma once
 
 #include <LinearMath/btTransform.h>
@@ -9,7 +9,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bounds are of the surface and the spheres, in the shape's frame, for scale 1 [m].
+/// Holds the frame and the solid's bounds. They are of the surface and the spheres, in the shape's frame, for
+/// scale 1 [m].
 struct ShapeFrame {
   ShapeFrame(const Packing& packing, const btTransform& packing_to_shape);
 

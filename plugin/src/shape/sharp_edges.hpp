@@ -1,4 +1,4 @@
-// A solid as the search for crossing edges sees it.
+// Shows a solid as the search for crossing edges sees it.
 #pragma once
 
 #include "shape/placed_packing.hpp"
@@ -6,9 +6,10 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Faces that meet in sharp edges, placed in the world. Positions are relative to the origin of some packing.
+/// Holds faces that meet in sharp edges, placed in the world. Positions are relative to the origin of some
+/// packing.
 struct SharpEdges {
-  /// Of a packing, whose own origin is at `at`.
+  /// Takes those of a packing, whose own origin is at `at`.
   SharpEdges(const PlacedPacking& body, const btVector3& at)
       : surface(&body.shape().surfaceQueries()),
         axes(body.world.getBasis()),
@@ -17,28 +18,30 @@ struct SharpEdges {
         margin(body.margin) {}
   SharpEdges() = default;
 
-  /// The sharp edge that is met from a point of a triangle.
+  /// This is the sharp edge that is met from a point of a triangle.
   struct Edge {
     btVector3 from{0, 0, 0};
     btVector3 along{0, 0, 0};  ///< to its other end
     btVector3 inwards[2];      ///< unit: along its faces
     std::uint32_t id = 0;
   };
+  /// Finds the sharp edge that is met from a point of a triangle in a direction. Returns false if there is
+  /// none near.
   bool edgeTowards(std::size_t triangle, const btVector3& point, const btVector3& towards, Edge& edge) const;
-  /// Where a triangle is.
+  /// Returns where the middle of a triangle is.
   btVector3 middle(std::size_t triangle) const {
     return origin + axes * surface->normals().middle(triangle) * scale;
   }
-  /// Its normal: unit, out of the solid unless that is inside out.
+  /// Returns the normal of a triangle: unit, out of the solid unless that is inside out.
   btVector3 face(std::size_t triangle) const { return axes * surface->normals().face(triangle); }
-  /// The face that is nearest to a place, in the frame and the lengths of the surface. False if none is
-  /// within `max_distance` [m].
+  /// Finds the face that is nearest to a place, in the frame and the lengths of the surface. Returns false if
+  /// none is within `max_distance` [m].
   bool nearestFace(const btVector3& place, btScalar max_distance, SurfaceQueries::Nearest& nearest) const;
-  /// Whether the faces enclose a place that is no further away from them than `max_distance` [m].
+  /// Returns true if the faces enclose a place that is no further away from them than `max_distance` [m].
   bool isIn(const btVector3& place, btScalar max_distance) const;
-  /// The triangle that is nearest to a place. False if there is none.
+  /// Finds the triangle that is nearest to a place. Returns false if there is none.
   bool nearestTriangle(const btVector3& place, std::size_t& triangle) const;
-  /// How far away from the faces a place is, on either side. False if there are none.
+  /// Finds how far away from the faces a place is, on either side [m]. Returns false if there are none.
   bool distanceOf(const btVector3& place, btScalar& distance) const;
 
   const SurfaceQueries* surface = nullptr;

@@ -1,4 +1,4 @@
-// Spheres of a packing in a bounding volume tree, to find those near something that is not a packing.
+// Holds spheres of a packing in a bounding volume tree, to find those near something that is not a packing.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,11 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Bullet's own box tree over the spheres, in the packing's frame. Const members are safe to call from
-/// several threads at once.
+/// This is Bullet's own box tree over the spheres, in the packing's frame. Const members are safe to call
+/// from several threads at once.
 class SphereBvh {
  public:
-  /// Of the first `count` spheres.
+  /// Builds the tree of the first `count` spheres.
   SphereBvh(const std::vector<Sphere>& spheres, std::size_t count);
   SphereBvh(const SphereBvh&) = delete;
   SphereBvh& operator=(const SphereBvh&) = delete;

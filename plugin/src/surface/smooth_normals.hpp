@@ -1,4 +1,4 @@
-// Normals of a curved surface that was cut into triangles.
+// Finds normals of a curved surface that was cut into triangles.
 #pragma once
 
 #include <array>
@@ -14,42 +14,44 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Neighbouring triangles that meet at less than 30 degrees are taken as one curved surface: its normal turns
-/// smoothly across them. Sharper edges stay sharp, and flat faces exactly flat. All that is known of a
-/// triangle before a ray comes is kept with it. Const members are safe to call from several threads at once.
+/// Knows the normals of a surface. Neighbouring triangles that meet at less than 30 degrees are taken as one
+/// curved surface: its normal turns smoothly across them. Sharper edges stay sharp, and flat faces exactly
+/// flat. All that is known of a triangle before a ray comes is kept with it. Const members are safe to call
+/// from several threads at once.
 class SmoothNormals {
  public:
   explicit SmoothNormals(const Surface& surface);
 
-  /// Where a line meets a triangle.
+  /// Says where a line meets a triangle.
   struct Crossing {
     btScalar distance;                ///< [m] along the line, negative behind its start
     std::array<btScalar, 3> weights;  ///< of the triangle's corners, sum 1
   };
-  /// False if the line misses the triangle. `direction` is a unit vector.
+  /// Finds where a line meets a triangle. Returns false if it misses it. `direction` is a unit vector.
   bool cross(std::size_t triangle, const btVector3& from, const btVector3& direction,
              Crossing& crossing) const;
-  /// The same for triangles near the given one, on the same side of sharp edges: sets it to the one that is
-  /// met.
+  /// Does the same for triangles near the given one, on the same side of sharp edges. Sets `triangle` to the
+  /// one that is met.
   bool crossNear(std::size_t& triangle, const btVector3& from, const btVector3& direction,
                  Crossing& crossing) const;
 
-  /// Of the curved surface, where a line crosses a triangle.
+  /// Describes the curved surface where a line crosses a triangle.
   struct Place {
     btVector3 normal;  ///< unit
     btScalar bulge;    ///< how far the curved surface stands out of the triangle there [m]
   };
+  /// Returns the curved surface at a crossing.
   Place at(std::size_t triangle, const Crossing& crossing) const;
   const btVector3* corners(std::size_t triangle) const { return facets_[triangle].corners; }
-  /// Of the triangle itself: unit, out of the solid; zero if it has no area.
+  /// Returns the normal of the triangle itself: unit, out of the solid; zero if it has no area.
   const btVector3& face(std::size_t triangle) const { return facets_[triangle].face; }
   btVector3 middle(std::size_t triangle) const {
     const Facet& facet = facets_[triangle];
     return (facet.corners[0] + facet.corners[1] + facet.corners[2]) / 3;
   }
-  /// Whether a sharp edge lies between a triangle and a point over its plane, not far away.
+  /// Returns true if a sharp edge lies between a triangle and a point over its plane, not far away.
   bool isPastSharpEdge(std::size_t triangle, const btVector3& point) const;
-  /// The sharp edge in which the surface ends.
+  /// Names the sharp edge in which the surface ends.
   struct Ending {
     btScalar distance = BT_LARGE_FLOAT;  ///< [m]
     std::uint32_t triangle = 0;          ///< only if there is an edge
@@ -57,9 +59,10 @@ class SmoothNormals {
 
     bool found() const { return distance < BT_LARGE_FLOAT; }
   };
-  /// The one that is met from a point of a triangle in a direction, no further than some triangles away.
+  /// Returns the sharp edge that is met from a point of a triangle in a direction, no further than some
+  /// triangles away.
   Ending untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const;
-  /// A sharp edge, seen from either side.
+  /// This is a sharp edge, seen from either side.
   struct SharpEdge {
     btVector3 from{0, 0, 0};
     btVector3 to{0, 0, 0};
@@ -67,21 +70,22 @@ class SmoothNormals {
     std::uint32_t id = 0;  ///< the same from both sides
   };
   SharpEdge sharpEdge(const Ending& ending) const;
-  /// Of the surface across a triangle [1/m]: the curvature along that edge that shows most of it, positive
-  /// where the solid is convex, exactly 0 where it is flat.
+  /// Returns the curvature of the surface across a triangle [1/m]: that along the edge which shows most of
+  /// it. It is positive where the solid is convex, and exactly 0 where it is flat.
   btScalar curvature(std::size_t triangle) const { return facets_[triangle].curvature; }
 
  private:
-  /// A triangle. Its edge k goes from corner k to the next. What a line asks for first comes first.
+  /// This is a triangle. Its edge k goes from corner k to the next. What a line asks for first comes first.
   struct alignas(64) Facet {
     btVector3 corners[3];
     btVector3 face;           ///< unit; zero if the triangle has no area
     btVector3 inwards[3];     ///< along the triangle, from edge k; their products are weights [1/m]
     std::uint32_t across[3];  ///< triangles beyond the edges; see kSharp
-    std::uint32_t to_sharp;   ///< how many edges lead across a sharp one, at least; a few more than looked at
-                              ///< if none is near
-    btVector3 normals[3];     ///< of the curved surface at the corners
-    btScalar bulges[3];       ///< of the edges, at weights of 1 of both ends [m]
+    /// How many edges lead across a sharp one, at least; it is a few more than were looked at if none is
+    /// near.
+    std::uint32_t to_sharp;
+    btVector3 normals[3];  ///< of the curved surface at the corners
+    btScalar bulges[3];    ///< of the edges, at weights of 1 of both ends [m]
     btScalar curvature;
   };
   void setCorners(const Surface& surface);

@@ -14,16 +14,17 @@ class btTriangleCallback;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// In the surface's frame. Refers to the surface: it must stay. Const members are safe to call from several
-/// threads at once.
+/// Answers in the surface's frame and its lengths. The surface must outlive it. Const members are safe to
+/// call from several threads at once.
 class SurfaceQueries {
  public:
   explicit SurfaceQueries(const Surface& surface);
 
-  /// All triangles that meet a box, and some near it.
+  /// Calls back with all triangles that meet a box, and some near it.
   void processTriangles(btTriangleCallback* callback, const btVector3& min, const btVector3& max) const;
 
-  /// Where a ray meets the surface first: the curved one that the triangles stand for, see SmoothNormals.
+  /// Says where a ray meets the surface first: the curved one that the triangles stand for, see
+  /// SmoothNormals.
   struct Hit {
     std::size_t triangle;
     btScalar distance;   ///< [m] along the ray
@@ -31,17 +32,18 @@ class SurfaceQueries {
     btVector3 normal;    ///< the same, smoothed over curved surfaces
     btScalar curvature;  ///< there [1/m]; see SmoothNormals
   };
-  /// `direction` is a unit vector. False if nothing is met within `length`. On an edge it is the triangle
-  /// whose normal points most along `towards`.
+  /// Finds where a ray meets the surface. `direction` is a unit vector. Returns false if nothing is met
+  /// within `length` [m]. On an edge it is the triangle whose normal points most along `towards`.
   bool cast(const btVector3& from, const btVector3& direction, btScalar length, const btVector3& towards,
             Hit& hit) const;
-  /// The same for a triangle, or others around it on the same face, and for the line on both sides of `from`:
-  /// the distance is negative behind it. Nothing in between is looked at.
+  /// Does the same for a triangle, or others around it on the same face, and for the line on both sides of
+  /// `from`: the distance is negative behind it. Nothing in between is looked at.
   bool castNear(std::size_t triangle, const btVector3& from, const btVector3& direction, btScalar length,
                 Hit& hit) const;
-  /// See SmoothNormals.
+  /// Returns the distance to the sharp edge of SmoothNormals::untilSharpEdge() [m]; BT_LARGE_FLOAT if there
+  /// is none.
   btScalar untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const;
-  /// The edge itself; false if there is none.
+  /// Gives that edge itself. Returns false if there is none.
   bool sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
                  SmoothNormals::SharpEdge& edge) const;
 
@@ -51,7 +53,8 @@ class SurfaceQueries {
     std::size_t triangle;
     bool beside;  ///< the nearest point is on an edge, which the triangle shares with another face
   };
-  /// False if the surface is further away from `point` than `max_distance`.
+  /// Finds the nearest point. Returns false if the surface is further away from `point` than `max_distance`
+  /// [m].
   bool nearest(const btVector3& point, btScalar max_distance, Nearest& result) const;
 
   const SmoothNormals& normals() const;

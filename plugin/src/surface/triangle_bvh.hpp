@@ -1,4 +1,4 @@
-// Triangles of a solid's surface in a bounding volume tree.
+// Holds the triangles of a solid's surface in a bounding volume tree.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A tree of boxes in the surface's frame, which one walk searches: for the first triangle on a ray, the
-/// nearest to a point, or all in a box. Const members are safe to call from several threads at once.
+/// This is a tree of boxes in the surface's frame, which one walk searches: for the first triangle on a ray,
+/// the nearest to a point, or all in a box. Const members are safe to call from several threads at once.
 class TriangleBvh {
  public:
   explicit TriangleBvh(const Surface& surface);
 
-  /// One number of each of a node's children, side by side: one instruction looks at all of them.
+  /// One number of each of a node's children lies side by side: one instruction looks at all of them.
   static constexpr std::size_t kWidth = 4;
   using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
   static Lanes lesser(Lanes a, Lanes b) { return a < b ? a : b; }
@@ -30,7 +30,7 @@ class TriangleBvh {
   };
   /// Visits triangles, those in nearer boxes first. bound(boxes) tells in Lanes how far away the triangles in
   /// each box are at least, visit(triangle) returns how far away further ones may be to be visited still;
-  /// `farthest`: the first ones. Distances in any unit.
+  /// `farthest` is how far away the first ones may be. Distances may have any unit.
   template <typename Bound, typename Visit>
   void search(btScalar farthest, const Bound& bound, const Visit& visit) const;
 

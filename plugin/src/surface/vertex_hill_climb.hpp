@@ -1,4 +1,4 @@
-// The corners of a triangulated surface.
+// Finds the corners of a triangulated surface.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Walks from triangle to triangle. Refers to the surface: it must stay. Const members are safe to call from
-/// several threads at once.
+/// Walks from triangle to triangle. The surface must outlive it. Const members are safe to call from several
+/// threads at once.
 class VertexHillClimb {
  public:
   explicit VertexHillClimb(const Surface& surface);
 
   /// Appends the vertex that is furthest along `direction` (unit) among its neighbours, uphill from a
   /// triangle and no further than `max_distance` from `start`, and the other ends of edges that are level
-  /// with it, wherever they are: those of an edge that lies on a face, say. None if no vertex is near. True
-  /// if the surface does not rise on beyond `max_distance`.
+  /// with it, wherever they are: those of an edge that lies on a face, say. Appends nothing and returns false
+  /// if no vertex is near. Else it returns true if the surface does not rise on beyond `max_distance`.
   bool from(std::size_t triangle, const btVector3& direction, const btVector3& start, btScalar max_distance,
             std::vector<std::uint32_t>& vertices) const;
 

@@ -1,4 +1,4 @@
-// Shapes with one nearest point: convex ones, planes and distance fields.
+// Handles shapes with one nearest point: convex ones, planes and distance fields.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
@@ -9,6 +9,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Finds near spheres of a shape by its distance from a point.
 class DistanceSurface : public ShapeSurface {
  public:
   void findNearSpheres(const PlacedPacking& body, const btTransform& world,
@@ -27,16 +28,17 @@ class DistanceSurface : public ShapeSurface {
     /// The shape, if it may have an edge or a corner there.
     const btConvexShape* edged = nullptr;
   };
-  /// In the frame of the shape. False where the distance is unknown; the point is then taken as far away.
+  /// Finds the nearest point, in the frame of the shape. Returns false where the distance is unknown; the
+  /// point is then taken as far away.
   virtual bool nearest(const btVector3& p, Nearest& nearest) const = 0;
-  /// At most the distance of p, and cheaper; only its comparison with a radius matters.
+  /// Returns at most the distance of p, and cheaper; only its comparison with a radius matters.
   virtual btScalar lowerBound(const btVector3& p) const;
-  /// Null if it is none.
+  /// Returns the shape as a polyhedron, or null if it is none.
   virtual const btPolyhedralConvexShape* polyhedron() const { return nullptr; }
-  /// Whether the bounding box of a shape is what it was at the last call. What moves less than the box shows
-  /// is not noticed before the bodies move.
+  /// Returns true if the bounding box of a shape is what it was at the last call. What moves less than the
+  /// box shows is not noticed before the bodies move.
   bool boxIsAsBefore(const btCollisionShape& shape);
-  /// Distance of p from the bounding box of a shape.
+  /// Returns the distance of p from the bounding box of a shape [m].
   static btScalar boxDistance(const btCollisionShape& shape, const btVector3& p);
 
  private:
@@ -54,7 +56,7 @@ std::unique_ptr<ShapeSurface> makeSphereSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeBoxSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeCapsuleSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeConvexSurface(const btCollisionShape& shape);
-/// Null if the shape is no btSdfCollisionShape.
+/// Makes a surface of a distance field. Returns null if the shape is no btSdfCollisionShape.
 std::unique_ptr<ShapeSurface> makeSdfSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeTriangleSurface(const btCollisionShape& shape);
 

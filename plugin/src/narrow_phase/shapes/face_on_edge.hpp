@@ -1,4 +1,4 @@
-// Where a face of a packing lies on an edge or a corner of another shape.
+// Finds where a face of a packing lies on an edge or a corner of another shape.
 #pragma once
 
 #include "common/contact_tolerances.hpp"
@@ -7,8 +7,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// The face of `body` that lies on the place where `near_sphere` is nearest to the other surface: its unit
-/// normal, out of the body. False if there is none near.
+/// Finds the face of `body` that lies on the place where `near_sphere` is nearest to the other surface: its
+/// unit normal, out of the body. Returns false if there is none near.
 bool faceOver(const PlacedPacking& body, const NearSphere& near_sphere, btVector3& normal);
 
 /// A sphere sees an edge askew, but the edge bears the face that lies on it, along the

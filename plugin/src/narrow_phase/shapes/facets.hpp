@@ -1,4 +1,4 @@
-// The flat faces of a shape that is no packing, as triangles that know their neighbours.
+// Holds the flat faces of a shape that is no packing, as triangles that know their neighbours.
 #pragma once
 
 #include <memory>
@@ -12,18 +12,18 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Made anew only where the points that it is made of have changed.
+/// Holds the faces, which are made anew only where the points that they are made of have changed.
 class Facets {
  public:
-  /// It is time to look at the shape again.
+  /// Notes that it is time to look at the shape again.
   void expire() { expired_ = true; }
   bool isExpired() const { return expired_; }
-  /// Of a mesh's triangles in a box, and some around it.
+  /// Takes a mesh's triangles in a box, and some around it.
   void setMesh(const btConcaveShape& mesh, const btVector3& min, const btVector3& max);
-  /// Of the hull of a polyhedron's vertices, that the shape may be larger than on all sides.
+  /// Takes the hull of a polyhedron's vertices, which the shape may exceed by a margin on all sides.
   void setHull(const btPolyhedralConvexShape& shape);
 
-  /// Relative to a place, axes of the world. False if there are none.
+  /// Places the faces relative to a place, in axes of the world. Returns false if there are none.
   bool place(const btTransform& world, const btVector3& relative_to, SharpEdges& solid) const;
 
  private:

@@ -1,4 +1,4 @@
-// The surface of a shape that is not a packing, as the spheres of a packing see it.
+// Shows the surface of a shape that is not a packing, as the spheres of a packing see it.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,22 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A sphere near the other solid. A sphere in a concave corner has several.
+/// This is a sphere near the other solid. A sphere in a concave corner has several.
 struct NearSphere {
   std::uint32_t sphere = 0;
   btScalar distance = 0;      ///< of its centre from the other surface [m], negative inside the other solid
   btVector3 normal{0, 0, 0};  ///< unit, out of the other solid at the nearest point; axes of the world
   btScalar curvature = 0;     ///< of the other surface there [1/m]; 0 if flat, or not known
-  /// From the line through its centre along the normal to the nearest point: not zero where that lies on an
-  /// edge of the other surface that a face of the solid lies on. Then the normal is that of the face [m].
+  /// The way from the line through its centre along the normal to the nearest point: not zero where that lies
+  /// on an edge of the other surface that a face of the solid lies on. Then the normal is that of the face
+  /// [m].
   btVector3 aside{0, 0, 0};
 
   bool isOnEdge() const { return !aside.isZero(); }
 };
 
-/// One implementation for each kind of shape. An object belongs to one pair of bodies and may remember things
-/// of it.
+/// Has one implementation for each kind of shape. An object belongs to one pair of bodies and may remember
+/// things of it.
 class ShapeSurface {
  public:
   virtual ~ShapeSurface() = default;
@@ -35,27 +36,27 @@ class ShapeSurface {
   virtual void findNearSpheres(const PlacedPacking& body, const btTransform& world,
                                std::vector<NearSphere>& near_spheres) = 0;
 
-  /// Whether the shape is as it was when it was asked last. False if that cannot be told.
+  /// Returns true if the shape is as it was when it was asked last, and false if that cannot be told.
   virtual bool isAsBefore() { return false; }
-  /// Renews the distances of near spheres for where the bodies are now; they may be further away by
-  /// then. False if that cannot be done.
+  /// Renews the distances of near spheres for where the bodies are now; they may be further away by then.
+  /// Returns false if that cannot be done.
   virtual bool updateNearSpheres(const PlacedPacking&, const btTransform&, std::vector<NearSphere>&) {
     return false;
   }
 
-  /// How far away from it a place outside is, relative to body.origin(), near the spheres found last [m].
-  /// False if that is not known.
+  /// Finds how far away from it a place outside is, relative to body.origin(), near the spheres found last
+  /// [m]. Returns false if that is not known.
   virtual bool distanceOf(const PlacedPacking&, const btTransform&, const btVector3&, btScalar&) {
     return false;
   }
 
-  /// Its flat faces, those near the spheres found last at least, relative to body.origin(). False if it has
-  /// none.
+  /// Gives its flat faces, those near the spheres found last at least, relative to body.origin(). Returns
+  /// false if it has none.
   virtual bool facets(const PlacedPacking&, const btTransform&, SharpEdges&) { return false; }
 };
 
-/// The surface of `shape`, or null for a shape without one (fluids, invalid types). The shape must outlive
-/// it.
+/// Returns the surface of `shape`, or null for a shape without one (fluids, invalid types). The shape must
+/// outlive it.
 std::unique_ptr<ShapeSurface> makeShapeSurface(const btCollisionShape& shape);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
