@@ -12,6 +12,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Holds the velocity of a rigid body or of a part of a multi-body. It is zero for any other body.
 struct BodyVelocity {
+  BodyVelocity() = default;
   explicit BodyVelocity(const btCollisionObject& object);
 
   btVector3 linear{0, 0, 0};  ///< of its origin [m/s]

@@ -141,7 +141,7 @@ void selectFiltered(const std::vector<SphereContact>& contacts, const Probe& pro
 }
 
 template <typename Probe>
-bool refine(Samples& samples, const Probe& probe, const ContactSettings& settings,
+bool refine(Samples& samples, const Probe& probe, const ContactSettings& settings, const StepAhead& step,
             std::vector<ContactPatch>& patches) {
   Scratch& scratch = scratchOfThread();
   std::vector<WeightedPoint>& found = scratch.found;
@@ -152,7 +152,7 @@ bool refine(Samples& samples, const Probe& probe, const ContactSettings& setting
     findContactPoints(probe, p, settings.separation, samples, scratch.sampling, found);
   if (first_time) dropUnprobed(samples);
   keepLeastWaysOut(settings.spacing, scratch.reduction, found);
-  reduceToManifolds(found, scratch.old_ids, settings.spacing, scratch.reduction, patches);
+  reduceToManifolds(found, scratch.old_ids, settings.spacing, step, scratch.reduction, patches);
   return std::any_of(found.begin(), found.end(),
                      [&](const WeightedPoint& p) { return p.point.depth > -settings.spacing; });
 }
@@ -170,26 +170,29 @@ void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vecto
 
 }  // namespace
 
-void selectSamples(const std::vector<SphereContact>& contacts, const PackingProbe& probe, btScalar,
+void selectSamples(const std::vector<SphereContact>& contacts, const PackingProbe& probe,
                    const btMatrix3x3& reference, const std::vector<ContactPatch>& patches, Samples& samples) {
   selectFiltered(
       contacts, probe, reference, patches, [](std::vector<std::size_t>&) {}, samples);
 }
 
-void selectSamples(const std::vector<SphereContact>& contacts, const ShapeProbe& probe, btScalar spacing,
-                   const btMatrix3x3& reference, const std::vector<ContactPatch>& patches, Samples& samples) {
-  const auto filter = [&](std::vector<std::size_t>& indices) { dropShallow(contacts, spacing, indices); };
+void selectSamples(const std::vector<SphereContact>& contacts, const ShapeProbe& probe,
+                   const ContactSettings& settings, const StepAhead& step, const btMatrix3x3& reference,
+                   const std::vector<ContactPatch>& patches, Samples& samples) {
+  const auto filter = [&](std::vector<std::size_t>& indices) {
+    dropShallow(contacts, settings.spacing, step.needed, indices);
+  };
   selectFiltered(contacts, probe, reference, patches, filter, samples);
 }
 
 bool refinePatches(Samples& samples, const PackingProbe& probe, const ContactSettings& settings,
-                   std::vector<ContactPatch>& patches) {
-  return refine(samples, probe, settings, patches);
+                   const StepAhead& step, std::vector<ContactPatch>& patches) {
+  return refine(samples, probe, settings, step, patches);
 }
 
 bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSettings& settings,
-                   std::vector<ContactPatch>& patches) {
-  return refine(samples, probe, settings, patches);
+                   const StepAhead& step, std::vector<ContactPatch>& patches) {
+  return refine(samples, probe, settings, step, patches);
 }
 
 void gradientPatch(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,

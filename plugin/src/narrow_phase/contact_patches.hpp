@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/pair_motion.hpp"
 #include "innersphere/overlap.hpp"
 #include "narrow_phase/contact_point.hpp"
 #include "narrow_phase/contact_settings.hpp"
@@ -15,19 +16,20 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Replaces `samples` by the contacts to probe. `patches` are those of the step before, whose points stay
 /// among them. `reference` are axes that turn with a body: points keep their places in them.
-void selectSamples(const std::vector<SphereContact>& contacts, const PackingProbe& probe, btScalar spacing,
+void selectSamples(const std::vector<SphereContact>& contacts, const PackingProbe& probe,
                    const btMatrix3x3& reference, const std::vector<ContactPatch>& patches, Samples& samples);
-void selectSamples(const std::vector<SphereContact>& contacts, const ShapeProbe& probe, btScalar spacing,
-                   const btMatrix3x3& reference, const std::vector<ContactPatch>& patches, Samples& samples);
+void selectSamples(const std::vector<SphereContact>& contacts, const ShapeProbe& probe,
+                   const ContactSettings& settings, const StepAhead& step, const btMatrix3x3& reference,
+                   const std::vector<ContactPatch>& patches, Samples& samples);
 
 /// Replaces `patches`, which hold those of the step before, by such whose depth is that of the solids'
 /// surfaces: points are contacts of spheres, the deepest and those that span the patch, the old ones by
 /// preference. Returns false if none is near touching: the solids are apart, or so deep in each other that no
 /// surface is near.
 bool refinePatches(Samples& samples, const PackingProbe& probe, const ContactSettings& settings,
-                   std::vector<ContactPatch>& patches);
+                   const StepAhead& step, std::vector<ContactPatch>& patches);
 bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSettings& settings,
-                   std::vector<ContactPatch>& patches);
+                   const StepAhead& step, std::vector<ContactPatch>& patches);
 
 /// Replaces `patches` by one in the direction in which the volume of overlap shrinks fastest, or by none: for
 /// bodies deep in each other, where single spheres push everywhere.

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "common/pair_motion.hpp"
 #include "narrow_phase/contact_settings.hpp"
 #include "narrow_phase/contact_transport.hpp"
 
@@ -16,9 +17,9 @@ struct FoundContact {
   /// Returns true if the shapes are as they were when it was asked last. It is to be asked once in each step.
   /// If they are not, what was found is forgotten.
   virtual bool hasSameShapes() { return true; }
-  /// Evaluates the depth at the samples again, for where the bodies are now and gaps up to `needed` [m].
+  /// Evaluates the depth at the samples again, for where the bodies are now and gaps up to `step.needed`.
   /// Returns false if contact has to be searched for.
-  virtual bool refine(const Placed& now, btScalar needed) = 0;
+  virtual bool refine(const Placed& now, const StepAhead& step) = 0;
   /// Returns the volume that both share where they were last. Its torque is about the origin of the other
   /// packing, or of the only one. Returns null where that is not known, as for contacts that were found on
   /// the surfaces.

@@ -25,8 +25,8 @@ class FourPoints {
  public:
   /// `worth`: room for a number of each point.
   FourPoints(const std::vector<ContactPoint>& found, const std::vector<std::uint64_t>& old_ids,
-             btScalar spacing, ContactPatch& patch, std::vector<btScalar>& worth)
-      : found_(found), old_ids_(old_ids), spacing_(spacing), patch_(patch), worth_(worth) {}
+             btScalar spacing, const StepAhead& step, ContactPatch& patch, std::vector<btScalar>& worth)
+      : found_(found), old_ids_(old_ids), spacing_(spacing), step_(step), patch_(patch), worth_(worth) {}
 
   void choose() {
     patch_.count = 0;
@@ -50,8 +50,7 @@ class FourPoints {
       return worth_[k] * most;
     };
     if (!take(deepest)) return;
-    worth_.clear();
-    for (const ContactPoint& point : found_) worth_.push_back(worth(point));
+    findWorths();
     if (take(farthest) && take(largest)) take(widest);
   }
 
@@ -88,10 +87,19 @@ class FourPoints {
   bool isOld(const ContactPoint& point) const {
     return std::find(old_ids_.begin(), old_ids_.end(), point.id) != old_ids_.end();
   }
-  /// Of a point that widens the patch: less the farther it is from touching, compared with the deepest.
-  btScalar worth(const ContactPoint& point) const {
-    const btScalar above = (patch_.points[0].depth - point.depth) / (kWorthFalls * spacing_);
-    return (isOld(point) ? kKeepSpan : btScalar(1)) * btExp(-above);
+  /// Of points that widen the patch: less the farther they are from touching, compared with the deepest. What
+  /// the step alone would drive into the other body has to be held in it, so depths are those at its end, and
+  /// where bodies have sunk in, or will, all that has counts.
+  void findWorths() {
+    worth_.clear();
+    btScalar deepest = -BT_LARGE_FLOAT;
+    for (const ContactPoint& point : found_) {
+      worth_.push_back(step_.depthAtEnd(point.on_b, point.normal, point.depth));
+      deepest = btMax(deepest, worth_.back());
+    }
+    const btScalar falls = btMax(kWorthFalls * spacing_, deepest);
+    for (std::size_t i = 0; i < found_.size(); ++i)
+      worth_[i] = (isOld(found_[i]) ? kKeepSpan : btScalar(1)) * btExp((worth_[i] - deepest) / falls);
   }
   const btVector3& at(int i) const { return patch_.points[i].on_b; }
   btScalar area(const btVector3& p, const btVector3& q, const btVector3& r) const {
@@ -101,6 +109,7 @@ class FourPoints {
   const std::vector<ContactPoint>& found_;
   const std::vector<std::uint64_t>& old_ids_;
   btScalar spacing_;
+  const StepAhead& step_;
   ContactPatch& patch_;
   std::vector<btScalar>& worth_;
 };
@@ -152,7 +161,8 @@ void keepLeastWaysOut(btScalar spacing, ReductionScratch& scratch, std::vector<W
 }
 
 void reduceToManifolds(std::vector<WeightedPoint>& found, const std::vector<std::uint64_t>& old_ids,
-                       btScalar spacing, ReductionScratch& scratch, std::vector<ContactPatch>& patches) {
+                       btScalar spacing, const StepAhead& step, ReductionScratch& scratch,
+                       std::vector<ContactPatch>& patches) {
   std::array<Spread, kMaxManifolds> spreads;
   for (std::vector<ContactPoint>& group : scratch.groups) group.clear();
   patches.clear();
@@ -173,7 +183,7 @@ void reduceToManifolds(std::vector<WeightedPoint>& found, const std::vector<std:
     patches[g].normal.normalize();
     patches[g].centre /= patches[g].area;
     patches[g].radius = spreads[g].radius();
-    FourPoints(scratch.groups[g], old_ids, spacing, patches[g], scratch.worth).choose();
+    FourPoints(scratch.groups[g], old_ids, spacing, step, patches[g], scratch.worth).choose();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/contact_tolerances.hpp"
+#include "common/pair_motion.hpp"
 #include "narrow_phase/contact_point.hpp"
 #include "narrow_phase/contact_samples.hpp"
 
@@ -29,7 +30,8 @@ void keepLeastWaysOut(btScalar spacing, ReductionScratch& scratch, std::vector<W
 /// of the step before are preferred, so that the choice does not flicker; of points closer than `spacing` [m]
 /// to each other one is left. Replaces `patches`, and reorders `found`.
 void reduceToManifolds(std::vector<WeightedPoint>& found, const std::vector<std::uint64_t>& old_ids,
-                       btScalar spacing, ReductionScratch& scratch, std::vector<ContactPatch>& patches);
+                       btScalar spacing, const StepAhead& step, ReductionScratch& scratch,
+                       std::vector<ContactPatch>& patches);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

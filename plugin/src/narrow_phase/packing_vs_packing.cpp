@@ -64,10 +64,11 @@ QueryOptions queryOptionsOf(SearchPass pass, Estimator estimator) {
   }
 }
 
-SearchPass PackingVsPacking::begin(const ContactOptions& options, const Placed& now, btScalar needed) {
+SearchPass PackingVsPacking::begin(const ContactOptions& options, const Placed& now, const StepAhead& step) {
   forget();
   now_ = now;
-  search_.emplace(options, *a_, *b_, needed);
+  step_ = step;
+  search_.emplace(options, *a_, *b_, step.needed);
   return search_->on_surfaces ? SearchPass::surfaces : SearchPass::volumes;
 }
 
@@ -111,8 +112,8 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
   SearchPass next = SearchPass::none;
   if (pass == SearchPass::surfaces) {
     const Bodies bodies(*this, *search_);
-    selectSamples(contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), search_->spacing, reference,
-                  memory.patches, memory.samples);
+    selectSamples(contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), reference, memory.patches,
+                  memory.samples);
     keepSamples(contacts, count_a, memory.samples, contacts_, count_a_);
     const bool near = evaluateDepths(bodies);
     if (!contacts.empty() && !near) next = SearchPass::touch;
@@ -129,8 +130,9 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
   return next;
 }
 
-bool PackingVsPacking::refine(const Placed& now, btScalar) {
+bool PackingVsPacking::refine(const Placed& now, const StepAhead& step) {
   now_ = now;
+  step_ = step;
   memory.turnTo(now);
   search_ = settings;
   evaluateDepths(Bodies(*this, *settings));
@@ -141,7 +143,7 @@ bool PackingVsPacking::refine(const Placed& now, btScalar) {
 /// Whether surfaces are near each other at any of the samples.
 bool PackingVsPacking::evaluateDepths(const Bodies& bodies) {
   const PackingProbe probe(bodies.a, bodies.b, contacts_, count_a_);
-  return refinePatches(memory.samples, probe, *search_, memory.patches);
+  return refinePatches(memory.samples, probe, *search_, step_, memory.patches);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -29,15 +29,15 @@ class PackingVsPacking : public FoundContact {
  public:
   PackingVsPacking(const PackingShape& a, const PackingShape& b) : a_(&a), b_(&b) {}
 
-  /// Begins a search and returns its first pass. It looks for contacts up to `needed` [m] apart. Until the
+  /// Begins a search and returns its first pass. It looks for contacts up to `step.needed` apart. Until the
   /// last pass is over, the contact is not known.
-  SearchPass begin(const ContactOptions& options, const Placed& now, btScalar needed);
+  SearchPass begin(const ContactOptions& options, const Placed& now, const StepAhead& step);
   /// Returns the query of a pass.
   PairQuery makeQuery(SearchPass pass) const;
   /// Takes the result number `index` and returns the next pass.
   SearchPass take(SearchPass pass, const QueryResult& result, std::size_t index);
 
-  bool refine(const Placed& now, btScalar needed) override;
+  bool refine(const Placed& now, const StepAhead& step) override;
   const Overlap* overlap() const override {
     return isKnown() && !settings->on_surfaces ? &overlap_ : nullptr;
   }
@@ -52,6 +52,7 @@ class PackingVsPacking : public FoundContact {
   const PackingShape* a_;
   const PackingShape* b_;
   Placed now_;
+  StepAhead step_;
   std::optional<ContactSettings> search_;  ///< settings of a search that is under way
   std::vector<SphereContact> contacts_;    ///< the samples
   std::size_t count_a_ = 0;                ///< of A's spheres, which come first

@@ -69,7 +69,7 @@ Overlap sumOf(const PlacedPacking& a, const std::vector<NearSphere>& near_sphere
 PackingVsShape::PackingVsShape(const PackingShape& packing, const btCollisionShape& other)
     : packing_(packing), other_(other), surface_(makeShapeSurface(other)) {}
 
-void PackingVsShape::search(const ContactOptions& options, const Placed& now, btScalar needed) {
+void PackingVsShape::search(const ContactOptions& options, const Placed& now, const StepAhead& step) {
   static thread_local std::vector<SphereContact> contacts;
   forget();
   overlap_.reset();
@@ -77,7 +77,7 @@ void PackingVsShape::search(const ContactOptions& options, const Placed& now, bt
     memory.patches.clear();
     return;
   }
-  const ContactSettings measure(options, packing_, other_, needed);
+  const ContactSettings measure(options, packing_, other_, step.needed);
   const PlacedPacking a(packing_, now.a, measure.estimator, measure.search_margin_a, measure.prefix_a);
   near_spheres_.clear();
   surface_->findNearSpheres(a, now.b, near_spheres_);
@@ -86,8 +86,8 @@ void PackingVsShape::search(const ContactOptions& options, const Placed& now, bt
     capsOf(a, a.search_margin, contacts);
     assert(contacts.size() == near_spheres_.size());  // the probe counts on it
     const ShapeProbe probe(a, *surface_, now.b, near_spheres_);
-    selectSamples(contacts, probe, measure.spacing, now.a.getBasis(), memory.patches, memory.samples);
-    const bool near = refinePatches(memory.samples, probe, measure, memory.patches);
+    selectSamples(contacts, probe, measure, step, now.a.getBasis(), memory.patches, memory.samples);
+    const bool near = refinePatches(memory.samples, probe, measure, step, memory.patches);
     // Spheres that overlap where no surface is near: the packing is too deep for them.
     if (!near) capsOf(a, 0, contacts);
     on_surfaces = near || contacts.empty();
@@ -117,14 +117,14 @@ bool PackingVsShape::hasSameShapes() {
   return same;
 }
 
-bool PackingVsShape::refine(const Placed& now, btScalar needed) {
-  const btScalar separation = btMax(settings->spacing, needed + kSearchAgain * settings->spacing);
+bool PackingVsShape::refine(const Placed& now, const StepAhead& step) {
+  const btScalar separation = btMax(settings->spacing, step.needed + kSearchAgain * settings->spacing);
   const btScalar search_margin = separation + settings->prefix_a->inset() * packing_.getLocalScaling().x();
   const PlacedPacking a(packing_, now.a, settings->estimator, search_margin, settings->prefix_a);
   if (!surface_->updateNearSpheres(a, now.b, near_spheres_)) return false;
   memory.turnTo(now);
   const ShapeProbe probe(a, *surface_, now.b, near_spheres_);
-  const bool near = refinePatches(memory.samples, probe, *settings, memory.patches);
+  const bool near = refinePatches(memory.samples, probe, *settings, step, memory.patches);
   const auto cuts = [&](const NearSphere& near_sphere) {
     return near_sphere.distance < a.radiusOf(near_sphere.sphere) + a.margin;
   };

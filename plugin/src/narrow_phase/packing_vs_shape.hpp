@@ -21,11 +21,11 @@ class PackingVsShape : public FoundContact {
   /// Takes the packing and the shape, which must both outlive it.
   PackingVsShape(const PackingShape& packing, const btCollisionShape& other);
 
-  /// Searches for contacts up to `needed` [m] apart.
-  void search(const ContactOptions& options, const Placed& now, btScalar needed);
+  /// Searches for contacts up to `step.needed` apart.
+  void search(const ContactOptions& options, const Placed& now, const StepAhead& step);
 
   bool hasSameShapes() override;
-  bool refine(const Placed& now, btScalar needed) override;
+  bool refine(const Placed& now, const StepAhead& step) override;
   const Overlap* overlap() const override { return overlap_ ? &*overlap_ : nullptr; }
   /// Returns what both share at `now`.
   Overlap volumesAt(const ContactOptions& options, const Placed& now) const;

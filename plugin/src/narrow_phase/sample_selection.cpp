@@ -110,13 +110,13 @@ void dropUnprobed(Samples& samples) {
   samples.lines.resize(kept);
 }
 
-void dropShallow(const std::vector<SphereContact>& contacts, btScalar spacing,
+void dropShallow(const std::vector<SphereContact>& contacts, btScalar spacing, btScalar needed,
                  std::vector<std::size_t>& indices) {
   btScalar deepest = 0;
   for (std::size_t i : indices) deepest = btMax(deepest, depthOf(contacts[i]));
   const auto isShallow = [&](std::size_t i) {
     const btScalar depth = depthOf(contacts[i]);
-    return depth > 0 && depth < deepest - kLessDeep * spacing;
+    return depth > 0 && depth < deepest - kLessDeep * spacing - needed;
   };
   indices.erase(std::remove_if(indices.begin(), indices.end(), isShallow), indices.end());
 }

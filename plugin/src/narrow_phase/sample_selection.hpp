@@ -68,8 +68,9 @@ void turn(const btMatrix3x3& by, Samples& samples);
 void dropUnprobed(Samples& samples);
 
 /// Drops contacts that are far less deep than the deepest of them: these only touch because they were
-/// enlarged. `spacing` is that of ContactSettings [m].
-void dropShallow(const std::vector<SphereContact>& contacts, btScalar spacing,
+/// enlarged. But where bodies move, all that might meet within the step stays: what is `needed` [m] less
+/// deep. `spacing` is that of ContactSettings [m].
+void dropShallow(const std::vector<SphereContact>& contacts, btScalar spacing, btScalar needed,
                  std::vector<std::size_t>& indices);
 
 /// Appends some contacts of a patch: those of the step before, those that span the patch, those that stand

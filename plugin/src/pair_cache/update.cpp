@@ -28,24 +28,32 @@ bool place(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b) {
   return true;
 }
 
+StepAhead stepAheadOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
+                      btScalar time_step) {
+  const btVector3 origin = pair.origin();
+  return {
+      {a.transform().getOrigin() - origin, a.velocity(), b.transform().getOrigin() - origin, b.velocity()},
+      time_step,
+      neededSeparation(pair, a, b, time_step)};
+}
+
 /// The first pass of a search that needs queries.
 SearchPass beginSearch(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                        const StepSettings& settings) {
   pair.noteShapes(settings.options);
-  return packingsOf(pair).begin(pair.options, pair.placed(),
-                                neededSeparation(pair, a, b, settings.time_step));
+  return packingsOf(pair).begin(pair.options, pair.placed(), stepAheadOf(pair, a, b, settings.time_step));
 }
 
 /// All that is done without a query.
 void updateWithoutQuery(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, Reuse reuse,
                         const StepSettings& settings) {
-  const btScalar needed = neededSeparation(pair, a, b, settings.time_step);
+  const StepAhead step = stepAheadOf(pair, a, b, settings.time_step);
   if (reuse == Reuse::transport)
     pair.found->memory.carryTo(pair.placed(), *pair.a.packing, pair.found->settings->spacing);
-  if (reuse == Reuse::refine && !pair.found->refine(pair.placed(), needed)) reuse = Reuse::search;
+  if (reuse == Reuse::refine && !pair.found->refine(pair.placed(), step)) reuse = Reuse::search;
   if (reuse != Reuse::search) return;
   pair.noteShapes(settings.options);
-  static_cast<PackingVsShape&>(*pair.found).search(pair.options, pair.placed(), needed);
+  static_cast<PackingVsShape&>(*pair.found).search(pair.options, pair.placed(), step);
 }
 
 }  // namespace

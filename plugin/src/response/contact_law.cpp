@@ -15,7 +15,7 @@ constexpr btScalar kStiffness = 24, kDamping = 4;
 /// mass needs more than what lies still.
 constexpr btScalar kStiffening = btScalar(0.002);
 /// Fastest push of the default law, in sizes of the body per second.
-constexpr btScalar kFastest = btScalar(0.5);
+constexpr btScalar kFastest = 1;
 
 /// How far ahead of bodies that roll their load lies, in sizes of the smaller one: a fiftieth of what it does
 /// for steel on steel. Enough to lie still on slopes of a micrometre, which measured surfaces have.

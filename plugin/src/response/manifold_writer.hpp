@@ -6,9 +6,9 @@
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
+#include "common/pair_motion.hpp"
 #include "narrow_phase/contact_point.hpp"
 #include "response/contact_law.hpp"
-#include "response/pair_motion.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

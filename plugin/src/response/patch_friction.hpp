@@ -4,8 +4,8 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "common/pair_motion.hpp"
 #include "narrow_phase/contact_point.hpp"
-#include "response/pair_motion.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -39,8 +39,8 @@ class CubeOnPlane {
   bool refine(std::vector<ContactPatch>& patches) {
     const ShapeProbe probe(a_, *surface_, world_, spheres_);
     const ContactSettings settings({}, *shape_, plane_, 0);
-    selectSamples(contacts, probe, settings.spacing, btMatrix3x3::getIdentity(), patches, samples);
-    return refinePatches(samples, probe, settings, patches);
+    selectSamples(contacts, probe, settings, {}, btMatrix3x3::getIdentity(), patches, samples);
+    return refinePatches(samples, probe, settings, {}, patches);
   }
 
   std::vector<SphereContact> contacts;

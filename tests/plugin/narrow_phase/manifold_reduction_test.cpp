@@ -38,7 +38,7 @@ WeightedPoint pointAt(double x, double y, double depth, std::uint64_t id, const 
 std::vector<ContactPatch> reduce(std::vector<WeightedPoint> found, std::vector<std::uint64_t> old_ids = {}) {
   ReductionScratch scratch;
   std::vector<ContactPatch> patches;
-  reduceToManifolds(found, old_ids, btScalar(kSpacing), scratch, patches);
+  reduceToManifolds(found, old_ids, btScalar(kSpacing), {}, scratch, patches);
   return patches;
 }
 

@@ -141,7 +141,7 @@ TEST(DropShallow, KeepsWhatIsAlmostAsDeepAsTheDeepest) {
     contacts[i].volume = 0.01F * (float(i) + 0.5F) * 1e-3F;
     indices.push_back(i);
   }
-  dropShallow(contacts, btScalar(1.6e-3), indices);  // 3.2 mm less deep than 9.5 mm is not
+  dropShallow(contacts, btScalar(1.6e-3), 0, indices);  // 3.2 mm less deep than 9.5 mm is not
   EXPECT_EQ(indices, (std::vector<std::size_t>{6, 7, 8, 9, 10}));
 }
 

@@ -28,7 +28,7 @@ class ReuseRule : public testing::Test {
     pair.a.transform = upper.getWorldTransform();
     pair.b.transform = lower.getWorldTransform();
     static_cast<PackingVsShape&>(*pair.found).hasSameShapes();
-    static_cast<PackingVsShape&>(*pair.found).search({}, pair.placed(), btScalar(0));
+    static_cast<PackingVsShape&>(*pair.found).search({}, pair.placed(), {});
     spacing = pair.found->settings->spacing;
     pair.safe = safeDistanceOf(pair, *body_a, *body_b);
   }

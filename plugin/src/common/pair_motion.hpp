@@ -10,6 +10,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// whatever else is done to the bodies meanwhile.
 class PairMotion {
  public:
+  /// Both are at rest.
+  PairMotion() = default;
   PairMotion(const btVector3& origin_a, const BodyVelocity& a, const btVector3& origin_b,
              const BodyVelocity& b)
       : origin_a_(origin_a), origin_b_(origin_b), a_(a), b_(b) {}
@@ -38,8 +40,25 @@ class PairMotion {
     return body.spin.cross(body.spin.cross(point - origin));
   }
 
-  btVector3 origin_a_, origin_b_;
+  btVector3 origin_a_{0, 0, 0}, origin_b_{0, 0, 0};
   BodyVelocity a_, b_;
+};
+
+/// Says what the step that contacts are for will bring, as far as the bodies' velocities tell.
+struct StepAhead {
+  /// How the bodies move, with places relative to the origin of A's packing.
+  PairMotion motion;
+  /// How long the step is [s]. 0: there is none, as in a query for closest points.
+  btScalar time_step = 0;
+  /// Surfaces that are this far apart might meet in the step [m].
+  btScalar needed = 0;
+
+  /// Returns how deep two points of the surfaces, `depth` [m] deep in each other along `normal` (from A to B)
+  /// at `place`, would be at the end of the step if nothing stopped the bodies.
+  btScalar depthAtEnd(const btVector3& place, const btVector3& normal, btScalar depth) const {
+    return depth + time_step * (motion.approachAt(place, normal) +
+                                time_step / 2 * motion.approachByTurningAt(place, normal));
+  }
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
