@@ -95,8 +95,8 @@ build() {
   rm -f "$log"
   steps=$(count_steps "$folder" "$target")
   [ "$steps" -gt 0 ] || return 0
-  # A step takes about 3 s: measured for the tool, as processor time of two busy cores of an AMD EPYC (Zen 3).
-  seconds=$((steps * 3 / $(nproc)))
+  # A step takes about 4 s: measured for the tool, as processor time of two busy cores of an AMD EPYC (Zen 3).
+  seconds=$((steps * 4 / $(nproc)))
   say "Building $target: $steps steps, about $(((seconds + 59) / 60)) min on $(nproc) free cores like an AMD EPYC's (longer with CUDA) ..."
   attend cmake --build --preset "$preset" --target "$target" || exit 1
 }

@@ -60,16 +60,18 @@ void collide(btCollisionDispatcher& dispatcher, PairTable& table, btBroadphasePa
   table.finishUpdate();
   table.compareBodies();
   done.resize(ours.size());
-  inParallel(ours.size(),
-             [&](std::size_t i) { done[i] = ours[i] != nullptr && table.isDone(*ours[i], info.m_timeStep); });
+  inParallel(ours.size(), [&](std::size_t i) {
+    done[i] = ours[i] != nullptr && table.isDone(*ours[i], info.m_timeStep);
+    if (done[i]) ours[i]->asked = true;
+  });
+  // Filters may be the user's own, which other threads must not call.
   for (std::size_t i = 0; i < ours.size(); ++i) {
-    if (ours[i] == nullptr) continue;
-    btBroadphasePair& pair = pairAt(pairs, i);
-    if (!done[i]) {
-      dispatcher.getNearCallback()(pair, dispatcher, info);
-    } else if (dispatcher.needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1))) {
-      ours[i]->asked = true;
-    }
+    const btBroadphasePair& pair = pairAt(pairs, i);
+    if (done[i] && !dispatcher.needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1)))
+      ours[i]->asked = false;
+  }
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (ours[i] != nullptr && !done[i]) dispatcher.getNearCallback()(pairAt(pairs, i), dispatcher, info);
   }
 }
 
