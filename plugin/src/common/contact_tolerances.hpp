@@ -68,8 +68,12 @@ constexpr btScalar kUsableCosine = btScalar(0.5);
 constexpr int kAscentSteps = 8;
 /// The other samples, which only have to get nearer, take so many.
 constexpr int kAscentStepsBeside = 2;
-/// Ratio of two steps: the estimate of how fast the slope falls is not believed below this part of the last.
-constexpr btScalar kSlowestFall = btScalar(0.1);
+/// Ratio: the slope is not believed to fall more slowly than by this part of what was believed before.
+constexpr btScalar kSlowestFall = btScalar(0.02);
+/// Ratio: a step that did not lead uphill is taken again, shorter by this.
+constexpr btScalar kShorter = 3;
+/// [rad]: where the slope is less, the top is reached: the normals are that close.
+constexpr btScalar kLevel = btScalar(2e-4);
 /// [rad]: other samples ascend where the slope is less. These are the places that a rolling body meets next.
 constexpr btScalar kSlopeBeside = btScalar(0.1);
 /// [rad]: a slope that is steeper says little about the top.

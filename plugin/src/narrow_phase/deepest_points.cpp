@@ -46,32 +46,62 @@ Top guessedTop(const ProbedSample& sample) {
   return {here.depth + here.slope.dot(shift) / 2, shift};
 }
 
+/// How fast the slope falls in each direction across the line, as far as the steps have shown: a quasi-Newton
+/// method (Broyden, Fletcher, Goldfarb, Shanno) in two dimensions, for hills are seldom round.
+class Falls {
+ public:
+  /// Starts as if it fell by `fastest` [1/m] everywhere.
+  Falls(const btVector3& direction, btScalar fastest) : xx_(fastest), yy_(fastest) {
+    btPlaneSpace1(direction, x_, y_);
+  }
+  /// From a place with this slope to the top.
+  btVector3 toTop(const btVector3& slope) const {
+    const btScalar x = slope.dot(x_), y = slope.dot(y_), det = xx_ * yy_ - xy_ * xy_;
+    return (x_ * (yy_ * x - xy_ * y) + y_ * (xx_ * y - xy_ * x)) / det;
+  }
+  /// Takes note that the slope fell by so much in a step.
+  void learn(const btVector3& step, const btVector3& fell) {
+    const btScalar x = step.dot(x_), y = step.dot(y_), fell_x = fell.dot(x_), fell_y = fell.dot(y_);
+    const btScalar was_x = xx_ * x + xy_ * y, was_y = xy_ * x + yy_ * y;
+    const btScalar was = x * was_x + y * was_y, is = x * fell_x + y * fell_y;
+    if (!(is > kSlowestFall * was)) return;
+    xx_ += fell_x * fell_x / is - was_x * was_x / was;
+    xy_ += fell_x * fell_y / is - was_x * was_y / was;
+    yy_ += fell_y * fell_y / is - was_y * was_y / was;
+  }
+  void shorten() {
+    xx_ *= kShorter;
+    xy_ *= kShorter;
+    yy_ *= kShorter;
+  }
+
+ private:
+  btVector3 x_, y_;
+  btScalar xx_, xy_ = 0, yy_;
+};
+
 /// Moves a sample uphill; not where slopes above `steepest` say that the top is far.
 void ascend(const SurfaceProbe& probe, btScalar steepest, int steps, ProbedSample& sample) {
   Hillside here = hillsideAt(sample.points, sample.direction);
-  // How fast the slope falls with distance. There is no top where faces are flat, or fit together.
-  const btScalar fastest = sample.points.curvature_a + sample.points.curvature_b;
-  btScalar fall = fastest;
+  // There is no top where faces are flat, or fit together.
   if (fitTogether(sample.points.curvature_a, sample.points.curvature_b) || here.slope.length() > steepest)
     return;
+  Falls falls(sample.direction, sample.points.curvature_a + sample.points.curvature_b);
   btVector3 shift(0, 0, 0);
-  for (int i = 0; i < steps; ++i) {
+  for (int i = 0; i < steps && here.slope.length2() > kLevel * kLevel; ++i) {
     OpposedPoints points;
     points.triangle_a = sample.points.triangle_a;
     points.triangle_b = sample.points.triangle_b;
-    const btVector3 step = here.slope / fall;
+    const btVector3 step = falls.toTop(here.slope);
     if (!probe.probeLine(sample.index, sample.direction, shift + step, points) ||
         !isUsable(points, sample.direction))
       return;
     const Hillside next = hillsideAt(points, sample.direction);
-    if (next.depth <= here.depth) {
-      if (fall >= fastest) return;
-      fall = fastest;  // the step was too long
+    if (next.depth < here.depth) {
+      falls.shorten();
       continue;
     }
-    // From here on as fast as it fell along the step: surfaces may be less curved that way.
-    const btScalar fell = (here.slope - next.slope).dot(step) / step.length2();
-    if (fell > kSlowestFall * fall) fall = fell;
+    falls.learn(step, here.slope - next.slope);
     shift += step;
     sample.points = points;
     here = next;

@@ -24,13 +24,12 @@ bool ShapeProbe::probeLine(std::size_t index, const btVector3&, const btVector3&
                            OpposedPoints& points) const {
   const NearSphere& near_sphere = near_spheres_[index];
   const btScalar size = surfaceDistance(near_sphere);
-  // Only of a flat surface it is known what it is like beside the nearest point.
-  const bool flat = near_sphere.curvature == 0 && !near_sphere.isOnEdge();
-  if (shift.length2() > 0 && (!flat || shift.length() > size)) return false;
   const btVector3 from = a_.centreOf(near_sphere.sphere) + near_sphere.aside + shift;
-  const btVector3 towards_b = -near_sphere.normal;
-  points.on_b = from + towards_b * near_sphere.distance;
-  if (shift.length2() > 0 && !goesOn(near_sphere, points.on_b)) return false;
+  NearSphere near_place = near_sphere;
+  if (shift.length2() > 0 && (shift.length() > size || !nearestBeside(near_sphere, from, near_place)))
+    return false;
+  const btVector3 towards_b = -near_place.normal;
+  points.on_b = from + towards_b * near_place.distance;
   SurfacePoint on_a;
   const bool leaves = leaveSolid(a_, from, towards_b, 2 * size, points.triangle_a, on_a);
   if (on_a.triangle == OpposedPoints::kNone && points.triangle_a != OpposedPoints::kNone) {
@@ -46,8 +45,16 @@ bool ShapeProbe::probeLine(std::size_t index, const btVector3&, const btVector3&
   points.curvature_a = on_a.curvature;
   points.triangle_a = on_a.triangle;
   points.normal_b = towards_b;
-  points.curvature_b = near_sphere.curvature;
+  points.curvature_b = near_place.curvature;
   return leaves;
+}
+
+bool ShapeProbe::nearestBeside(const NearSphere& near_sphere, const btVector3& from,
+                               NearSphere& near_place) const {
+  if (near_sphere.isOnEdge()) return false;
+  if (other_.nearestTo(a_, world_, from, near_place)) return true;
+  // Only of a flat surface it is known what it is like beside the nearest point.
+  return near_sphere.curvature == 0 && goesOn(near_sphere, from - near_sphere.normal * near_sphere.distance);
 }
 
 bool ShapeProbe::goesOn(const NearSphere& near_sphere, const btVector3& place) const {

@@ -37,6 +37,9 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   Protrusion protrusion(std::size_t index, const btVector3& normal) const override;
 
  private:
+  /// Finds what a sphere at `from` would see, beside where one of ours is. Returns false if that is not
+  /// known.
+  bool nearestBeside(const NearSphere& near_sphere, const btVector3& from, NearSphere& near_place) const;
   /// Returns how far away the solid of a sphere may end [m].
   btScalar surfaceDistance(const NearSphere& near_sphere) const {
     return a_.ownRadius(near_sphere.sphere) + a_.search_margin;

@@ -56,9 +56,20 @@ bool DistanceSurface::updateNearSphere(const PlacedPacking& body, const btTransf
 
 bool DistanceSurface::distanceOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
                                  btScalar& distance) {
+  NearSphere near_place;
+  if (!nearestTo(body, world, place, near_place)) return false;
+  distance = near_place.distance;
+  return true;
+}
+
+bool DistanceSurface::nearestTo(const PlacedPacking& body, const btTransform& world, const btVector3& place,
+                                NearSphere& near_sphere) {
   Nearest found;
   if (!nearest(world.invXform(body.origin() + place), found)) return false;
-  distance = found.distance;
+  near_sphere.distance = found.distance;
+  near_sphere.normal = world.getBasis() * found.normal;
+  near_sphere.curvature = found.curvature;
+  near_sphere.aside.setZero();
   return true;
 }
 

@@ -18,6 +18,8 @@ class DistanceSurface : public ShapeSurface {
                          std::vector<NearSphere>& near_spheres) final;
   bool distanceOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
                   btScalar& distance) final;
+  bool nearestTo(const PlacedPacking& body, const btTransform& world, const btVector3& place,
+                 NearSphere& near_sphere) final;
   bool facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) final;
 
  protected:
@@ -55,6 +57,8 @@ std::unique_ptr<ShapeSurface> makePlaneSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeSphereSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeBoxSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeCapsuleSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeCylinderSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeConeSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeConvexSurface(const btCollisionShape& shape);
 /// Makes a surface of a distance field. Returns null if the shape is no btSdfCollisionShape.
 std::unique_ptr<ShapeSurface> makeSdfSurface(const btCollisionShape& shape);

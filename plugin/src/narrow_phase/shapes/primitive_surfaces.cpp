@@ -1,7 +1,9 @@
-// Spheres, boxes, capsules and all other convex shapes.
+// Spheres, boxes, capsules, cylinders, cones and all other convex shapes.
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btConeShape.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
@@ -93,6 +95,98 @@ class BoxSurface : public PrimitiveSurface<btBoxShape> {
   const btPolyhedralConvexShape* polyhedron() const override { return &shape_; }
 };
 
+/// A place in the half plane through the axis of a solid of revolution: distance from the axis, height on it.
+struct Profile {
+  Profile(const btVector3& p, int axis) : height(p[axis]), outwards(p) {
+    outwards[axis] = 0;
+    radius = outwards.length();
+    outwards = radius > 0 ? outwards / radius : btVector3(0, 0, 0);
+    if (!(radius > 0)) outwards[(axis + 1) % 3] = 1;
+  }
+  /// A direction in that half plane.
+  btVector3 direction(btScalar out, btScalar up, int axis) const {
+    btVector3 along(0, 0, 0);
+    along[axis] = up;
+    return outwards * out + along;
+  }
+  btScalar radius;
+  btScalar height;
+  btVector3 outwards;  ///< unit, from the axis
+};
+
+class CylinderSurface : public PrimitiveSurface<btCylinderShape> {
+ public:
+  using PrimitiveSurface::PrimitiveSurface;
+
+ private:
+  /// The shape is a cylinder that is smaller by the margin, thickened by it.
+  bool nearest(const btVector3& p, Nearest& nearest) const override {
+    const int axis = shape_.getUpAxis();
+    const btScalar margin = shape_.getMargin(), radius = shape_.getRadius();
+    const Profile at(p, axis);
+    const btScalar side = at.height < 0 ? btScalar(-1) : btScalar(1);
+    const btScalar out = at.radius - (radius - margin),
+                   up = btFabs(at.height) - shape_.getHalfExtentsWithoutMargin()[axis];
+    if (out > 0 && up > 0) {
+      const btScalar length = btSqrt(out * out + up * up);
+      nearest.distance = length - margin;
+      nearest.normal = at.direction(out / length, side * up / length, axis);
+      nearest.curvature = margin > 0 ? 1 / margin : btScalar(0);
+      nearest.edged = &shape_;
+    } else if (out > up) {
+      nearest.distance = out - margin;
+      nearest.normal = at.outwards;
+      nearest.curvature = 1 / radius;
+    } else {
+      nearest.distance = up - margin;
+      nearest.normal = at.direction(0, side, axis);
+    }
+    return true;
+  }
+};
+
+class ConeSurface : public PrimitiveSurface<btConeShape> {
+ public:
+  using PrimitiveSurface::PrimitiveSurface;
+
+ private:
+  /// The shape is a cone thickened by the margin: in the half plane, a triangle of tip, rim and middle of the
+  /// base.
+  bool nearest(const btVector3& p, Nearest& nearest) const override {
+    const int axis = shape_.getConeUpIndex();
+    const btScalar margin = shape_.getMargin(), radius = shape_.getRadius(), height = shape_.getHeight();
+    const Profile at(p, axis);
+    const btScalar slant = btSqrt(radius * radius + height * height);
+    const btScalar slope_out = height / slant, slope_up = radius / slant;
+    // From the rim: along the slope to the tip, and above the slope and the base.
+    const btScalar out = at.radius - radius, up = at.height + height / 2;
+    const btScalar along = out * -slope_up + up * slope_out;
+    const btScalar above = out * slope_out + up * slope_up;
+    const auto fromPoint = [&](btScalar x, btScalar y) {
+      const btScalar length = btSqrt(x * x + y * y);
+      nearest.distance = length - margin;
+      nearest.normal = length > 0 ? at.direction(x / length, y / length, axis) : at.outwards;
+      nearest.curvature = margin > 0 ? 1 / margin : btScalar(0);
+      nearest.edged = &shape_;
+    };
+    if (-up >= above && out <= 0) {
+      nearest.distance = -up - margin;
+      nearest.normal = at.direction(0, -1, axis);
+    } else if (along > slant) {
+      fromPoint(at.radius, at.height - height / 2);
+    } else if (along < 0) {
+      fromPoint(out, up);
+    } else {
+      nearest.distance = above - margin;
+      nearest.normal = at.direction(slope_out, slope_up, axis);
+      // Across the slope, at the place where it is nearest.
+      const btScalar nearest_radius = radius - along * slope_up + margin * slope_out;
+      nearest.curvature = nearest_radius > 0 ? slope_out / nearest_radius : btScalar(0);
+    }
+    return true;
+  }
+};
+
 /// Any convex shape, by Bullet's GJK outside and EPA inside. Its margin counts as part of it, as in Bullet.
 class ConvexSurface : public PrimitiveSurface<btConvexShape> {
  public:
@@ -127,6 +221,14 @@ std::unique_ptr<ShapeSurface> makeSphereSurface(const btCollisionShape& shape) {
 
 std::unique_ptr<ShapeSurface> makeCapsuleSurface(const btCollisionShape& shape) {
   return std::make_unique<CapsuleSurface>(shape);
+}
+
+std::unique_ptr<ShapeSurface> makeCylinderSurface(const btCollisionShape& shape) {
+  return std::make_unique<CylinderSurface>(shape);
+}
+
+std::unique_ptr<ShapeSurface> makeConeSurface(const btCollisionShape& shape) {
+  return std::make_unique<ConeSurface>(shape);
 }
 
 std::unique_ptr<ShapeSurface> makeBoxSurface(const btCollisionShape& shape) {

@@ -17,6 +17,10 @@ std::unique_ptr<ShapeSurface> makeShapeSurface(const btCollisionShape& shape) {
       return makeBoxSurface(shape);
     case CAPSULE_SHAPE_PROXYTYPE:
       return makeCapsuleSurface(shape);
+    case CYLINDER_SHAPE_PROXYTYPE:
+      return makeCylinderSurface(shape);
+    case CONE_SHAPE_PROXYTYPE:
+      return makeConeSurface(shape);
     case SDF_SHAPE_PROXYTYPE:
       if (std::unique_ptr<ShapeSurface> sdf = makeSdfSurface(shape)) return sdf;
       return makeTriangleSurface(shape);

@@ -50,6 +50,12 @@ class ShapeSurface {
     return false;
   }
 
+  /// Finds the nearest point of the shape to a place, relative to body.origin(), as a sphere there would see
+  /// it. Returns false if that is not known.
+  virtual bool nearestTo(const PlacedPacking&, const btTransform&, const btVector3&, NearSphere&) {
+    return false;
+  }
+
   /// Gives its flat faces, those near the spheres found last at least, relative to body.origin(). Returns
   /// false if it has none.
   virtual bool facets(const PlacedPacking&, const btTransform&, SharpEdges&) { return false; }
