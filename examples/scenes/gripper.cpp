@@ -60,7 +60,7 @@ std::size_t addMug(SceneWorld& world, const SceneOptions& options) {
   const std::size_t index = world.addSolid(*solid, options.spheres, progressOf(options, 0, 1));
   world.addGround(0);
   const btRigidBody& body = world.addBody(index, 2400, placeOf(*solid, at(0, 0, 0)), paletteColour(0));
-  world.film.viewpoint = {0.9, 0.25, 0.45, true};
+  world.film.viewpoint = {2.4, 0.3, 0.45, true};
   return world.indexOf(body);
 }
 
