@@ -61,8 +61,8 @@ const std::vector<Variant>& variants() {
                                            {"gear-box"},
                                            {"gear-plane"},
                                            {"gear-mesh"},
-                                           {"pile-50"},
-                                           {"scan-bin"}};
+                                           {"pile-50", 0, 5},
+                                           {"scan-bin", 0, 4}};
   return all;
 }
 
