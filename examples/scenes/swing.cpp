@@ -27,6 +27,7 @@ void letGo(SceneWorld& world, std::size_t solid, const btQuaternion& rotation, c
   btRigidBody& body =
       world.addBody(solid, kDensity, btTransform(rotation, vec(x, y, z) + hang), paletteColour(0));
   body.setFriction(0);
+  body.setActivationState(DISABLE_DEACTIVATION);  // Bullet takes so slow a swing for rest
   expectPendulum(world, world.indexOf(body), pendulum);
   world.film.has_ground = false;
 }
