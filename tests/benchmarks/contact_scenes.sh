@@ -18,7 +18,8 @@ mode_names="240 60 plain"
 shapes="packing gimpact convex"
 limit=${LIMIT:-60}
 
-# Each line: a file, and the arguments of the tool whose output goes there. A run that fails or is stopped leaves an empty file.
+# Each line: a file, and the arguments of the tool whose output goes there. A run that fails or is stopped leaves an empty file
+# and its status.
 for shape in $shapes; do
   for mode in $mode_names; do
     for scene in $scenes; do echo "$scene-$shape-$mode scene run $scene --shape $shape ${modes[$mode]}"; done
@@ -26,7 +27,7 @@ for shape in $shapes; do
 done | tool=$tool work=$work limit=$limit xargs -P "$(nproc)" -L 1 bash -c '
   out=$1; shift
   ulimit -t "$limit"
-  "$tool" "$@" >"$work/$out" 2>"$work/$out.err" || : >"$work/$out"
+  "$tool" "$@" >"$work/$out" 2>"$work/$out.err" || { echo $? >"$work/$out.status"; : >"$work/$out"; }
   echo "$out" >&2' contact_scenes.sh
 
 # Lines "what|allowed|holds or MISSED|figure" of a run.
@@ -40,7 +41,8 @@ cell() {
   local row
   row=$(truths "$1" | sed -n "$2p")
   if [ -z "$row" ]; then
-    if grep -q . "$work/$1.err"; then printf ' | - error'; else printf ' | - timeout'; fi
+    # 137: the kernel ended it at its limit.
+    if [ "$(cat "$work/$1.status")" = 137 ]; then printf ' | - timeout'; else printf ' | - error'; fi
   elif [[ $row == *"|holds|"* ]]; then
     printf ' | pass %s' "${row##*|}"
   else

@@ -61,8 +61,8 @@ const std::vector<Variant>& variants() {
                                            {"gear-box"},
                                            {"gear-plane"},
                                            {"gear-mesh"},
-                                           {"pile-50", 0, 5},
-                                           {"scan-bin", 0, 4}};
+                                           {"pile-50", 0, 4},
+                                           {"scan-bin", 0, 3}};
   return all;
 }
 
