@@ -109,7 +109,7 @@ const std::vector<Scene>& scenes() {
       {"gear-mesh", "Gears onto two triangles",
        "Five gears fall flat from 0.5 m onto a mesh of two triangles.",
        "The same where the floor has no inside.", buildGearMesh, 3, k240, 500},
-      {"pile-50", "Pile of fifty", "Fifty solids of eight kinds fall into a tray and come to rest.",
+      {"mixed-pile", "Pile of fifty", "Fifty solids of eight kinds fall into a tray and come to rest.",
        "Piles rest, and in no floor, in long steps too.", buildPile50, 10, k240, 256, 0, true},
       {"scan-bin", "Bin of scans",
        "Lumps, heads with horns and open horns fall into a tray and come to rest.",

@@ -12,7 +12,7 @@ tool=${TOOL:-$here/../../build-benchmarks/bin/innersphere}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 scenes=${*:-arch arch-thin dominoes ring-peg ring-cylinder half-pipe half-pipe-mesh t-slot gripper gripper-motor carabiner chain-rest
-  mass-ratios gear-box gear-plane gear-mesh drops pile-50 scan-bin}
+  mass-ratios gear-box gear-plane gear-mesh drops mixed-pile scan-bin}
 declare -A modes=([240]="--dt 0.00416666667" [60]="--dt 0.0166666667" [plain]="--plain")
 mode_names="240 60 plain"
 shapes="packing gimpact convex"

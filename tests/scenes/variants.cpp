@@ -61,7 +61,7 @@ const std::vector<Variant>& variants() {
                                            {"gear-box"},
                                            {"gear-plane"},
                                            {"gear-mesh"},
-                                           {"pile-50", 0, 4},
+                                           {"mixed-pile", 0, 4},
                                            {"scan-bin", 0, 3}};
   return all;
 }
