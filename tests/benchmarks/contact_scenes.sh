@@ -59,7 +59,7 @@ stepTime() {
 cat <<EOF
 # What the scenes of an outside user show
 
-* machine: $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), $(nproc) hardware threads, two runs or more at a time
+* machine: $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), $(nproc) hardware threads, $(nproc) runs at a time
 * date: $(date +%F), commit $(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
 * command: \`tests/benchmarks/run.sh contact-scenes${*:+ $*}\`
 
