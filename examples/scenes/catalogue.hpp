@@ -16,4 +16,9 @@ BuildScene buildRest, buildSoft, buildBounce, buildSlide, buildRoll, buildFlip, 
 BuildScene buildChainHang, buildChainSwing, buildChainHeavy, buildBowls, buildNut, buildNutHeld, buildGears,
     buildPeg, buildMaze, buildPile, buildLargePile, buildChazelle;
 
+// What an outside user tried.
+BuildScene buildArch, buildArchThin, buildDominoes, buildRingPeg, buildRingCylinder, buildHalfPipe,
+    buildHalfPipeMesh, buildTSlot, buildGripper, buildGripperMotor, buildCarabiner, buildChainRest,
+    buildDrops, buildGearBox, buildGearPlane, buildGearMesh, buildPile50, buildScanBin;
+
 }  // namespace innersphere::demo

@@ -20,14 +20,15 @@ constexpr double kRing = 1, kTube = 0.25;         // [m]
 constexpr double kSpacing = 2 * (kRing - kTube);  // the tubes of neighbours touch
 
 // Hung at an angle against the vertical [rad]. The first link never moves.
-void addLinks(SceneWorld& world, const SceneOptions& options, double angle, double last_density) {
+void addLinks(SceneWorld& world, const SceneOptions& options, double angle, double last_density,
+              std::size_t links = kLinks, double scale = 1) {
   const std::size_t torus =
-      world.addSolid(*makeTorus(kRing, kTube), options.spheres, progressOf(options, 0, 1));
+      world.addSolid(*makeTorus(scale * kRing, scale * kTube), options.spheres, progressOf(options, 0, 1));
   const btQuaternion tilt = turn(vec(0, 1, 0), -angle);
   const btQuaternion upright = turn(vec(0, 1, 0), SIMD_HALF_PI), turned = turn(vec(1, 0, 0), SIMD_HALF_PI);
-  for (std::size_t i = 0; i < kLinks; ++i) {
-    const btVector3 below = vec(0, 0, -kSpacing * static_cast<double>(i));
-    const double density = i == 0 ? 0 : i + 1 == kLinks ? last_density : kDensity;
+  for (std::size_t i = 0; i < links; ++i) {
+    const btVector3 below = vec(0, 0, -scale * kSpacing * static_cast<double>(i));
+    const double density = i == 0 ? 0 : i + 1 == links ? last_density : kDensity;
     world.addBody(torus, density,
                   btTransform(tilt * (i % 2 == 0 ? upright : turned), quatRotate(tilt, below)),
                   paletteColour(i));
@@ -95,6 +96,33 @@ void buildChainHeavy(SceneWorld& world, const SceneOptions& options) {
   const double low = kSpacing * (kLinks - 1);
   world.expect({"height of the last link", "m", Truth::Kind::equal, -low, 0.02 * low,
                 "9 (2 R - 2 r) below the first: no link is lost; 2 %", finalCoordinate(kLinks - 1, 2)});
+}
+
+void buildChainRest(SceneWorld& world, const SceneOptions& options) {
+  constexpr std::size_t kLong = 20;
+  constexpr double kScale = 0.1;  // links of 0.25 m
+  addLinks(world, options, 0, kDensity, kLong, kScale);
+  for (const SceneBody& body : world.bodies()) body.body->setFriction(btScalar(std::sqrt(0.3)));
+  const auto largest = [](double StepRecord::*number) {
+    return [number](const Recording& r) {
+      double most = 0;
+      for (std::size_t s = r.stepAt(r.seconds() - 1); s < r.steps.size(); ++s)
+        most = std::max(most, r.steps[s].*number);
+      return most;
+    };
+  };
+  const char* source = "it is hung where it rests, and friction takes what comes in: nothing is seen to move";
+  Truth& turn =
+      world.expect({"fastest turn of a link in the last second", "rad/s", Truth::Kind::at_most,
+                    2 * kRestMotion / kRestTime, 0, source, largest(&StepRecord::fastest_turn), 10});
+  turn.known_miss = 0.6;
+  Truth& speed = world.expect({"fastest link in the last second", "m/s", Truth::Kind::at_most,
+                               kRestMotion * 2 * kScale * (kRing + kTube) / kRestTime, 0, source,
+                               largest(&StepRecord::fastest), 10});
+  speed.known_miss = 0.035;
+  const double low = kScale * kSpacing * (kLong - 1);
+  world.expect({"height of the last link", "m", Truth::Kind::equal, -low, 0.005 * low,
+                "19 (2 R - 2 r) below the first; 0.5 %", finalCoordinate(kLong - 1, 2), 10});
 }
 
 }  // namespace innersphere::demo

@@ -1,13 +1,17 @@
 // Piles of mixed solids in a tray.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "bullet_math.hpp"
 #include "catalogue.hpp"
 #include "film/palette.hpp"
+#include "floor.hpp"
 #include "measures.hpp"
 #include "random.hpp"
+#include "scans.hpp"
 #include "scene_solids.hpp"
 #include "world.hpp"
 
@@ -17,6 +21,7 @@ namespace {
 constexpr double kDiagonal = 0.7;  // [m] of each solid's bounding box
 constexpr double kWall = 0.03;     // [m] half the thickness of floor and walls
 constexpr Colour kTrayColour{0.80f, 0.77f, 0.72f};
+const std::vector<std::string> kSixKinds = {"torus", "link", "bowl", "lbracket", "gear", "nut"};
 
 struct Tray {
   double half_width;  // [m] inside
@@ -42,10 +47,8 @@ void addTray(SceneWorld& world, const Tray& tray) {
 // Bodies in layers: one at each of these places of a layer, far enough apart that no two touch at the start
 // however they are turned.
 void addPile(SceneWorld& world, const SceneOptions& options, std::size_t count,
-             const std::vector<std::array<double, 2>>& places) {
+             const std::vector<std::size_t>& solids, const std::vector<std::array<double, 2>>& places) {
   constexpr double kLayer = 0.72;  // [m]
-  const std::vector<std::size_t> solids =
-      addSolids(world, options, {"torus", "link", "bowl", "lbracket", "gear", "nut"}, kDiagonal);
   Random random(options.seed);
   std::vector<std::size_t> kinds;
   for (std::size_t i = 0; i < count; ++i) kinds.push_back(i % solids.size());
@@ -60,6 +63,13 @@ void addPile(SceneWorld& world, const SceneOptions& options, std::size_t count,
         .setRollingFriction(kRollingFriction);
   }
   world.film.viewpoint = {0.5, 0.95, 0.45};  // over the walls
+}
+
+std::vector<std::array<double, 2>> gridOfNine() {
+  constexpr double kApart = 0.75;  // [m]
+  std::vector<std::array<double, 2>> places;
+  for (int i = 0; i < 9; ++i) places.push_back({kApart * (i % 3 - 1), kApart * (i / 3 - 1)});
+  return places;
 }
 
 void expectRest(SceneWorld& world, double seconds, double known_miss = 0) {
@@ -102,7 +112,7 @@ void buildPile(SceneWorld& world, const SceneOptions& options) {
   constexpr double kCorner = 0.51;  // [m] from the middle, along each side
   constexpr Tray kTray{0.88, 0.6};
   addTray(world, kTray);
-  addPile(world, options, 24,
+  addPile(world, options, 24, addSolids(world, options, kSixKinds, kDiagonal),
           {{-kCorner, -kCorner}, {kCorner, kCorner}, {0, 0}, {kCorner, -kCorner}, {-kCorner, kCorner}});
   expectRest(world, 5);
 }
@@ -112,8 +122,26 @@ void buildLargePile(SceneWorld& world, const SceneOptions& options) {
   addTray(world, kTray);
   std::vector<std::array<double, 2>> places;
   for (int i = 0; i < 16; ++i) places.push_back({0.75 * (i % 4 - 1.5), 0.75 * (i / 4 - 1.5)});
-  addPile(world, options, 100, places);
+  addPile(world, options, 100, addSolids(world, options, kSixKinds, kDiagonal), places);
   expectRest(world, 13, 0.06);  // one slips or tips over now and then
+}
+
+void buildPile50(SceneWorld& world, const SceneOptions& options) {
+  constexpr Tray kTray{1.2, 0.8};
+  addTray(world, kTray);
+  std::vector<std::string> kinds = kSixKinds;
+  kinds.insert(kinds.end(), {"knot", "bolt"});
+  addPile(world, options, 50, addSolids(world, options, kinds, kDiagonal), gridOfNine());
+  expectRest(world, 10);
+  expectNoneInFloor(world, 0, 4, {1, 0.1});  // a bowl or a bolt, in long steps more
+}
+
+void buildScanBin(SceneWorld& world, const SceneOptions& options) {
+  constexpr Tray kTray{1.2, 0.8};
+  addTray(world, kTray);
+  addPile(world, options, 16, addSolids(world, options, scans(), kDiagonal), gridOfNine());
+  expectRest(world, 8);
+  expectNoneInFloor(world, 0, 3, {3, 0.2});  // walls of the open horns
 }
 
 }  // namespace innersphere::demo

@@ -113,7 +113,7 @@ Recording record(SceneWorld& world, double seconds, double dt, const Progress& p
     if (world.drive) world.drive((step - 1) * dt, dt);
     const auto start = Clock::now();
     const std::clock_t processors = std::clock();
-    world.bullet().stepSimulation(btScalar(dt), 0);
+    world.step(dt);
     const std::clock_t worked = std::clock() - processors;
     keep(step, std::chrono::duration<double>(Clock::now() - start).count());
     recording.steps.back().processor_time = static_cast<double>(worked) / CLOCKS_PER_SEC;

@@ -1,5 +1,7 @@
 #include "scene.hpp"
 
+#include <cmath>
+
 #include "innersphere/error.hpp"
 #include "world.hpp"
 
@@ -23,6 +25,11 @@ SceneOptions completed(const Scene& scene, SceneOptions options) {
     throw Error(ErrorCode::bad_argument,
                 "the scene " + scene.name + " has solids of its own; yours can be used in " + others);
   }
+  if (options.plain && options.dt != 0 && std::abs(options.dt * kPlainRate - 1) > 1e-6) {
+    throw Error(ErrorCode::bad_argument,
+                "a plain world is stepped 60 times a second: leave out the time step");
+  }
+  if (options.plain) options.dt = 1 / kPlainRate;
   if (options.seconds == 0) options.seconds = scene.seconds;
   if (options.dt == 0) options.dt = scene.dt;
   if (options.spheres == 0) options.spheres = scene.spheres;
@@ -38,7 +45,8 @@ ScenePlay::~ScenePlay() = default;
 ScenePlay play(const Scene& scene, const SceneOptions& options) {
   ScenePlay result;
   result.options = completed(scene, options);
-  result.world = std::make_unique<SceneWorld>(result.options.contact, result.options.bodies);
+  result.world = std::make_unique<SceneWorld>(result.options.contact, result.options.bodies,
+                                              result.options.plain ? Stepping::plain : Stepping::careful);
   result.world->film.title = scene.title;
   scene.build(*result.world, result.options);
   result.recording =

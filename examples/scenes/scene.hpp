@@ -24,6 +24,7 @@ struct SceneOptions {
   double dt = 0;            ///< time step [s]; 0: the scene's own
   std::size_t spheres = 0;  ///< of each solid's packing; 0: the scene's own
   std::uint64_t seed = 1;   ///< of random places and orientations
+  bool plain = false;       ///< Bullet as its HelloWorld has it, see Stepping::plain; `dt` is then 1/60 s
   /// To use instead of the scene's own solids, scaled to its size; see Scene::takes_solids.
   std::vector<std::shared_ptr<const Solid>> solids;
   ContactOptions contact;

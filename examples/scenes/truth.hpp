@@ -9,7 +9,8 @@ namespace innersphere::demo {
 
 struct Recording;
 
-/// A number that is known before the scene runs, from a formula and never from a run.
+/// A number that is known before the scene runs: from a formula, or where there is none from Bullet's own
+/// convex shapes in finer steps; never from a run of packings.
 struct Truth {
   enum class Kind {
     equal,   ///< `tolerance` above or below `expected` at most

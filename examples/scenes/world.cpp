@@ -2,9 +2,11 @@
 
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 
+#include "bullet_math.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/packing_collision_algorithm.hpp"
 #include "scaled_solid.hpp"
+#include "shapes.hpp"
 
 namespace innersphere::demo {
 namespace {
@@ -43,14 +45,30 @@ Surface boxSurface(const btVector3& half) {
   return surface;
 }
 
+Surface surfaceOf(const Mesh& mesh) {
+  Surface surface;
+  for (const Vec3d& v : mesh.vertices)
+    surface.vertices.push_back(
+        {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])});
+  surface.triangles = mesh.triangles;
+  return surface;
+}
+
 }  // namespace
 
-SceneWorld::SceneWorld(const ContactOptions& options, const BodyOptions& bodies) : body_options_(bodies) {
+void makeKinematic(btRigidBody& body) {
+  const int flags = body.getCollisionFlags() & ~btCollisionObject::CF_STATIC_OBJECT;
+  body.setCollisionFlags(flags | btCollisionObject::CF_KINEMATIC_OBJECT);
+  body.setActivationState(DISABLE_DEACTIVATION);
+}
+
+SceneWorld::SceneWorld(const ContactOptions& options, const BodyOptions& bodies, Stepping stepping)
+    : body_options_(bodies), stepping_(stepping) {
   world_.setGravity(btVector3(0, 0, -kGravity));
   // Runs repeat exactly, whatever order the broad phase finds pairs in.
   world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
   // With one friction direction Bullet turns it along the last bit of sliding, and resting bodies creep.
-  world_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  if (stepping_ == Stepping::careful) world_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   PackingCollisionAlgorithm::registerAlgorithm(&dispatcher_, options);
   if (bodies.shape == BodyShape::gimpact) btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
 }
@@ -94,7 +112,7 @@ btRigidBody& SceneWorld::add(std::string name, btCollisionShape& shape, double m
   info.m_startWorldTransform = place;
   info.m_friction = kFriction;
   auto body = std::make_unique<btRigidBody>(info);
-  if (mass > 0) body->setActivationState(DISABLE_DEACTIVATION);
+  if (mass > 0 && stepping_ == Stepping::careful) body->setActivationState(DISABLE_DEACTIVATION);
   world_.addRigidBody(body.get());
   return *bodies_.emplace_back(SceneBody{std::move(name), std::move(body), size}).body;
 }
@@ -113,12 +131,49 @@ btRigidBody& SceneWorld::addBody(std::size_t solid, double density, const btTran
              entry.size);
 }
 
+btRigidBody& SceneWorld::addBulletShape(const std::string& name, std::unique_ptr<btCollisionShape> shape,
+                                        double mass, const btTransform& place, Surface look,
+                                        const Colour& colour) {
+  film.actors.push_back({static_cast<std::uint32_t>(film.shapes.size()), colour});
+  film.shapes.push_back({name, std::move(look), {}});
+  bullet_shapes_.push_back(std::move(shape));
+  btCollisionShape& kept = *bullet_shapes_.back();
+  btVector3 inertia(0, 0, 0), low, high;
+  if (mass > 0) kept.calculateLocalInertia(btScalar(mass), inertia);
+  kept.getAabb(btTransform::getIdentity(), low, high);
+  return add(name, kept, mass, inertia, place, (high - low).length());
+}
+
+btRigidBody& SceneWorld::addBox(const btVector3& half_size, double mass, const btTransform& place,
+                                const Colour& colour) {
+  return addBulletShape(mass > 0 ? "box" : "fixed box", std::make_unique<btBoxShape>(half_size), mass, place,
+                        boxSurface(half_size), colour);
+}
+
 btRigidBody& SceneWorld::addFixedBox(const btVector3& half_size, const btTransform& place,
                                      const Colour& colour) {
-  film.actors.push_back({static_cast<std::uint32_t>(film.shapes.size()), colour});
-  film.shapes.push_back({"fixed box", boxSurface(half_size), {}});
-  bullet_shapes_.push_back(std::make_unique<btBoxShape>(half_size));
-  return add("fixed box", *bullet_shapes_.back(), 0, btVector3(0, 0, 0), place, 2 * half_size.length());
+  return addBox(half_size, 0, place, colour);
+}
+
+btRigidBody& SceneWorld::addFixedCylinder(double radius, double length, const btTransform& place,
+                                          const Colour& colour) {
+  constexpr int kAround = 64;  // of the look
+  const double half = length / 2;
+  const Mesh look = lathe({{0, -half}, {radius, -half}, {radius, half}, {0, half}}, kAround);
+  return addBulletShape("fixed cylinder", std::make_unique<btCylinderShapeZ>(vec(radius, radius, half)), 0,
+                        place, surfaceOf(look), colour);
+}
+
+btRigidBody& SceneWorld::addFixedMesh(const Mesh& mesh, const btTransform& place, const Colour& colour) {
+  triangles_.push_back(std::make_unique<btTriangleMesh>());
+  const auto corner = [&mesh](std::uint32_t index) {
+    const Vec3d& v = mesh.vertices[index];
+    return vec(v[0], v[1], v[2]);
+  };
+  for (const auto& t : mesh.triangles)
+    triangles_.back()->addTriangle(corner(t[0]), corner(t[1]), corner(t[2]));
+  return addBulletShape("fixed mesh", std::make_unique<btBvhTriangleMeshShape>(triangles_.back().get(), true),
+                        0, place, surfaceOf(mesh), colour);
 }
 
 btRigidBody& SceneWorld::addGround(double height) {
@@ -131,6 +186,13 @@ btRigidBody& SceneWorld::addGround(double height) {
   return *ground_;
 }
 
+void SceneWorld::step(double dt) {
+  if (stepping_ == Stepping::plain)
+    world_.stepSimulation(btScalar(1) / btScalar(kPlainRate), 10);
+  else
+    world_.stepSimulation(btScalar(dt), 0);
+}
+
 void SceneWorld::addConstraint(std::unique_ptr<btTypedConstraint> constraint) {
   world_.addConstraint(constraint.get());
   constraints_.push_back(std::move(constraint));
@@ -140,6 +202,13 @@ std::size_t SceneWorld::indexOf(const btRigidBody& body) const {
   std::size_t index = 0;
   while (bodies_[index].body.get() != &body) ++index;
   return index;
+}
+
+const SceneSolid* SceneWorld::solidOf(std::size_t body) const {
+  for (const SceneSolid& solid : solids_) {
+    if (solid.look == film.actors[body].shape) return &solid;
+  }
+  return nullptr;
 }
 
 }  // namespace innersphere::demo

@@ -25,6 +25,14 @@ constexpr double kDensity = 1000;
 /// on a face go without: Bullet's solver lets them creep by 0.1 mm/s with it.
 constexpr btScalar kRollingFriction = btScalar(0.01);
 
+/// How a world is set up and stepped.
+enum class Stepping {
+  careful,  ///< two friction directions, bodies never sleep, a call is a step
+  plain     ///< as in Bullet's HelloWorld: its solver mode, bodies may sleep, stepSimulation(1/60, 10)
+};
+
+constexpr double kPlainRate = 60;  ///< steps a second of Stepping::plain
+
 /// A solid that was packed for a scene.
 struct SceneSolid {
   std::shared_ptr<const Packing> packing;
@@ -42,14 +50,20 @@ struct SceneBody {
   std::unique_ptr<btRigidBody> body;
   double size = 0;  ///< diagonal of its bounding box [m]
 
-  bool moves() const { return !body->isStaticObject(); }
+  bool moves() const { return !body->isStaticOrKinematicObject(); }
 };
 
+/// From now on a body without mass is moved by setWorldTransform(), from SceneWorld::drive; what it carries
+/// feels its velocity.
+void makeKinematic(btRigidBody& body);
+
 /// Owns a btDiscreteDynamicsWorld with Bullet's default parts. The z axis points up; gravity is 9.81 m/s^2.
-/// Bodies never go to sleep, so that nothing seems to rest only because Bullet froze it.
+/// Bodies never go to sleep, so that nothing seems to rest only because Bullet froze it, unless the world is
+/// plain.
 class SceneWorld {
  public:
-  explicit SceneWorld(const ContactOptions& options, const BodyOptions& bodies = {});
+  explicit SceneWorld(const ContactOptions& options, const BodyOptions& bodies = {},
+                      Stepping stepping = Stepping::careful);
   ~SceneWorld();
   SceneWorld(const SceneWorld&) = delete;
   SceneWorld& operator=(const SceneWorld&) = delete;
@@ -65,6 +79,19 @@ class SceneWorld {
   /// [kg/m^3]: it never moves.
   btRigidBody& addBody(std::size_t solid, double density, const btTransform& place, const Colour& colour);
 
+  /// One step [s], which is 1 / kPlainRate where the world is plain.
+  void step(double dt);
+
+  /// A box of Bullet's own. Mass 0 [kg]: it never moves.
+  btRigidBody& addBox(const btVector3& half_size, double mass, const btTransform& place,
+                      const Colour& colour);
+
+  /// A fixed cylinder of Bullet's own, its axis along z.
+  btRigidBody& addFixedCylinder(double radius, double length, const btTransform& place, const Colour& colour);
+
+  /// Fixed triangles, as a btBvhTriangleMeshShape.
+  btRigidBody& addFixedMesh(const Mesh& mesh, const btTransform& place, const Colour& colour);
+
   /// A fixed box of Bullet's own.
   btRigidBody& addFixedBox(const btVector3& half_size, const btTransform& place, const Colour& colour);
 
@@ -76,6 +103,9 @@ class SceneWorld {
 
   /// Index of a body in bodies() and in recordings.
   std::size_t indexOf(const btRigidBody& body) const;
+
+  /// What a body is packed from; null: it is of a shape of Bullet's own.
+  const SceneSolid* solidOf(std::size_t body) const;
 
   /// Something that has to come out; see judge().
   Truth& expect(Truth truth) { return truths.emplace_back(std::move(truth)); }
@@ -91,13 +121,18 @@ class SceneWorld {
   btRigidBody& add(std::string name, btCollisionShape& shape, double mass, const btVector3& inertia,
                    const btTransform& place, double size);
 
+  btRigidBody& addBulletShape(const std::string& name, std::unique_ptr<btCollisionShape> shape, double mass,
+                              const btTransform& place, Surface look, const Colour& colour);
+
   BodyOptions body_options_;
+  Stepping stepping_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
   btSequentialImpulseConstraintSolver solver_;
   btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
   std::vector<SceneSolid> solids_;
+  std::vector<std::unique_ptr<btTriangleMesh>> triangles_;
   std::vector<std::unique_ptr<btCollisionShape>> bullet_shapes_;
   std::unique_ptr<btRigidBody> ground_;
   std::vector<SceneBody> bodies_;

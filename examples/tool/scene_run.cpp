@@ -84,6 +84,9 @@ void addSceneOptions(Command& command, demo::SceneOptions& options) {
       "the packings' spheres, or compounds of convex parts");
   command.number("--concavity", options.bodies.concavity, kPositive,
                  "How far convex parts may leave their solid, relative to its size");
+  command.flag("--plain", options.plain,
+               "Bullet as its HelloWorld has it: solver mode untouched, stepSimulation(1/60, 10), bodies may "
+               "sleep");
   command.count("--seed", options.seed, kNotNegative, "Of random places and orientations");
 }
 

@@ -44,7 +44,25 @@ const std::vector<Variant>& variants() {
                                            {"maze"},
                                            {"chazelle"},
                                            {"pile"},
-                                           {"large-pile"}};
+                                           {"large-pile"},
+                                           {"arch"},
+                                           {"arch-thin"},
+                                           {"dominoes"},
+                                           {"ring-peg"},
+                                           {"ring-cylinder"},
+                                           {"half-pipe"},
+                                           {"half-pipe-mesh"},
+                                           {"t-slot"},
+                                           {"gripper"},
+                                           {"gripper-motor"},
+                                           {"carabiner"},
+                                           {"chain-rest"},
+                                           {"drops"},
+                                           {"gear-box"},
+                                           {"gear-plane"},
+                                           {"gear-mesh"},
+                                           {"mixed-pile", 0, 4},
+                                           {"scan-bin", 0, 3}};
   return all;
 }
 

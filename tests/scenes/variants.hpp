@@ -22,7 +22,7 @@ struct Variant {
   friend void PrintTo(const Variant& v, std::ostream* out) { *out << v.scene << v.name; }
 };
 
-/// Each scene as users get it, and some with fewer spheres or other steps.
+/// Each scene as users get it, long ones shorter, and some with fewer spheres or other steps.
 const std::vector<Variant>& variants();
 
 /// As a name for a test.

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "scenes/centre_line.hpp"
+#include "scenes/pendulum.hpp"
 #include "scenes/recording.hpp"
 #include "scenes/ring_distance.hpp"
 #include "scenes/truth.hpp"
@@ -96,6 +98,27 @@ TEST(RingDistance, OfRingsInKnownPlaces) {
   b.position = {1.5, 0, 0};
   b.rotation = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
   EXPECT_NEAR(distanceOfRings(a, b, 2, 1), 0.5, 1e-6) << "interlocked, at right angles";
+}
+
+TEST(CentreLine, OfTubesInKnownPlaces) {
+  demo::Recording recording;
+  recording.names = {"a", "b"};
+  recording.states.resize(2);
+  recording.states[1].position = {0.25, 0, 0.5};
+  recording.states[1].rotation = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};  // a quarter about z: x becomes y
+  const demo::CentreLine a{0, {{-1, 0, 0}, {1, 0, 0}}, false};
+  EXPECT_NEAR(demo::distanceOf(a, {1, {{0, 0.25, 0}, {1, 0.25, 0}}, false}, recording, 0), 0.5, 1e-12)
+      << "its end is above the other's middle";
+  EXPECT_NEAR(demo::distanceOf(a, {1, {{1, 0, 0}, {3, 1, 0}, {3, -1, 0}}, true}, recording, 0),
+              std::hypot(1, 0.5), 1e-12)
+      << "a triangle, nearest with a corner";
+}
+
+TEST(Pendulum, PeriodGrowsWithTheAmplitude) {
+  const double small = 2 * M_PI / std::sqrt(9.81);
+  EXPECT_NEAR((demo::Pendulum{{}, 1, 1e-6}.period()), small, 1e-9);
+  EXPECT_NEAR((demo::Pendulum{{}, 4, 1e-6}.period()), 2 * small, 1e-9);
+  EXPECT_NEAR((demo::Pendulum{{}, 1, M_PI / 2}.period()), 1.1803405990 * small, 1e-8) << "2 K(1/2) / pi";
 }
 
 }  // namespace
