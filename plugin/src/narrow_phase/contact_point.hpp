@@ -28,6 +28,9 @@ struct ContactPoint {
   btScalar curvature_a = 0;   ///< of the surfaces there [1/m], positive where convex, 0 where flat
   btScalar curvature_b = 0;
   btScalar turn_a = btScalar(0.5);  ///< how much of A's turning the normal takes part in, the rest of B's
+  /// How much deeper the surfaces are at the top of the hill that the point is on, by their slope and
+  /// curvature [m]. 0 at a top, at a corner, and where faces are flat or fit together.
+  btScalar below_top = 0;
 };
 
 /// This is a part of the overlap region with one direction of contact. It becomes one manifold.

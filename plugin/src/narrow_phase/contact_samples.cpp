@@ -209,6 +209,9 @@ class PatchContactPoints {
     if (!add(points, normal, sample.id, faces ? Kind::faces : Kind::edge)) return;
     found_.back().point.curvature_a = points.curvature_a;
     found_.back().point.curvature_b = points.curvature_b;
+    if (!fitTogether(points.curvature_a, points.curvature_b))
+      found_.back().point.below_top =
+          points.normal_a.distance2(points.normal_b) / (2 * (points.curvature_a + points.curvature_b));
   }
 
   const EdgeProbe& probe_;

@@ -89,7 +89,8 @@ class FourPoints {
   }
   /// Of points that widen the patch: less the farther they are from touching, compared with the deepest. What
   /// the step alone would drive into the other body has to be held in it, so depths are those at its end, and
-  /// where bodies have sunk in, or will, all that has counts.
+  /// where bodies have sunk in, or will, all that has counts. But a place on a hill is not another one than
+  /// the top of that hill.
   void findWorths() {
     worth_.clear();
     btScalar deepest = -BT_LARGE_FLOAT;
@@ -98,8 +99,10 @@ class FourPoints {
       deepest = btMax(deepest, worth_.back());
     }
     const btScalar falls = btMax(kWorthFalls * spacing_, deepest);
-    for (std::size_t i = 0; i < found_.size(); ++i)
-      worth_[i] = (isOld(found_[i]) ? kKeepSpan : btScalar(1)) * btExp((worth_[i] - deepest) / falls);
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      const btScalar below = (deepest - worth_[i]) / falls + found_[i].below_top / (kWorthFalls * spacing_);
+      worth_[i] = (isOld(found_[i]) ? kKeepSpan : btScalar(1)) * btExp(-below);
+    }
   }
   const btVector3& at(int i) const { return patch_.points[i].on_b; }
   btScalar area(const btVector3& p, const btVector3& q, const btVector3& r) const {

@@ -72,10 +72,14 @@ TEST(ShapeProbe, FindsTheDepthOfTwoBalls) {
   EXPECT_NEAR(sample.direction.distance(direction), 0, 1e-6);
   EXPECT_NEAR(sample.points.depthAlong(direction), 0.05, kTessellation);
   EXPECT_NEAR(sample.points.curvature_b, 0.5, 1e-6);
-  // Of a curved surface only the nearest point is known.
+  // Beside it the line goes on to where B's ball is nearest from there.
   OpposedPoints points;
   const btVector3 sideways = direction.cross(btVector3(1, 0, 0)).normalized();
-  EXPECT_FALSE(near.probe().probeLine(0, direction, sideways * btScalar(0.1), points));
+  ASSERT_TRUE(near.probe().probeLine(0, direction, sideways * btScalar(0.1), points));
+  const btVector3 to_b = direction * btScalar(2.95), from = sideways * btScalar(0.1);
+  const btVector3 towards = (to_b - from).normalized();
+  EXPECT_NEAR(points.normal_b.distance(towards), 0, 1e-6);
+  EXPECT_NEAR(points.on_b.distance(to_b - towards * btScalar(2)), 0, 1e-6);
 }
 
 TEST(ShapeProbe, KnowsWhereAFaceEnds) {
@@ -87,8 +91,12 @@ TEST(ShapeProbe, KnowsWhereAFaceEnds) {
   const btVector3 down(0, 0, -1);
   OpposedPoints points;
   EXPECT_TRUE(near.probe().probeLine(0, down, btVector3(btScalar(0.15), 0, 0), points));
-  EXPECT_FALSE(near.probe().probeLine(0, down, btVector3(btScalar(0.25), 0, 0), points));
+  EXPECT_NEAR(points.normal_b.distance(down), 0, 1e-6);
   EXPECT_TRUE(near.probe().probeLine(0, down, btVector3(btScalar(-0.25), 0, 0), points));
+  EXPECT_NEAR(points.normal_b.distance(down), 0, 1e-6);
+  // 0.05 m beyond it and 0.49 m above it, only the edge itself is there.
+  EXPECT_TRUE(near.probe().probeLine(0, down, btVector3(btScalar(0.25), 0, 0), points));
+  EXPECT_NEAR(points.normal_b.distance(btVector3(btScalar(-0.05), 0, btScalar(-0.49)).normalized()), 0, 1e-6);
 }
 
 TEST(ShapeProbe, FindsTheLowestCornerOfACube) {
