@@ -8,16 +8,16 @@
 namespace innersphere::test {
 namespace {
 
-demo::ScenePlay playedStack(bool plain) {
+demo::ScenePlay playedRest(bool plain) {
   demo::SceneOptions options;
   options.spheres = 64;
   options.seconds = 4;  // Bullet lets bodies sleep after 2
   options.plain = plain;
-  return demo::play(demo::sceneNamed("mass-ratios"), options);
+  return demo::play(demo::sceneNamed("rest"), options);
 }
 
 TEST(Plain, LeavesTheSolverAndTheStepToBulletAndLetsBodiesSleep) {
-  const demo::ScenePlay play = playedStack(true);
+  const demo::ScenePlay play = playedRest(true);
   const btContactSolverInfo defaults;
   EXPECT_EQ(play.world->bullet().getSolverInfo().m_solverMode, defaults.m_solverMode);
   EXPECT_DOUBLE_EQ(play.options.dt, 1.0 / 60);
@@ -31,7 +31,7 @@ TEST(Plain, LeavesTheSolverAndTheStepToBulletAndLetsBodiesSleep) {
 }
 
 TEST(Plain, IsNotTheDefault) {
-  const demo::ScenePlay play = playedStack(false);
+  const demo::ScenePlay play = playedRest(false);
   EXPECT_NE(play.world->bullet().getSolverInfo().m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS, 0);
   EXPECT_DOUBLE_EQ(play.options.dt, 1.0 / 240);
   EXPECT_TRUE(play.world->bodies()[0].body->isActive());

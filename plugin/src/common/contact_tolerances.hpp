@@ -72,8 +72,11 @@ constexpr int kAscentStepsBeside = 2;
 constexpr btScalar kSlowestFall = btScalar(0.02);
 /// Ratio: a step that did not lead uphill is taken again, shorter by this.
 constexpr btScalar kShorter = 3;
+/// Ratio: a step leads uphill if it gains this part of what the slope at its start promises. On a paraboloid
+/// it gains a half.
+constexpr btScalar kClimbs = btScalar(0.25);
 /// [rad]: where the slope is less, the top is reached: the normals are that close.
-constexpr btScalar kLevel = btScalar(2e-4);
+constexpr btScalar kLevel = btScalar(1e-5);
 /// [rad]: other samples ascend where the slope is less. These are the places that a rolling body meets next.
 constexpr btScalar kSlopeBeside = btScalar(0.1);
 /// [rad]: a slope that is steeper says little about the top.

@@ -97,7 +97,8 @@ void ascend(const SurfaceProbe& probe, btScalar steepest, int steps, ProbedSampl
         !isUsable(points, sample.direction))
       return;
     const Hillside next = hillsideAt(points, sample.direction);
-    if (next.depth < here.depth) {
+    const bool climbs = next.depth - here.depth > kClimbs * here.slope.dot(step);
+    if (!climbs && next.slope.length2() > here.slope.length2()) {
       falls.shorten();
       continue;
     }

@@ -15,7 +15,10 @@ constexpr btScalar kStiffness = 24, kDamping = 4;
 /// mass needs more than what lies still.
 constexpr btScalar kStiffening = btScalar(0.002);
 /// Fastest push of the default law, in sizes of the body per second.
-constexpr btScalar kFastest = 1;
+constexpr btScalar kFastest = btScalar(0.5);
+/// The same in depths per second, for bodies that are deeper in each other than that: they are apart after
+/// about a second, whatever their depth, and leave at a speed that falls with it.
+constexpr btScalar kLeaving = 2;
 
 /// How far ahead of bodies that roll their load lies, in sizes of the smaller one: a fiftieth of what it does
 /// for steel on steel. Enough to lie still on slopes of a micrometre, which measured surfaces have.
@@ -101,7 +104,7 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     return spring > 0 ? spring / (spring + law.damping) / law_->time_step_ : btScalar(0);
   };
   if (law_->defaultSpring()) {
-    const btScalar fastest = kFastest * law_->size_;
+    const btScalar fastest = btMax(kFastest * law_->size_, kLeaving * depth);
     const auto hold = [&] {
       if (law.depth * rate() > fastest) law.depth = fastest / rate();
     };
