@@ -61,10 +61,16 @@ class Falls {
   }
   /// Takes note that the slope fell by so much in a step.
   void learn(const btVector3& step, const btVector3& fell) {
-    const btScalar x = step.dot(x_), y = step.dot(y_), fell_x = fell.dot(x_), fell_y = fell.dot(y_);
-    const btScalar was_x = xx_ * x + xy_ * y, was_y = xy_ * x + yy_ * y;
-    const btScalar was = x * was_x + y * was_y, is = x * fell_x + y * fell_y;
-    if (!(is > kSlowestFall * was)) return;
+    const btScalar x = step.dot(x_), y = step.dot(y_);
+    const btScalar was_x = xx_ * x + xy_ * y, was_y = xy_ * x + yy_ * y, was = x * was_x + y * was_y;
+    btScalar fell_x = fell.dot(x_), fell_y = fell.dot(y_), is = x * fell_x + y * fell_y;
+    if (is < kSlowestFall * was) {
+      // Powell's damping: not all of it is believed at once.
+      const btScalar believed = (1 - kSlowestFall) * was / (was - is);
+      fell_x = believed * fell_x + (1 - believed) * was_x;
+      fell_y = believed * fell_y + (1 - believed) * was_y;
+      is = kSlowestFall * was;
+    }
     xx_ += fell_x * fell_x / is - was_x * was_x / was;
     xy_ += fell_x * fell_y / is - was_x * was_y / was;
     yy_ += fell_y * fell_y / is - was_y * was_y / was;

@@ -220,14 +220,12 @@ TEST_P(CurvedPairs, MeetAtTheDeepestPlace) {
     const double allowed = std::max(0.01 * kRadius, 0.5 * kDegree / expected.valley);
     EXPECT_GT(found.normal.dot(expected.normal), 0) << i;
     EXPECT_NEAR(found.depth, expected.depth, 1e-3 * kRadius) << i;
-    // Tubes within some ten degrees of parallel are as deep in each other along centimetres.
-    if (expected.valley < 0.5) continue;
     EXPECT_LT(angle, kDegree) << i;
     EXPECT_LT(away, 2 * allowed) << i << ", valley " << expected.valley;
     if (angle > 0.5 * kDegree || away > allowed) ++beside;
   }
-  // Triangles of a ring stand in for its curve.
-  EXPECT_LE(beside, 2);
+  // Triangles stand in for a ring's curve.
+  EXPECT_LE(beside, std::get<0>(GetParam()) == "ring" ? 2 : 0);
   EXPECT_GT(tried, kPlacements / 4);
 }
 
