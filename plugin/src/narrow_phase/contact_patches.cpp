@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "innersphere/patch.hpp"
 #include "narrow_phase/contact_samples.hpp"
 #include "narrow_phase/manifold_reduction.hpp"
 #include "narrow_phase/patch_moments.hpp"
+#include "narrow_phase/way_out.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -164,6 +164,7 @@ void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vecto
   patch.centre = moments.centre;
   patch.area = moments.area;
   patch.radius = moments.radius;
+  patch.by_volume = true;
   pointsFromMoments(moments, spacing, patch);
   if (patch.count > 0) patches.push_back(patch);
 }
@@ -195,13 +196,13 @@ bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSetti
   return refine(samples, probe, settings, step, patches);
 }
 
-void gradientPatch(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,
-                   std::vector<ContactPatch>& patches) {
-  std::vector<std::size_t>& all = scratchOfThread().indices;
-  all.resize(contacts.size());
-  std::iota(all.begin(), all.end(), std::size_t(0));
-  patches.clear();
-  appendVolumePatch(patchMoments(contacts, all, reference), spacing, patches);
+void wayOutPatch(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
+                 const ContactSpheres& spheres, btScalar spacing, const StepAhead& step,
+                 std::vector<ContactPatch>& patches) {
+  Scratch& scratch = scratchOfThread();
+  collectIds(patches, scratch.old_ids);
+  findWayOut(a, b, contacts, spheres, scratch.found);
+  reduceToManifolds(scratch.found, scratch.old_ids, spacing, step, scratch.reduction, patches);
 }
 
 void volumePatches(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,

@@ -31,10 +31,11 @@ bool refinePatches(Samples& samples, const PackingProbe& probe, const ContactSet
 bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSettings& settings,
                    const StepAhead& step, std::vector<ContactPatch>& patches);
 
-/// Replaces `patches` by one in the direction in which the volume of overlap shrinks fastest, or by none: for
+/// Replaces `patches` by one along the shortest way by which A leaves B, see findWayOut(), or by none: for
 /// bodies deep in each other, where single spheres push everywhere.
-void gradientPatch(const std::vector<SphereContact>& contacts, btScalar spacing, const btMatrix3x3& reference,
-                   std::vector<ContactPatch>& patches);
+void wayOutPatch(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
+                 const ContactSpheres& spheres, btScalar spacing, const StepAhead& step,
+                 std::vector<ContactPatch>& patches);
 
 /// Replaces `patches` by such whose points are placed by the moments of the overlap, with the mean depth
 /// volume / area and its slope. `spacing` [m]: points closer to each other are one.

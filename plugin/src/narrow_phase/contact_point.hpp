@@ -37,8 +37,9 @@ struct ContactPoint {
 struct ContactPatch {
   btVector3 normal{0, 0, 0};  ///< unit, from A to B
   btVector3 centre{0, 0, 0};
-  btScalar area = 0;    ///< [m^2]
-  btScalar radius = 0;  ///< mean distance of the area from its centre [m]
+  btScalar area = 0;       ///< [m^2]
+  btScalar radius = 0;     ///< mean distance of the area from its centre [m]
+  bool by_volume = false;  ///< depths are volume over area: they do not say how far the bodies have to go
   int count = 0;
   std::array<ContactPoint, kPatchPoints> points;
 };

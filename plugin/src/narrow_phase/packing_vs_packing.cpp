@@ -118,7 +118,9 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
     const bool near = evaluateDepths(bodies);
     if (!contacts.empty() && !near) next = SearchPass::touch;
   } else if (pass == SearchPass::deep) {
-    gradientPatch(contacts, search_->spacing, reference, memory.patches);
+    const Bodies bodies(*this, *search_);
+    wayOutPatch(bodies.a, bodies.b, contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a),
+                search_->spacing, step_, memory.patches);
   } else {
     volumePatches(contacts, search_->spacing, reference, memory.patches);
     overlap_ = result.overlaps[index];

@@ -17,7 +17,7 @@ enum class SearchPass : std::uint8_t {
   none,      ///< the search is over
   surfaces,  ///< with spheres enlarged so that they find all contact of the surfaces that they stand for
   touch,     ///< with spheres as they are, where the surfaces showed no overlap: it may be too deep
-  deep,      ///< with spheres enlarged so that they fill their solids, where it is
+  deep,      ///< with spheres enlarged so that they fill their solids, where it is: for the way out
   volumes,   ///< where the volume of overlap is all that is wanted
 };
 

@@ -17,7 +17,8 @@ constexpr btScalar kStiffening = btScalar(0.002);
 /// Fastest push of the default law, in sizes of the body per second.
 constexpr btScalar kFastest = btScalar(0.5);
 /// The same in depths per second, for bodies that are deeper in each other than that: they are apart after
-/// about a second, whatever their depth, and leave at a speed that falls with it.
+/// about a second, whatever their depth, and leave at a speed that falls with it. A depth by volume is no way
+/// to go, and does not count.
 constexpr btScalar kLeaving = 2;
 
 /// How far ahead of bodies that roll their load lies, in sizes of the smaller one: a fiftieth of what it does
@@ -83,6 +84,7 @@ ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std
   law.law_ = this;
   law.stiffness_ = stiffness * share;
   law.damping_ = damping_ratio_ * 2 * btSqrt(stiffness * mass_) * share;
+  law.leaving_ = patch.by_volume ? btScalar(0) : kLeaving;
   law.rolling_ = canRollOn(patch) ? kRolling * size_ : btScalar(0);
   return law;
 }
@@ -104,7 +106,7 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     return spring > 0 ? spring / (spring + law.damping) / law_->time_step_ : btScalar(0);
   };
   if (law_->defaultSpring()) {
-    const btScalar fastest = btMax(kFastest * law_->size_, kLeaving * depth);
+    const btScalar fastest = btMax(kFastest * law_->size_, leaving_ * depth);
     const auto hold = [&] {
       if (law.depth * rate() > fastest) law.depth = fastest / rate();
     };

@@ -134,15 +134,5 @@ TEST(VolumePatches, AreTwoInASlot) {
   EXPECT_NEAR(patches[0].normal.dot(patches[1].normal), -1, 1e-5);
 }
 
-TEST(GradientPatch, IsOneInTheDirectionThatIsLeft) {
-  std::vector<ContactPatch> patches;
-  gradientPatch(slot(0.01, 0.004), btScalar(0.01), btMatrix3x3::getIdentity(), patches);
-  ASSERT_EQ(patches.size(), 1u);
-  EXPECT_NEAR(patches[0].normal.distance(btVector3(1, 0, 0)), 0, 1e-5);
-  EXPECT_NEAR(patches[0].area, 9 * 0.006, 1e-6);
-  gradientPatch(slot(0.01, 0.01), btScalar(0.01), btMatrix3x3::getIdentity(), patches);
-  EXPECT_TRUE(patches.empty());
-}
-
 }  // namespace
 }  // namespace innersphere::test

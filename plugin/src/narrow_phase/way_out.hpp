@@ -1,0 +1,22 @@
+// Finds the way out for two bodies that are deep in each other.
+#pragma once
+
+#include <vector>
+
+#include "narrow_phase/contact_samples.hpp"
+#include "narrow_phase/packing_probe.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Replaces `found` by points of the shortest of several ways by which A leaves B, one on each of some lines
+/// through the overlap. Along a line both solids are apart once A has gone from where the line enters B to
+/// where it leaves A; a way is as long as its longest line. Ways that are tried: the axes of both bodies,
+/// from the middle of the overlap to the nearest surface of each, from the centre of the one to that of the
+/// other, and where the volume of overlap falls fastest. `contacts` are spheres that overlap. None is found
+/// where lines meet no surface.
+void findWayOut(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
+                const ContactSpheres& spheres, std::vector<WeightedPoint>& found);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
