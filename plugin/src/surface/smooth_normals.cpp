@@ -70,11 +70,13 @@ void SmoothNormals::setNormals(const Surface& surface) {
             std::find(triangle.begin(), triangle.end(), surface.triangles[t][next(k)]) != triangle.end())
           facet.across[k] = smooth ? other : kSharp + other;
         if (!smooth) continue;
-        // Weighted by the angle at the corner, so that it does not matter how faces are cut.
+        // Weights of Max, "Weights for computing vertex normals from facet normals" (1999): exact on a ball,
+        // however it is cut.
         const std::size_t at = triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
-        const btVector3 e1 = unit(corners[next(at)] - corners[at]);
-        const btVector3 e2 = unit(corners[next(next(at))] - corners[at]);
-        sum += facets_[other].face * btAcos(btClamped(e1.dot(e2), btScalar(-1), btScalar(1)));
+        const btVector3 e1 = corners[next(at)] - corners[at];
+        const btVector3 e2 = corners[next(next(at))] - corners[at];
+        const btScalar lengths = e1.length() * e2.length();
+        if (lengths > 0) sum += unit(e1).cross(unit(e2)) / lengths;
       }
       facet.normals[k] = unit(sum);
     }
