@@ -147,6 +147,8 @@ class PatchContactPoints {
     if (rises_a && rises_b && !crosses) {
       for (const bool of_a : {true, false}) has_corners = addPeaks(sample, of_a) || has_corners;
     }
+    // A face that lies flat on another ends in corners, which bear it better than what spheres are over.
+    if (points.areFlat() && !rises_a && !rises_b && !crosses) addEnds(sample, normal);
     // Beside them the face is less deep, or, where it ends in an arc, not there.
     if (!has_corners && !crosses) addFace(sample, normal);
   }
@@ -201,6 +203,14 @@ class PatchContactPoints {
     bool added = false;
     for (const EdgeContact& corner : peaks) added = (corner.is_peak && addCorner(corner, of_a)) || added;
     return added;
+  }
+
+  void addEnds(const ProbedSample& sample, const btVector3& normal) {
+    for (const bool of_a : {true, false}) {
+      scratch_.corners.clear();
+      probe_.corners(sample.index, sample.points, normal, of_a, scratch_.vertices, scratch_.corners);
+      for (const EdgeContact& corner : scratch_.corners) addCorner(corner, of_a);
+    }
   }
 
   void addFace(const ProbedSample& sample, const btVector3& normal) {

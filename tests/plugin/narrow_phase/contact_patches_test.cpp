@@ -60,19 +60,18 @@ class CubeOnPlane {
   std::vector<NearSphere> spheres_;
 };
 
-TEST(RefinePatches, BearsACubeAtItsOutermostSpheres) {
+TEST(RefinePatches, BearsACubeAtItsCorners) {
   CubeOnPlane cube(0.003);
   std::vector<ContactPatch> patches;
   EXPECT_TRUE(cube.refine(patches));
   ASSERT_EQ(patches.size(), 1u);
   EXPECT_NEAR(patches[0].normal.distance(kDown), 0, kRounding);
   ASSERT_EQ(patches[0].count, kPatchPoints);
-  const double rim = 0.5 - 0.5 / CubeOnPlane::kCells;
   for (int i = 0; i < kPatchPoints; ++i) {
     const ContactPoint& point = patches[0].points[i];
     EXPECT_NEAR(point.depth, 0.003, kRounding);
-    EXPECT_NEAR(std::fabs(point.on_b.x()), rim, kRounding);
-    EXPECT_NEAR(std::fabs(point.on_b.y()), rim, kRounding);
+    EXPECT_NEAR(std::fabs(point.on_b.x()), 0.5, kRounding);
+    EXPECT_NEAR(std::fabs(point.on_b.y()), 0.5, kRounding);
   }
   // The same points in the next step.
   const std::array<ContactPoint, kPatchPoints> before = patches[0].points;
