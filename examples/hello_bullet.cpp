@@ -35,8 +35,7 @@ int main(int argc, char** argv) try {
   world.addRigidBody(&floor);
 
   // [snippet use]
-  innersphere::PackingCollisionAlgorithm::registerAlgorithm(&dispatcher);  // once a world
-  world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;  // or even boxes creep
+  innersphere::PackingCollisionAlgorithm::prepareWorld(world);  // once: registers, sets 2 friction directions
 
   auto packing = std::make_shared<innersphere::Packing>(innersphere::readPacking(file));
   auto model = std::make_shared<innersphere::CollisionModel>(packing);

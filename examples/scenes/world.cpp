@@ -67,9 +67,10 @@ SceneWorld::SceneWorld(const ContactOptions& options, const BodyOptions& bodies,
   world_.setGravity(btVector3(0, 0, -kGravity));
   // Runs repeat exactly, whatever order the broad phase finds pairs in.
   world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
-  // With one friction direction Bullet turns it along the last bit of sliding, and resting bodies creep.
-  if (stepping_ == Stepping::careful) world_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
-  PackingCollisionAlgorithm::registerAlgorithm(&dispatcher_, options);
+  if (stepping_ == Stepping::careful)
+    PackingCollisionAlgorithm::prepareWorld(world_, options);
+  else
+    PackingCollisionAlgorithm::registerAlgorithm(&dispatcher_, options);
   if (bodies.shape == BodyShape::gimpact) btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
 }
 

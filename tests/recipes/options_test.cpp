@@ -30,6 +30,22 @@ TEST(Recipes, AStiffnessSaysHowDeepABodySinks) {
   EXPECT_NEAR(0.5 - body.getWorldTransform().getOrigin().z(), 1000 * 9.81 / 1e5, 0.04);
 }
 
+TEST(Recipes, OneLinePreparesAWorld) {
+  RecipeWorld<> simulation;
+  auto& world = simulation.world;
+  world.getSolverInfo().m_solverMode &= ~SOLVER_USE_2_FRICTION_DIRECTIONS;
+  const innersphere::ContactOptions options;
+  // [snippet prepare]
+  innersphere::PackingCollisionAlgorithm::prepareWorld(world, options);  // or without options
+  // [snippet]
+  EXPECT_TRUE(PackingCollisionAlgorithm::isRegistered(&simulation.dispatcher));
+  EXPECT_NE(world.getSolverInfo().m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS, 0);
+  PackingShape shape(torusModel());
+  const btRigidBody& body = simulation.add(shape, 1, btVector3(0, 0, btScalar(0.1)));
+  simulation.run(2);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kTubeRadius, 0.001);
+}
+
 TEST(Recipes, AShapeHasOptionsOfItsOwn) {
   RecipeWorld<> simulation;
   PackingCollisionAlgorithm::registerAlgorithm(&simulation.dispatcher);

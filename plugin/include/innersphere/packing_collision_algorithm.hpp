@@ -13,6 +13,20 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Makes a dispatcher collide PackingShape with every other shape.
 struct PackingCollisionAlgorithm {
+  /// Does all that a world needs: registers with it, as registerAlgorithm(world, options) does, and sets
+  /// SOLVER_USE_2_FRICTION_DIRECTIONS in its solver's mode, which is not among Bullet's defaults. Nothing
+  /// else of the world is changed. Call it after btGImpactCollisionAlgorithm::registerAlgorithm; calling it
+  /// again replaces the options.
+  ///
+  /// Without the second direction Bullet's solver has one row of friction for a point, along the way in which
+  /// it slides before contacts push. Bodies that gravity moves alike do not slide then, whatever friction has
+  /// to bear between them: the row lies where the last step's errors point, or along a fixed axis, and in
+  /// such steps nothing holds them. A gripper on motors drops what it holds, an arch falls, piles creep; so
+  /// do those of Bullet's hulls. No contact point can set that direction.
+  ///
+  /// Throws Error as registerAlgorithm does, and leaves the solver's mode then.
+  static void prepareWorld(btDynamicsWorld& world, const ContactOptions& options = {});
+
   /// Registers for contact and closest-point queries against every shape type but compound and soft body,
   /// which Bullet itself walks down to their children. Call it after
   /// btGImpactCollisionAlgorithm::registerAlgorithm, which overwrites every row of its own. Calling it again
@@ -36,6 +50,9 @@ struct PackingCollisionAlgorithm {
   /// (btContactSolverInfo: warm starting, friction ERP, split impulse), as they are in each step; else they
   /// are made for Bullet's defaults, as they are after a registration of the dispatcher alone. The world must
   /// live as long as its dispatcher is used.
+  ///
+  /// Its solver's mode is left as it is: prepareWorld() sets what friction needs. If it is missing when
+  /// bodies with friction touch first, the log says so, once for each registration.
   static void registerAlgorithm(btDynamicsWorld& world, const ContactOptions& options = {});
 
   /// Gives the dispatcher's entries for packings back to its collision configuration. What was kept for them

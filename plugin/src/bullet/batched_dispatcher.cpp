@@ -58,6 +58,7 @@ void collide(btCollisionDispatcher& dispatcher, PairTable& table, btBroadphasePa
     if (ours[i] == nullptr) dispatcher.getNearCallback()(pairAt(pairs, i), dispatcher, info);
   }
   table.finishUpdate();
+  table.logSolver();
   table.compareBodies();
   done.resize(ours.size());
   inParallel(ours.size(), [&](std::size_t i) {

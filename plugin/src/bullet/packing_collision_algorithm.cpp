@@ -76,6 +76,11 @@ void PackingCollisionAlgorithm::registerAlgorithm(btDynamicsWorld& world, const 
   Registration::find(collisionDispatcher(world.getDispatcher()))->table().setSolver(&world.getSolverInfo());
 }
 
+void PackingCollisionAlgorithm::prepareWorld(btDynamicsWorld& world, const ContactOptions& options) {
+  registerAlgorithm(world, options);
+  world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+}
+
 void PackingCollisionAlgorithm::unregisterAlgorithm(btDispatcher* dispatcher) {
   if (btCollisionDispatcher* collision = collisionDispatcher(dispatcher)) Registration::remove(collision);
 }

@@ -27,6 +27,7 @@ void PairAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
     registration_->table().report(*pair_, *body0, *body1, result);
   } else {
     registration_->table().process(*pair_, *body0, *body1, swapped, dispatch, result);
+    registration_->table().logSolver();
   }
 }
 

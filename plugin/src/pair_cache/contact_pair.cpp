@@ -164,6 +164,13 @@ bool ContactPair::hasPoints() const {
   return any;
 }
 
+bool ContactPair::hasFriction() const {
+  if (options.response == Response::penalty) return false;
+  bool any = false;
+  forEachPoint(manifolds, [&](const btManifoldPoint& point) { any = any || point.m_combinedFriction > 0; });
+  return any;
+}
+
 PairOverlap ContactPair::read(const Overlap& shared) const {
   PairOverlap pair;
   pair.a = a.object;

@@ -71,6 +71,8 @@ struct ContactPair {
   ContactLaw lawOf(const StepSettings& settings) const;
   /// Returns true if the manifolds hold contact points.
   bool hasPoints() const;
+  /// Returns true if the solver is to hold the points by friction. Penalty forces have their own.
+  bool hasFriction() const;
   /// Returns what the user is told of the pair: what is `shared` by both, and the impulses that the solver
   /// has found for its points, of which there are some.
   PairOverlap read(const Overlap& shared) const;

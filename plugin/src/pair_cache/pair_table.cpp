@@ -1,5 +1,6 @@
 #include "pair_cache/pair_table.hpp"
 
+#include "common/log.hpp"
 #include "common/parallel.hpp"
 #include "innersphere/error.hpp"
 
@@ -60,6 +61,20 @@ ContactOptions PairTable::options() const {
 void PairTable::setSolver(const btContactSolverInfo* solver) {
   const std::lock_guard<std::mutex> lock(mutex_);
   solver_ = solver;
+  awaits_contact_ = solver != nullptr;
+  lacks_directions_ = false;
+}
+
+void PairTable::noticeContact(const ContactPair& pair, const StepSettings& settings) {
+  if (!awaits_contact_.load(std::memory_order_relaxed) || !pair.hasFriction()) return;
+  if (awaits_contact_.exchange(false) && settings.solver.one_friction_row) lacks_directions_ = true;
+}
+
+void PairTable::logSolver() {
+  if (!lacks_directions_.load(std::memory_order_relaxed) || !lacks_directions_.exchange(false)) return;
+  log("The world's solver holds contacts in one direction only, so that grippers drop what they hold, arches "
+      "fall and piles creep: call PackingCollisionAlgorithm::prepareWorld(world), which sets "
+      "SOLVER_USE_2_FRICTION_DIRECTIONS, in place of registerAlgorithm(world).");
 }
 
 ContactPair& PairTable::add() {
@@ -154,6 +169,7 @@ void PairTable::process(ContactPair& pair, const btCollisionObjectWrapper& a,
   if (!known) pair.found->drop();
   pair.time_step = settings.time_step;
   pair.write(settings, body_a, body_b, result);
+  noticeContact(pair, settings);
   pair.penalty = PenaltyReport();
   if (known) push(pair, settings, dispatch);
 }

@@ -1,6 +1,7 @@
 // Holds all pairs of one dispatcher that have a packing in them.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -41,6 +42,9 @@ class PairTable {
   /// Sets the solver whose settings contacts are for; it must live as long as pairs are dispatched. Null
   /// means Bullet's defaults.
   void setSolver(const btContactSolverInfo* solver);
+  /// Says in the log, once after each setSolver(), that the solver lacks what friction needs, if it did when
+  /// bodies touched first. The table is not locked then: the log may ask it something.
+  void logSolver();
 
   /// Returns a new pair. It stays at its address until it is removed, which gives its manifolds back.
   ContactPair& add();
@@ -96,7 +100,7 @@ class PairTable {
   Job decide(ContactPair& pair) const;
   void collectJobs();
   void work();
-  void publish(ContactPair& pair) const;
+  void publish(ContactPair& pair);
   void finish();
 
   /// Returns true if the last update has published the pair, and Bullet has not asked for it since.
@@ -112,6 +116,8 @@ class PairTable {
                    const StepSettings& settings);
   void push(ContactPair& pair, const StepSettings& settings, const btDispatcherInfo& dispatch);
   Overlap overlapOf(const ContactPair& pair, PackingSearch& search) const;
+  /// Looks at the solver when bodies touch first.
+  void noticeContact(const ContactPair& pair, const StepSettings& settings);
   void count(Reuse reuse);
   StepSettings settingsFor(btScalar time_step) const;
 
@@ -122,6 +128,8 @@ class PairTable {
   mutable std::mutex mutex_;
   ContactOptions options_;
   const btContactSolverInfo* solver_ = nullptr;
+  std::atomic<bool> awaits_contact_{false};    ///< no bodies have touched since the solver was set
+  std::atomic<bool> lacks_directions_{false};  ///< as the log is to say
   std::deque<ContactPair> places_;
   std::vector<ContactPair*> unused_;
   PairList<ContactPair> pairs_;

@@ -119,11 +119,12 @@ void PairTable::work() {
   });
 }
 
-void PairTable::publish(ContactPair& pair) const {
+void PairTable::publish(ContactPair& pair) {
   pair.time_step = settings_.time_step;
   pair.published = pair.canBePublished();
   if (!pair.published) return;
   pair.publish(settings_, *pair.body_a, *pair.body_b);
+  noticeContact(pair, settings_);
   pair.safe = safeDistanceOf(pair, *pair.body_a, *pair.body_b);
 }
 

@@ -16,7 +16,8 @@ struct SolverSettings {
                                                                          : btScalar(0)),
         friction_erp(info.m_frictionERP),
         deepest_spring(info.m_splitImpulse ? kSpringShare * -info.m_splitImpulsePenetrationThreshold
-                                           : BT_LARGE_FLOAT) {}
+                                           : BT_LARGE_FLOAT),
+        one_friction_row((info.m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS) == 0) {}
 
   /// The part of its last impulse that a contact starts with.
   btScalar warm_starting = btScalar(0.85);
@@ -25,6 +26,10 @@ struct SolverSettings {
   /// Contacts deeper than the threshold of split impulses lose their spring: none is told to be deeper than
   /// this, three quarters of it [m].
   btScalar deepest_spring = btScalar(0.03);
+  /// The solver is known to have one row of friction for each point. Its direction is that of the sliding
+  /// before contacts push, and no point can set it: bodies that fall together have none, and the row may lie
+  /// across the load.
+  bool one_friction_row = false;
 
  private:
   static constexpr btScalar kSpringShare = btScalar(0.75);
