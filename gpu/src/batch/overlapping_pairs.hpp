@@ -39,6 +39,7 @@ struct OverlappingPairs {
     items.resize(std::max(items.size(), found_pairs));
     if (with_values) values.resize(std::max(values.size(), found_pairs));
   }
+  void release() { *this = OverlappingPairs(); }
 };
 
 }  // namespace innersphere

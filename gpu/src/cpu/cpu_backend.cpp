@@ -8,15 +8,51 @@
 
 namespace innersphere {
 
+namespace {
+
+/// Pairs of one part, at most, unless a single query has more: with what it takes to sort them, 12 MB.
+constexpr std::size_t kPartPairs = std::size_t{1} << 17;
+/// Memory is given back if this many batches in a row have needed less than a part of it,
+constexpr int kBatchesToLookAt = 64;
+constexpr std::size_t kUnused = 4;
+/// but not the room for so many pairs: 1.5 MB.
+constexpr std::size_t kKeptPairs = std::size_t{1} << 14;
+
+}  // namespace
+
 void CpuBackend::start(const std::vector<PreparedQuery>& queries, Want want) {
   queries_ = &queries;
   want_ = want;
-  traverse();
+  first_.resize(queries.size() + 1);
+  first_[0] = 0;
+  for (std::size_t q = 0; q < queries.size(); ++q) first_[q + 1] = first_[q] + queries[q].clusters();
+  sums_.resize(queries.size());
+  in_parts_ = false;
+  if (!wantsPairs(want)) return traverse(0, queries.size());
+  densest_so_far_ = 0;
+  for (std::size_t begin = 0, end = 0; begin < queries.size() || begin == 0; begin = end) {
+    end = traversePart(begin);
+    if (end == queries.size() && !in_parts_) break;  // finish() makes the lists
+    if (!in_parts_) PairSorter::clear(queries.size(), lists_);
+    in_parts_ = true;
+    sorter_.append(queries, sums_, begin, end, found_pairs_, want, workers_, lists_);
+  }
+  densest_ = densest_so_far_;
 }
 
 void CpuBackend::finish(QueryResult& result) {
   constexpr std::size_t kGrain = 64;
-  sorter_.run(*queries_, sums_, found_pairs_, want_, workers_, result);
+  if (in_parts_) {
+    // Copied, so that both keep the memory that they need again in the next batch.
+    result.pairs = lists_.pairs;
+    result.contacts_a = lists_.contacts_a;
+    result.contacts_b = lists_.contacts_b;
+  } else {
+    PairSorter::clear(queries_->size(), result);
+    if (wantsPairs(want_))
+      sorter_.append(*queries_, sums_, 0, queries_->size(), found_pairs_, want_, workers_, result);
+  }
+  releaseUnused();
   result.overlaps.resize(queries_->size());
   workers_.forRanges(queries_->size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -24,22 +60,62 @@ void CpuBackend::finish(QueryResult& result) {
   });
 }
 
-void CpuBackend::traverse() {
-  constexpr std::size_t kGrain = 16;  // clusters: some 512 spheres
-  first_.resize(queries_->size() + 1);
-  first_[0] = 0;
-  for (std::size_t q = 0; q < queries_->size(); ++q) first_[q + 1] = first_[q] + (*queries_)[q].clusters();
-  while (true) {
-    sums_.resize(queries_->size());
-    for (core::Sums& sum : sums_) sum.clear();
-    cursor_ = 0;
-    workers_.forRanges(first_.back(), kGrain,
-                       [&](std::size_t begin, std::size_t end) { traverseRange(begin, end); });
-    found_pairs_.count = cursor_;
-    if (found_pairs_.count <= found_pairs_.room(wantsContacts(want_))) return;
-    found_pairs_.reserve(found_pairs_.count,
-                         wantsContacts(want_));  // now the room that is needed is known: once more
+std::size_t CpuBackend::traversePart(std::size_t begin) {
+  const bool with_values = wantsContacts(want_);
+  std::size_t end = queries_->size();
+  const double densest = std::max(densest_, densest_so_far_);
+  if (densest * static_cast<double>(clustersOf(begin, end)) > kPartPairs) {
+    const auto most = static_cast<std::size_t>(kPartPairs / densest);
+    end = static_cast<std::size_t>(std::upper_bound(first_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                    first_.end(), first_[begin] + most) -
+                                   first_.begin() - 1);
+    end = std::clamp(end, begin + 1, queries_->size());
   }
+  while (true) {
+    traverse(begin, end);
+    const std::size_t clusters = clustersOf(begin, end);
+    if (clusters > 0)
+      densest_so_far_ =
+          std::max(densest_so_far_, static_cast<double>(found_pairs_.count) / static_cast<double>(clusters));
+    if (found_pairs_.count <= found_pairs_.room(with_values)) {
+      most_pairs_ = std::max(most_pairs_, found_pairs_.count);
+      return end;
+    }
+    // Now the room that is needed is known: once more, with those that may have so much.
+    std::size_t count = found_pairs_.count;
+    if (count > kPartPairs) {
+      const std::size_t all = std::exchange(end, begin + 1);
+      for (count = sums_[begin].pairs; end < all && count + sums_[end].pairs <= kPartPairs; ++end)
+        count += sums_[end].pairs;
+      count = std::max(count, kPartPairs);
+    }
+    found_pairs_.reserve(count, with_values);
+  }
+}
+
+void CpuBackend::traverse(std::size_t begin, std::size_t end) {
+  constexpr std::size_t kGrain = 16;  // clusters: some 512 spheres
+  for (std::size_t q = begin; q < end; ++q) sums_[q].clear();
+  cursor_ = 0;
+  const std::size_t before = first_[begin];
+  workers_.forRanges(clustersOf(begin, end), kGrain, [&](std::size_t first, std::size_t last) {
+    traverseRange(before + first, before + last);
+  });
+  found_pairs_.count = cursor_;
+}
+
+/// Bodies that were deep in each other for once leave no memory behind.
+void CpuBackend::releaseUnused() {
+  had_parts_ = had_parts_ || in_parts_;
+  if (++batches_ < kBatchesToLookAt) return;
+  if (found_pairs_.items.size() > std::max(kKeptPairs, kUnused * most_pairs_)) {
+    found_pairs_.release();
+    sorter_.release();
+  }
+  if (!had_parts_) lists_ = QueryResult();
+  most_pairs_ = 0;
+  had_parts_ = false;
+  batches_ = 0;
 }
 
 void CpuBackend::traverseRange(std::size_t begin, std::size_t end) {

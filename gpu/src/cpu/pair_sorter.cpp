@@ -15,19 +15,24 @@ namespace {
 constexpr std::size_t kFew = 64;  ///< are sorted sooner by comparing
 
 template <typename T>
-void clear(QueryResult::Ranges<T>& ranges, std::size_t queries) {
+void clearRanges(QueryResult::Ranges<T>& ranges, std::size_t queries) {
   ranges.items.clear();
   ranges.first.assign(queries + 1, 0);
 }
 
 }  // namespace
 
-void PairSorter::run(const std::vector<PreparedQuery>& queries, const std::vector<core::Sums>& sums,
-                     const OverlappingPairs& found_pairs, Want want, Workers& workers, QueryResult& result) {
-  clear(result.pairs, queries.size());
-  clear(result.contacts_a, queries.size());
-  clear(result.contacts_b, queries.size());
-  if (!wantsPairs(want)) return;
+void PairSorter::clear(std::size_t queries, QueryResult& result) {
+  clearRanges(result.pairs, queries);
+  clearRanges(result.contacts_a, queries);
+  clearRanges(result.contacts_b, queries);
+}
+
+void PairSorter::append(const std::vector<PreparedQuery>& queries, const std::vector<core::Sums>& sums,
+                        std::size_t begin, std::size_t end, const OverlappingPairs& found_pairs, Want want,
+                        Workers& workers, QueryResult& result) {
+  begin_ = begin;
+  first_.resize(end - begin + 1);
   groupByQuery(sums, found_pairs);
   sortGroups(queries, found_pairs, &OverlappingPair::a, &OverlappingPair::b, workers);
   if (want == Want::pairs) return writePairs(found_pairs, result.pairs);
@@ -37,17 +42,20 @@ void PairSorter::run(const std::vector<PreparedQuery>& queries, const std::vecto
   writeContacts(found_pairs, &OverlappingPair::b, workers, result.contacts_b);
 }
 
+void PairSorter::release() {
+  *this = PairSorter();
+}
+
 void PairSorter::groupByQuery(const std::vector<core::Sums>& sums, const OverlappingPairs& found_pairs) {
   assert(found_pairs.count >> 32 == 0);
-  first_.resize(sums.size() + 1);
   first_[0] = 0;
-  for (std::size_t q = 0; q < sums.size(); ++q) first_[q + 1] = first_[q] + sums[q].pairs;
+  for (std::size_t q = 0; q < queryCount(); ++q) first_[q + 1] = first_[q] + sums[begin_ + q].pairs;
   order_.resize(found_pairs.count);
   spare_.resize(found_pairs.count);
-  if (sums.size() == 1) return std::iota(order_.begin(), order_.end(), 0u);
+  if (queryCount() == 1) return std::iota(order_.begin(), order_.end(), 0u);
   cursor_.assign(first_.begin(), first_.end());
   for (std::size_t k = 0; k < found_pairs.count; ++k)
-    order_[cursor_[found_pairs.items[k].query]++] = static_cast<std::uint32_t>(k);
+    order_[cursor_[found_pairs.items[k].query - begin_]++] = static_cast<std::uint32_t>(k);
 }
 
 void PairSorter::sortGroups(const std::vector<PreparedQuery>& queries, const OverlappingPairs& found_pairs,
@@ -55,10 +63,11 @@ void PairSorter::sortGroups(const std::vector<PreparedQuery>& queries, const Ove
   const auto key = [&](Sphere sphere) {
     return [&found_pairs, sphere](std::uint32_t k) { return found_pairs.items[k].*sphere; };
   };
-  workers.forRanges(queries.size(), 1, [&](std::size_t begin, std::size_t end) {
+  workers.forRanges(queryCount(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t q = begin; q < end; ++q) {
       const auto limit = [&](Sphere sphere) {
-        return sphere == &OverlappingPair::a ? queries[q].setup.a.grid.count : queries[q].setup.b.grid.count;
+        const core::Setup& setup = queries[begin_ + q].setup;
+        return sphere == &OverlappingPair::a ? setup.a.grid.count : setup.b.grid.count;
       };
       const std::size_t count = first_[q + 1] - first_[q];
       std::uint32_t *const group = order_.data() + first_[q], *order = group,
@@ -82,11 +91,12 @@ void PairSorter::sortGroups(const std::vector<PreparedQuery>& queries, const Ove
 
 void PairSorter::writePairs(const OverlappingPairs& found_pairs,
                             QueryResult::Ranges<SpherePair>& pairs) const {
-  pairs.first.assign(first_.begin(), first_.end());
-  pairs.items.resize(order_.size());
+  const std::size_t before = pairs.items.size();
+  for (std::size_t q = 0; q < first_.size(); ++q) pairs.first[begin_ + q] = before + first_[q];
+  pairs.items.resize(before + order_.size());
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const OverlappingPair& found = found_pairs.items[order_[k]];
-    pairs.items[k] = {found.a, found.b};
+    pairs.items[before + k] = {found.a, found.b};
   }
 }
 
@@ -95,8 +105,9 @@ void PairSorter::writeContacts(const OverlappingPairs& found_pairs, Sphere spher
                                QueryResult::Ranges<SphereContact>& contacts) {
   heads_.resize(order_.size() + 1);
   std::size_t heads = 0;
-  for (std::size_t q = 0; q + 1 < first_.size(); ++q) {
-    contacts.first[q] = heads;
+  const std::size_t before_all = contacts.items.size();
+  for (std::size_t q = 0; q < queryCount(); ++q) {
+    contacts.first[begin_ + q] = before_all + heads;
     std::uint32_t before = 0xffffffffu;  // no sphere has this number
     for (std::size_t k = first_[q]; k < first_[q + 1]; ++k) {
       const std::uint32_t here = found_pairs.items[order_[k]].*sphere;
@@ -105,14 +116,13 @@ void PairSorter::writeContacts(const OverlappingPairs& found_pairs, Sphere spher
       before = here;
     }
   }
-  contacts.first.back() = heads;
+  contacts.first[begin_ + queryCount()] = before_all + heads;
   heads_[heads] = order_.size();
-  contacts.items.resize(heads);
+  contacts.items.resize(before_all + heads);
+  SphereContact* const items = contacts.items.data() + before_all;
   workers.forRanges(heads, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c)
-      contacts.items[c].sphere = found_pairs.items[order_[heads_[c]]].*sphere;
-    cpuKernels().sumContacts(found_pairs.values.data(), order_.data(), heads_.data(), begin, end,
-                             contacts.items.data());
+    for (std::size_t c = begin; c < end; ++c) items[c].sphere = found_pairs.items[order_[heads_[c]]].*sphere;
+    cpuKernels().sumContacts(found_pairs.values.data(), order_.data(), heads_.data(), begin, end, items);
   });
 }
 

@@ -111,10 +111,13 @@ void collectIds(const std::vector<ContactPatch>& patches, std::vector<std::uint6
 
 void clear(Samples& samples) {
   samples.indices.clear();
-  samples.indices.reserve(kUsualSamples);
   samples.lines.clear();
-  samples.lines.reserve(kUsualSamples);
   samples.patches.clear();
+}
+
+void makeRoom(Samples& samples) {
+  samples.indices.reserve(kUsualSamples);
+  samples.lines.reserve(kUsualSamples);
   samples.patches.reserve(kUsualPatches);
 }
 
@@ -126,6 +129,8 @@ void selectFiltered(const std::vector<SphereContact>& contacts, const Probe& pro
   Scratch& scratch = scratchOfThread();
   collectIds(patches, scratch.old_ids);
   clear(samples);
+  // Most pairs of a pile are apart, and take no memory.
+  if (!contacts.empty()) makeRoom(samples);
   sortIntoPatches(contacts, reference, scratch.sorted);
   if (scratch.sorted.patches.empty() && !contacts.empty()) {
     aimAtSurface(contacts, probe, scratch.aimed);

@@ -48,6 +48,12 @@ btScalar motionBetween(const Placed& before, const Placed& now, btScalar size_a,
 
 void ContactTransport::noteSearch(const Placed& now) {
   searched_at_ = now;
+  if (isEmpty() && patches.empty()) {
+    samples = Samples();
+    measured_.clear();
+    releaseIfEmpty(patches);
+    releaseIfEmpty(measured_);
+  }
   enclosed_ = false;
   for (const Samples::OfPatch& patch : samples.patches) {
     for (const Samples::OfPatch& other : samples.patches)

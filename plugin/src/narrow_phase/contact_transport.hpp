@@ -44,7 +44,7 @@ class ContactTransport {
   /// Returns the narrowest gap when depths were evaluated [m]; it is negative where the bodies overlap.
   btScalar gap() const { return gap_; }
 
-  /// Notes that samples have been found anew.
+  /// Notes that samples have been found anew. Gives memory back if there are none.
   void noteSearch(const Placed& now);
   /// Turns the samples along, to be measured again.
   void turnTo(const Placed& now);
@@ -64,6 +64,12 @@ class ContactTransport {
   btScalar gap_ = 0;
   std::vector<ContactPatch> measured_;
 };
+
+/// Gives back the memory of a list that is empty.
+template <typename T>
+void releaseIfEmpty(std::vector<T>& list) {
+  if (list.empty()) list.shrink_to_fit();
+}
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -115,6 +115,7 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
     selectSamples(contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), reference, memory.patches,
                   memory.samples);
     keepSamples(contacts, count_a, memory.samples, contacts_, count_a_);
+    releaseIfEmpty(contacts_);
     const bool near = evaluateDepths(bodies);
     if (!contacts.empty() && !near) next = SearchPass::touch;
   } else if (pass == SearchPass::deep) {

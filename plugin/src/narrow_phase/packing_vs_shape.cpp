@@ -81,6 +81,7 @@ void PackingVsShape::search(const ContactOptions& options, const Placed& now, co
   const PlacedPacking a(packing_, now.a, measure.estimator, measure.search_margin_a, measure.prefix_a);
   near_spheres_.clear();
   surface_->findNearSpheres(a, now.b, near_spheres_);
+  releaseIfEmpty(near_spheres_);
   on_surfaces = measure.on_surfaces;
   if (measure.on_surfaces) {
     capsOf(a, a.search_margin, contacts);

@@ -2,6 +2,19 @@
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Memory is given back if this many searches in a row have needed less than a part of it,
+constexpr int kSearchesToLookAt = 64;
+constexpr std::size_t kUnused = 4;
+/// but not the room for so many contacts of spheres: 512 KB.
+constexpr std::size_t kKeptContacts = std::size_t{1} << 14;
+
+std::size_t roomOf(const QueryResult& result) {
+  return result.contacts_a.items.capacity() + result.contacts_b.items.capacity();
+}
+
+}  // namespace
 
 PackingSearch::PackingSearch(Backend backend, std::size_t room)
     : backend_(backend), context_(QueryContextOptions{backend, 0}) {
@@ -27,6 +40,17 @@ void PackingSearch::start(Estimator estimator) {
   if (queries_.empty()) return;
   context_.start(queries_.data(), queries_.size(), queryOptionsOf(SearchPass::surfaces, estimator));
   started_ = true;
+}
+
+bool PackingSearch::isLarge() const {
+  return roomOf(result_) > kKeptContacts && context_.lastBackend() == Backend::cpu;
+}
+
+void PackingSearch::releaseUnused() {
+  if (++searches_ < kSearchesToLookAt) return;
+  if (roomOf(result_) > std::max(kKeptContacts, kUnused * most_contacts_)) result_ = QueryResult();
+  most_contacts_ = 0;
+  searches_ = 0;
 }
 
 void PackingSearch::makeQueries(SearchPass pass) {

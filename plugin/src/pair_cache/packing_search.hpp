@@ -1,6 +1,7 @@
 // Searches for contact of many pairs of packings, in shared queries.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -47,8 +48,11 @@ class PackingSearch {
       context_.run(queries_.data(), queries_.size(), queryOptionsOf(pass, estimator_), result_);
       take(pass, done);
     }
+    releaseUnused();
     clear();
   }
+  /// Returns true if it holds more memory than searches of a usual size need, and is soon made anew.
+  bool isLarge() const;
   /// Runs one query for volumes and returns its sums.
   Overlap overlap(const PairQuery& query, Estimator estimator) {
     return context_.overlap(query, {Want::wrench, estimator});
@@ -61,8 +65,12 @@ class PackingSearch {
     std::size_t index;
   };
   void makeQueries(SearchPass pass);
+  /// Bodies that were deep in each other for once leave no memory behind.
+  void releaseUnused();
   template <typename Done>
   void take(SearchPass pass, const Done& done) {
+    most_contacts_ =
+        std::max(most_contacts_, result_.contacts_a.items.size() + result_.contacts_b.items.size());
     // Each pair has its own result, so that their order does not matter.
     inParallel(queried_.size(), [&](std::size_t i) {
       Item& item = *queried_[i];
@@ -79,6 +87,8 @@ class PackingSearch {
   std::vector<Item*> queried_;
   std::vector<PairQuery> queries_;
   QueryResult result_;
+  std::size_t most_contacts_ = 0;  ///< of a pass since memory was last looked at
+  int searches_ = 0;               ///< since then
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -142,7 +142,8 @@ class PairTable {
   std::vector<Job> work_;                  ///< those of them that need no query
   std::unique_ptr<PackingSearch> search_;  ///< those that need one; null once they are finished
   std::vector<std::unique_ptr<PackingSearch>> spare_searches_;
-  std::uint64_t dispatches_ = 0;  ///< steps of the world in which penalty forces have acted
+  int updates_without_search_ = 0;  ///< since the last one
+  std::uint64_t dispatches_ = 0;    ///< steps of the world in which penalty forces have acted
   ContactStatistics statistics_;
 };
 

@@ -9,6 +9,8 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
+constexpr int kUpdatesToKeepSearches = 64;
+
 PackingVsPacking& packingsOf(ContactPair& pair) {
   return static_cast<PackingVsPacking&>(*pair.found);
 }
@@ -59,6 +61,9 @@ void updateWithoutQuery(ContactPair& pair, const BodySnapshot& a, const BodySnap
 }  // namespace
 
 void PairTable::begin(btScalar time_step) {
+  // Bodies that were deep in each other for once, and then lie still, leave no memory behind.
+  if (++updates_without_search_ == kUpdatesToKeepSearches)
+    std::erase_if(spare_searches_, [](const auto& search) { return search->isLarge(); });
   ++number_;
   settings_ = settingsFor(time_step);
   body_list_.forEachInParallel([](BodySnapshot& body) { body.take(); });
@@ -99,7 +104,9 @@ void PairTable::collectJobs() {
       work_.push_back(job);
     }
   }
-  if (search_) ++statistics_.queries;
+  if (!search_) return;
+  ++statistics_.queries;
+  updates_without_search_ = 0;
 }
 
 /// Transports, refines and searches without queries, while a device is at work on those.

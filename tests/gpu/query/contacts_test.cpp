@@ -98,6 +98,40 @@ TEST_P(ContactsConformance, BatchesWithoutOverlapHaveNoneWhateverWasAskedBefore)
   }
 }
 
+TEST_P(ContactsConformance, ListsOfAHeapHaveTheSameBitsAsThoseOfEachPairAlone) {
+  // Millions of pairs of spheres, more than go through together; some queries alone have more, some none.
+  const auto model = makeModel(lattice(cases(12, 6), 0.1));
+  Random random(11);
+  std::vector<PairQuery> queries(cases(24, 6));
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    queries[i].a = queries[i].b = model.get();
+    queries[i].placement_b = at((i % 3 == 2 ? 100 : 0.5) * random.direction());
+    queries[i].margin = i % 7 == 3 ? 0.8 : 0.3;
+  }
+  QueryContext context = makeContext();
+  for (const Want want : {Want::contacts, Want::pairs}) {
+    QueryResult together;
+    for (int i = 0; i < 2; ++i) context.run(queries.data(), queries.size(), {want, Estimator::raw}, together);
+    const std::size_t found = want == Want::pairs ? together.pairs.items.size() : 0;
+    if (want == Want::pairs && queries.size() == 24) EXPECT_GT(found, 2'000'000u);
+    const auto expectEqual = [](const auto& alone, const auto& all, std::size_t i) {
+      const std::size_t count = all.first[i + 1] - all.first[i];
+      ASSERT_EQ(alone.items.size(), count) << i;
+      if (count > 0)
+        EXPECT_EQ(std::memcmp(alone.items.data(), &all.items[all.first[i]], count * sizeof alone.items[0]), 0)
+            << i;
+    };
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      QueryResult alone;
+      makeContext().run(&queries[i], 1, {want, Estimator::raw}, alone);
+      EXPECT_TRUE(sameBits(alone.overlaps[0], together.overlaps[i])) << i;
+      expectEqual(alone.pairs, together.pairs, i);
+      expectEqual(alone.contacts_a, together.contacts_a, i);
+      expectEqual(alone.contacts_b, together.contacts_b, i);
+    }
+  }
+}
+
 INNERSPHERE_FOR_EACH_BACKEND(ContactsConformance);
 
 }  // namespace
