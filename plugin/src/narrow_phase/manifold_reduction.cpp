@@ -90,7 +90,7 @@ class FourPoints {
   /// Of points that widen the patch: less the farther they are from touching, compared with the deepest. What
   /// the step alone would drive into the other body has to be held in it, so depths are those at its end, and
   /// where bodies have sunk in, or will, all that has counts. But a place on a hill is not another one than
-  /// the top of that hill.
+  /// the top of that hill, unless the step is so long that all of the hill would sink in.
   void findWorths() {
     worth_.clear();
     btScalar deepest = -BT_LARGE_FLOAT;
@@ -100,7 +100,8 @@ class FourPoints {
     }
     const btScalar falls = btMax(kWorthFalls * spacing_, deepest);
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      const btScalar below = (deepest - worth_[i]) / falls + found_[i].below_top / (kWorthFalls * spacing_);
+      const btScalar hill = step_.motion.isSwept() ? btScalar(0) : found_[i].below_top;
+      const btScalar below = (deepest - worth_[i]) / falls + hill / (kWorthFalls * spacing_);
       worth_[i] = (isOld(found_[i]) ? kKeepSpan : btScalar(1)) * btExp(-below);
     }
   }

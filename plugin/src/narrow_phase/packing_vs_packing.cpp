@@ -66,9 +66,10 @@ QueryOptions queryOptionsOf(SearchPass pass, Estimator estimator) {
 
 SearchPass PackingVsPacking::begin(const ContactOptions& options, const Placed& now, const StepAhead& step) {
   forget();
+  sweep_ = Sweep(*a_, *b_, now, step);
   now_ = now;
-  step_ = step;
-  search_.emplace(options, *a_, *b_, step.needed);
+  step_ = sweep_.ahead();
+  search_.emplace(options, *a_, *b_, step_.needed);
   return search_->on_surfaces ? SearchPass::surfaces : SearchPass::volumes;
 }
 
@@ -116,6 +117,11 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
                   memory.samples);
     keepSamples(contacts, count_a, memory.samples, contacts_, count_a_);
     const bool near = evaluateDepths(bodies);
+    if (sweep_.goesOn(memory.patches)) {
+      now_ = sweep_.placed();
+      step_ = sweep_.ahead();
+      return SearchPass::surfaces;
+    }
     if (!contacts.empty() && !near) next = SearchPass::touch;
   } else if (pass == SearchPass::deep) {
     gradientPatch(contacts, search_->spacing, reference, memory.patches);
@@ -126,6 +132,7 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
   on_surfaces = pass == SearchPass::surfaces;
   memory.noteSearch(now_);
   memory.noteDepths(now_, search_->separation);
+  sweep_.takeBack(memory.patches);
   if (next == SearchPass::none) settings = search_;
   return next;
 }
