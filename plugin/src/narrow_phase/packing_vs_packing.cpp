@@ -122,7 +122,7 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
       step_ = sweep_.ahead();
       return SearchPass::surfaces;
     }
-    if (!contacts.empty() && !near) next = SearchPass::touch;
+    if (!contacts.empty() && !near && !sweep_.hasKept()) next = SearchPass::touch;
   } else if (pass == SearchPass::deep) {
     gradientPatch(contacts, search_->spacing, reference, memory.patches);
   } else {
@@ -132,7 +132,7 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
   on_surfaces = pass == SearchPass::surfaces;
   memory.noteSearch(now_);
   memory.noteDepths(now_, search_->separation);
-  sweep_.takeBack(memory.patches);
+  sweep_.finish(memory.patches);
   if (next == SearchPass::none) settings = search_;
   return next;
 }

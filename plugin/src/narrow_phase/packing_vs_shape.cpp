@@ -75,7 +75,7 @@ void PackingVsShape::search(const ContactOptions& options, const Placed& now, co
   do {
     searchAt(sweep.placed(), options, sweep.ahead());
   } while (isKnown() && settings->on_surfaces && sweep.goesOn(memory.patches));
-  sweep.takeBack(memory.patches);
+  sweep.finish(memory.patches);
 }
 
 void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, const StepAhead& step) {

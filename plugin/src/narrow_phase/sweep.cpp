@@ -14,9 +14,10 @@ namespace {
 
 /// In sizes of the smaller body: poses are no further apart.
 constexpr btScalar kPosesApart = btScalar(0.5);
-/// In sizes of the smaller body: contacts are looked for this far ahead of a pose. From the one before bodies
-/// meet, that is as far as the hindmost part of the smaller body.
-constexpr btScalar kLookAhead = 2 + kPosesApart;
+/// In sizes of the smaller body: contacts are looked for this far ahead of a pose. That is beyond the next
+/// one, for what meets later must not turn into the other body when the rest is stopped. But spheres that are
+/// enlarged by more than the body do not tell the sides of a thin wall.
+constexpr btScalar kLookAhead = 1;
 /// In sizes of the smaller body: what would sink in by less in the step does not stop the bodies. They slide
 /// on it, and may meet something else.
 constexpr btScalar kGrazes = kPosesApart / 2;
@@ -25,14 +26,14 @@ constexpr btScalar kMostTurn = SIMD_HALF_PI / 2;
 /// There are no more poses than this. Beyond that each looks further ahead.
 constexpr btScalar kMostPoses = 1000;
 
-/// Where a shape is after `time` of a step, if its body has its origin at `centre` now.
-btTransform movedOn(const btTransform& place, const btVector3& centre, const BodyVelocity& velocity,
-                    btScalar time, btScalar time_step) {
-  const btScalar rate = btMin(velocity.spin.length(), kMostTurn / time_step);
-  const btMatrix3x3 turn = rate > 0 ? btMatrix3x3(btQuaternion(velocity.spin.normalized(), rate * time))
-                                    : btMatrix3x3::getIdentity();
-  return btTransform(turn * place.getBasis(),
-                     centre + velocity.linear * time + turn * (place.getOrigin() - centre));
+/// Where a shape is after a part `time` of a step, if its body has its origin at `centre` now and at
+/// `centre` + `moved` then.
+btTransform movedOn(const btTransform& place, const btVector3& centre, const btVector3& moved,
+                    const btVector3& spin, btScalar time, btScalar time_step) {
+  const btScalar rate = btMin(spin.length(), kMostTurn / time_step);
+  const btMatrix3x3 turn =
+      rate > 0 ? btMatrix3x3(btQuaternion(spin.normalized(), rate * time)) : btMatrix3x3::getIdentity();
+  return btTransform(turn * place.getBasis(), centre + moved + turn * (place.getOrigin() - centre));
 }
 
 }  // namespace
@@ -48,55 +49,97 @@ Sweep::Sweep(const PackingShape& a, const btCollisionShape& b, const Placed& now
 
 bool Sweep::goesOn(const std::vector<ContactPatch>& found) {
   if (poses_ <= 1) return false;
-  for (const ContactPatch& patch : found) {
-    const auto end = patch.points.begin() + patch.count;
-    if (std::any_of(patch.points.begin(), end, [&](const ContactPoint& point) { return stops(point); }))
-      return false;
+  if (pose_ == 0) kept_ = found;
+  const auto stopsAt = [&](const ContactPatch& patch) { return stops(patch); };
+  if (std::any_of(found.begin(), found.end(), stopsAt)) {
+    // All of the first place where they are about to meet, of others what they meet there.
+    if (!stopped_) kept_.clear();
+    for (const ContactPatch& patch : found) {
+      if (!stopped_ || stops(patch)) keep(patch);
+    }
+    stopped_ = true;
+    deflect(found);
+    const btScalar left = (ahead_.motion.a().linear - ahead_.motion.b().linear).length() * ahead_.time_step;
+    if (left < kPosesApart * step_.size) return false;
   }
   do {
-    if (pose_ + 1 == poses_) {
-      poses_ = 0;  // none is left after this one
-      goTo(0);
-      return true;
-    }
-    goTo(pose_ + 1);
+    if (++pose_ == poses_) break;
+    advance();
   } while (!isNear());
+  if (pose_ < poses_) return true;
+  if (hasKept()) return false;
+  *this = Sweep(*a_, *b_, now_, step_);
+  poses_ = 1;
   return true;
 }
 
-void Sweep::takeBack(std::vector<ContactPatch>& patches) const {
-  if (pose_ == 0) return;
-  const btVector3 origin = a_->impl().toWorld(placed_.a).getOrigin() - a_->impl().toWorld(now_.a).getOrigin();
-  const btVector3 shift = origin - step_.motion.b().linear * time_;
-  const btVector3 way = (step_.motion.a().linear - step_.motion.b().linear) * time_;
-  for (ContactPatch& patch : patches) {
-    patch.centre += shift;
-    for (int i = 0; i < patch.count; ++i) {
-      ContactPoint& point = patch.points[i];
-      const btScalar approach = ahead_.motion.approachAt(point.on_b, point.normal);
-      point.depth -= time_ * btMax(approach, btScalar(0));
-      point.aside = point.normal * way.dot(point.normal) - way;
-      point.on_b += shift;
-    }
-  }
+void Sweep::finish(std::vector<ContactPatch>& patches) const {
+  if (hasKept()) patches = kept_;
 }
 
-void Sweep::goTo(int pose) {
-  pose_ = pose;
-  ahead_ = step_;
-  placed_ = now_;
-  time_ = 0;
-  if (pose == 0) return;
-  time_ = step_.time_step * btScalar(pose) / btScalar(poses_);
-  const PairMotion& motion = step_.motion;
+/// How much nearer the bodies have come on their way to the pose, along the normal of a contact there.
+btScalar Sweep::wayTo(const ContactPoint& point) const {
+  const PairMotion& motion = ahead_.motion;
+  const btVector3 moved = moved_a_ - motion.b().linear * time_;
+  const btScalar turning =
+      motion.approachAt(point.on_b, point.normal) - (motion.a().linear - motion.b().linear).dot(point.normal);
+  return btMax(btScalar(0), moved.dot(point.normal) + turning * time_);
+}
+
+/// Whether the bodies meet there before the next pose, and it is more than a grazing that the first pose has
+/// seen, too.
+bool Sweep::stops(const ContactPatch& patch) const {
+  const auto end = patch.points.begin() + patch.count;
+  return std::any_of(patch.points.begin(), end, [&](const ContactPoint& point) { return stops(point); });
+}
+
+bool Sweep::stops(const ContactPoint& point) const {
+  const btScalar approach = ahead_.motion.approachAt(point.on_b, point.normal);
+  if (!(point.depth + approach * step_.time_step / btScalar(poses_) > 0)) return false;
+  return point.depth + approach * ahead_.time_step > kGrazes * step_.size ||
+         point.depth - wayTo(point) < -step_.needed;
+}
+
+/// Takes a patch that was found at the pose back to the first one.
+void Sweep::keep(ContactPatch patch) {
+  const btVector3 origin = a_->impl().toWorld(placed_.a).getOrigin() - a_->impl().toWorld(now_.a).getOrigin();
+  const btVector3 moved_b = ahead_.motion.b().linear * time_;
+  const btVector3 moved = moved_a_ - moved_b;
+  patch.centre += origin - moved_b;
+  for (int i = 0; i < patch.count; ++i) {
+    ContactPoint& point = patch.points[i];
+    point.depth -= wayTo(point);
+    point.aside = point.normal * moved.dot(point.normal) - moved;
+    point.on_b += origin - moved_b;
+  }
+  kept_.push_back(patch);
+}
+
+/// Lets the way of A go along what stops it.
+void Sweep::deflect(const std::vector<ContactPatch>& found) {
+  const PairMotion motion = ahead_.motion;
+  BodyVelocity a = motion.a();
+  for (const ContactPatch& patch : found) {
+    const btScalar approach = (a.linear - motion.b().linear).dot(patch.normal);
+    if (approach > 0 && stops(patch)) a.linear -= patch.normal * approach;
+  }
+  ahead_.motion = PairMotion(motion.originA(), a, motion.originB(), motion.b(), true);
+}
+
+/// Goes to the next pose along the way.
+void Sweep::advance() {
+  const btScalar time = step_.time_step / btScalar(poses_);
+  const BodyVelocity a = ahead_.motion.a(), b = ahead_.motion.b();
+  time_ += time;
+  ahead_.time_step -= time;
+  moved_a_ += a.linear * time;
+  const btVector3 moved_b = b.linear * time_;
   const btVector3 origin = a_->impl().toWorld(now_.a).getOrigin();
-  const btVector3 centre_a = origin + motion.originA(), centre_b = origin + motion.originB();
-  placed_.a = movedOn(now_.a, centre_a, motion.a(), time_, step_.time_step);
-  placed_.b = movedOn(now_.b, centre_b, motion.b(), time_, step_.time_step);
+  const btVector3 centre_a = origin + step_.motion.originA(), centre_b = origin + step_.motion.originB();
+  placed_.a = movedOn(now_.a, centre_a, moved_a_, a.spin, time_, step_.time_step);
+  placed_.b = movedOn(now_.b, centre_b, moved_b, b.spin, time_, step_.time_step);
   const btVector3 origin_then = a_->impl().toWorld(placed_.a).getOrigin();
-  ahead_.motion = PairMotion(centre_a + motion.a().linear * time_ - origin_then, motion.a(),
-                             centre_b + motion.b().linear * time_ - origin_then, motion.b(), true);
-  ahead_.time_step -= time_;
+  ahead_.motion = PairMotion(centre_a + moved_a_ - origin_then, a, centre_b + moved_b - origin_then, b, true);
 }
 
 /// Whether the boxes of the shapes are as near each other as contacts are looked for.
@@ -106,15 +149,6 @@ bool Sweep::isNear() const {
   b_->getAabb(placed_.b, min_b, max_b);
   const btVector3 ahead(step_.needed, step_.needed, step_.needed);
   return TestAabbAgainstAabb2(min_a - ahead, max_a + ahead, min_b, max_b);
-}
-
-/// Whether the bodies meet there before the next pose, and it is more than a grazing that the first pose has
-/// seen, too.
-bool Sweep::stops(const ContactPoint& point) const {
-  const btScalar approach = ahead_.motion.approachAt(point.on_b, point.normal);
-  if (!(point.depth + approach * step_.time_step / btScalar(poses_) > 0)) return false;
-  return point.depth + approach * ahead_.time_step > kGrazes * step_.size ||
-         point.depth - approach * time_ < -step_.needed;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -11,9 +11,11 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Goes through the poses at which contact is searched for in a step. For most pairs that is one: where the
-/// bodies are. Pairs that are swept have more, as far apart as half the size of the smaller body, and the
-/// search ends at the last one before they meet. The solver knows only where bodies are when the step begins,
-/// and so the contacts that were found there are taken back to it, with gaps as wide as the way to them.
+/// bodies are. Pairs that are swept go on from there along their way, by half the size of the smaller body
+/// from pose to pose. Where they are about to meet, the contact is kept, and their way goes on along it.
+///
+/// The solver knows only where bodies are when the step begins. So what is kept is taken back to there, with
+/// a gap as wide as the way to it: the solver lets the bodies go as far, and no further.
 class Sweep {
  public:
   /// Has no pose.
@@ -26,16 +28,22 @@ class Sweep {
   const Placed& placed() const { return placed_; }
   /// Returns what the rest of the step brings from there on.
   const StepAhead& ahead() const { return ahead_; }
-  /// Goes to the next pose, if the contacts that were `found` at this one stop the bodies too late. Where
-  /// nothing stops them, the last pose is the first one again. Returns false if there is none left.
+  /// Takes what was found at the pose, and goes to the next one. If nothing at all was found, that is the
+  /// first one again, in the end. Returns false if there is none left.
   bool goesOn(const std::vector<ContactPatch>& found);
-  /// Takes contacts that were found at this pose back to where the bodies are now.
-  void takeBack(std::vector<ContactPatch>& patches) const;
+  /// Returns true if contacts were kept, which are then those of the step.
+  bool hasKept() const { return !kept_.empty(); }
+  /// Replaces `patches`, of the last pose, by what was kept, if there is any.
+  void finish(std::vector<ContactPatch>& patches) const;
 
  private:
-  void goTo(int pose);
   bool isNear() const;
+  btScalar wayTo(const ContactPoint& point) const;
+  bool stops(const ContactPatch& patch) const;
   bool stops(const ContactPoint& point) const;
+  void keep(ContactPatch patch);
+  void deflect(const std::vector<ContactPatch>& found);
+  void advance();
 
   const PackingShape* a_ = nullptr;
   const btCollisionShape* b_ = nullptr;
@@ -43,9 +51,12 @@ class Sweep {
   StepAhead step_;
   int poses_ = 1;
   int pose_ = 0;
-  btScalar time_ = 0;  ///< of the pose, since the step began [s]
   Placed placed_;
   StepAhead ahead_;
+  btScalar time_ = 0;           ///< of the pose, since the step began [s]
+  btVector3 moved_a_{0, 0, 0};  ///< the way of A's body to it [m]
+  std::vector<ContactPatch> kept_;
+  bool stopped_ = false;  ///< the bodies have met
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
