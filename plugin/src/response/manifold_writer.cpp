@@ -152,7 +152,8 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   if (held) point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
   if (depth == from.depth && !held && from.aside.isZero()) return;
   point.m_distance1 = -depth;
-  point.m_positionWorldOnA = from.on_b + from.normal * depth + from.aside;
+  point.m_positionWorldOnA = from.on_b + from.normal * depth;
+  if (!from.aside.isZero()) point.m_positionWorldOnA += from.aside;
   if (held) point.m_positionWorldOnA += from.slip;
   point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
 }
