@@ -13,11 +13,11 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// In sizes of the smaller body: poses are no further apart.
-constexpr btScalar kPosesApart = btScalar(0.5);
+constexpr btScalar kPosesApart = btScalar(0.25);
 /// In sizes of the smaller body: contacts are looked for this far ahead of a pose. That is beyond the next
 /// one, for what meets later must not turn into the other body when the rest is stopped. But spheres that are
 /// enlarged by more than the body do not tell the sides of a thin wall.
-constexpr btScalar kLookAhead = 1;
+constexpr btScalar kLookAhead = 3 * kPosesApart;
 /// In sizes of the smaller body: what would sink in by less in the step does not stop the bodies. They slide
 /// on it, and may meet something else.
 constexpr btScalar kGrazes = kPosesApart / 2;

@@ -11,8 +11,8 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Goes through the poses at which contact is searched for in a step. For most pairs that is one: where the
-/// bodies are. Pairs that are swept go on from there along their way, by half the size of the smaller body
-/// from pose to pose. Where they are about to meet, the contact is kept, and their way goes on along it.
+/// bodies are. Pairs that are swept go on from there along their way, by a quarter of the size of the smaller
+/// body from pose to pose. Where they are about to meet, the contact is kept, and their way goes on along it.
 ///
 /// The solver knows only where bodies are when the step begins. So what is kept is taken back to there, with
 /// a gap as wide as the way to it: the solver lets the bodies go as far, and no further.
