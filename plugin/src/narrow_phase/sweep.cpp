@@ -14,16 +14,17 @@ namespace {
 
 /// In sizes of the smaller body: poses are no further apart.
 constexpr btScalar kPosesApart = btScalar(0.25);
-/// In sizes of the smaller body: contacts are looked for this far ahead of a pose. That is beyond the next
-/// one, for what meets later must not turn into the other body when the rest is stopped. But spheres that are
-/// enlarged by more than the body do not tell the sides of a thin wall.
-constexpr btScalar kLookAhead = 3 * kPosesApart;
+/// In ways from pose to pose: contacts are looked for this far ahead. That is beyond the next pose, for what
+/// meets later must not turn into the other body when the rest is stopped.
+constexpr btScalar kLookAhead = 6;
+/// The same for two packings: spheres of both that are enlarged by more do not tell the sides of a thin wall.
+constexpr btScalar kPackingsLookAhead = 3;
 /// In sizes of the smaller body: what would sink in by less in the step does not stop the bodies. They slide
 /// on it, and may meet something else.
 constexpr btScalar kGrazes = kPosesApart / 2;
 /// Bullet turns no body by more than this in a step [rad].
 constexpr btScalar kMostTurn = SIMD_HALF_PI / 2;
-/// There are no more poses than this. Beyond that each looks further ahead.
+/// There are no more poses than this: they are further apart then.
 constexpr btScalar kMostPoses = 1000;
 
 /// Where a shape is after a part `time` of a step, if its body has its origin at `centre` now and at
@@ -41,9 +42,10 @@ btTransform movedOn(const btTransform& place, const btVector3& centre, const btV
 Sweep::Sweep(const PackingShape& a, const btCollisionShape& b, const Placed& now, const StepAhead& step)
     : a_(&a), b_(&b), now_(now), step_(step), placed_(now), ahead_(step) {
   if (!step.motion.isSwept()) return;
-  const btScalar poses = std::ceil(step.needed / (kPosesApart * step.size));
-  poses_ = static_cast<int>(btMin(poses, kMostPoses));
-  if (poses <= kMostPoses) step_.needed = btMin(step.needed, kLookAhead * step.size);
+  const btScalar apart = btMax(kPosesApart * step.size, step.needed / kMostPoses);
+  poses_ = static_cast<int>(std::ceil(step.needed / apart));
+  const btScalar look_ahead = PackingShape::from(&b) == nullptr ? kLookAhead : kPackingsLookAhead;
+  step_.needed = btMin(step.needed, look_ahead * apart);
   ahead_ = step_;
 }
 
