@@ -34,6 +34,24 @@ TEST(Recipes, AStaticPackingCarriesABody) {
   world.removeRigidBody(&table);
 }
 
+TEST(Recipes, AFastBodyStopsAtAThinWall) {
+  RecipeWorld<> simulation;
+  btDiscreteDynamicsWorld& world = simulation.world;
+  PackingCollisionAlgorithm::registerAlgorithm(&simulation.dispatcher);
+  world.setGravity(btVector3(0, 0, 0));
+  btBoxShape box(btVector3(btScalar(0.025), 2, 2));
+  simulation.add(box, 0, btVector3(0, 0, 3));
+  PackingShape torus(torusModel());
+  btRigidBody& body = simulation.add(torus, 1, btVector3(-2, 0, 3));
+  const btVector3 velocity(100, 0, 0);
+  // [snippet fast]
+  body.setCcdMotionThreshold(btScalar(0.05));  // [m] in a step: faster, it is swept
+  body.setLinearVelocity(velocity);
+  // [snippet]
+  for (int step = 0; step < 20; ++step) world.stepSimulation(btScalar(1) / 60, 0);
+  EXPECT_LT(body.getWorldTransform().getOrigin().x(), 0);
+}
+
 TEST(Recipes, AKinematicPackingLiftsABody) {
   RecipeWorld<> simulation;
   btDiscreteDynamicsWorld& world = simulation.world;

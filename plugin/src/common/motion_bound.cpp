@@ -10,13 +10,26 @@ Motion::Motion(const btCollisionObject& object, const BodyVelocity& now) : size(
   if (object.getCollisionShape()->isInfinite()) return;
   size = object.getCollisionShape()->getAngularMotionDisc();
   if (object.isStaticObject()) return;
+  if (object.getCcdMotionThreshold() > 0) swept_from = object.getCcdMotionThreshold();
   velocity = now.linear;
   rim_speed = now.spin.length() * size;
 }
 
+namespace {
+
+btScalar speedBetween(const Motion& a, const Motion& b) {
+  return (a.velocity - b.velocity).length() + a.rim_speed + b.rim_speed;
+}
+
+}  // namespace
+
+bool isSwept(const Motion& a, const Motion& b, btScalar time_step) {
+  return speedBetween(a, b) * time_step > btMin(a.swept_from, b.swept_from);
+}
+
 btScalar speculativeDistance(const Motion& a, const Motion& b, btScalar time_step) {
-  const btScalar speed = (a.velocity - b.velocity).length() + a.rim_speed + b.rim_speed;
-  return btMin(speed * time_step, btMin(a.size, b.size) / 2);
+  const btScalar way = speedBetween(a, b) * time_step;
+  return isSwept(a, b, time_step) ? way : btMin(way, btMin(a.size, b.size) / 2);
 }
 
 btScalar travelBetween(const btTransform& before, const btTransform& now, btScalar size) {

@@ -18,12 +18,18 @@ struct Motion {
   btVector3 velocity{0, 0, 0};  ///< of its origin [m/s]
   btScalar rim_speed = 0;       ///< by turning [m/s]
   btScalar size = 0;            ///< no point is further from its origin [m]; BT_LARGE_FLOAT: it is infinite
+  /// The body is swept if it moves by more than this in a step [m]; BT_LARGE_FLOAT: it never is.
+  btScalar swept_from = BT_LARGE_FLOAT;
 };
 
+/// Returns true if the bodies move so fast against each other that contact has to be looked for all along the
+/// step: further than the motion threshold of Bullet's continuous collision detection, if one of them has it.
+bool isSwept(const Motion& a, const Motion& b, btScalar time_step);
+
 /// Returns an upper bound for how much nearer two points of the bodies can come in `time_step` at the present
-/// velocities [m], at most half the size of the smaller body. Contacts that far apart are handed to the
-/// solver already, which lets them close but not pass, so that a fast body does not go deep into another
-/// before its first contact.
+/// velocities [m], at most half the size of the smaller body unless they are swept. Contacts that far apart
+/// are handed to the solver already, which lets them close but not pass, so that a fast body does not go deep
+/// into another before its first contact.
 btScalar speculativeDistance(const Motion& a, const Motion& b, btScalar time_step);
 
 /// Returns an upper bound for how far any point of a body of this size has moved [m].

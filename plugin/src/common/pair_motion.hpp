@@ -12,9 +12,10 @@ class PairMotion {
  public:
   /// Both are at rest.
   PairMotion() = default;
+  /// `swept` says that contact is looked for all along the step.
   PairMotion(const btVector3& origin_a, const BodyVelocity& a, const btVector3& origin_b,
-             const BodyVelocity& b)
-      : origin_a_(origin_a), origin_b_(origin_b), a_(a), b_(b) {}
+             const BodyVelocity& b, bool swept = false)
+      : origin_a_(origin_a), origin_b_(origin_b), a_(a), b_(b), swept_(swept) {}
 
   /// Returns the velocity of A as seen from B, at a point of the world [m/s].
   btVector3 velocityAt(const btVector3& point) const {
@@ -27,6 +28,12 @@ class PairMotion {
   btScalar approachAt(const btVector3& point, const btVector3& normal) const {
     return velocityAt(point).dot(normal);
   }
+  /// Returns true if the bodies are so fast that contact is looked for all along the step.
+  bool isSwept() const { return swept_; }
+  const BodyVelocity& a() const { return a_; }
+  const BodyVelocity& b() const { return b_; }
+  const btVector3& originA() const { return origin_a_; }
+  const btVector3& originB() const { return origin_b_; }
   /// Returns the acceleration with which their turning brings the bodies nearer there [m/s^2].
   btScalar approachByTurningAt(const btVector3& point, const btVector3& normal) const {
     return (centripetal(a_, origin_a_, point) - centripetal(b_, origin_b_, point)).dot(normal);
@@ -42,6 +49,7 @@ class PairMotion {
 
   btVector3 origin_a_{0, 0, 0}, origin_b_{0, 0, 0};
   BodyVelocity a_, b_;
+  bool swept_ = false;
 };
 
 /// Says what the step that contacts are for will bring, as far as the bodies' velocities tell.
@@ -52,6 +60,8 @@ struct StepAhead {
   btScalar time_step = 0;
   /// Surfaces that are this far apart might meet in the step [m].
   btScalar needed = 0;
+  /// The size of the smaller body [m].
+  btScalar size = 0;
 
   /// Returns how deep two points of the surfaces, `depth` [m] deep in each other along `normal` (from A to B)
   /// at `place`, would be at the end of the step if nothing stopped the bodies.

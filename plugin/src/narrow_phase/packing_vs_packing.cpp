@@ -66,9 +66,10 @@ QueryOptions queryOptionsOf(SearchPass pass, Estimator estimator) {
 
 SearchPass PackingVsPacking::begin(const ContactOptions& options, const Placed& now, const StepAhead& step) {
   forget();
+  sweep_ = Sweep(*a_, *b_, now, step);
   now_ = now;
-  step_ = step;
-  search_.emplace(options, *a_, *b_, step.needed);
+  step_ = sweep_.ahead();
+  search_.emplace(options, *a_, *b_, step_.needed);
   return search_->on_surfaces ? SearchPass::surfaces : SearchPass::volumes;
 }
 
@@ -117,7 +118,12 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
     keepSamples(contacts, count_a, memory.samples, contacts_, count_a_);
     releaseIfEmpty(contacts_);
     const bool near = evaluateDepths(bodies);
-    if (!contacts.empty() && !near) next = SearchPass::touch;
+    if (sweep_.goesOn(memory.patches)) {
+      now_ = sweep_.placed();
+      step_ = sweep_.ahead();
+      return SearchPass::surfaces;
+    }
+    if (!contacts.empty() && !near && !sweep_.hasKept()) next = SearchPass::touch;
   } else if (pass == SearchPass::deep) {
     const Bodies bodies(*this, *search_);
     wayOutPatch(bodies.a, bodies.b, contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a),
@@ -129,6 +135,7 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
   on_surfaces = pass == SearchPass::surfaces;
   memory.noteSearch(now_);
   memory.noteDepths(now_, search_->separation);
+  sweep_.finish(memory.patches);
   if (next == SearchPass::none) settings = search_;
   return next;
 }

@@ -7,6 +7,7 @@
 #include "innersphere/contact_options.hpp"
 #include "innersphere/query.hpp"
 #include "narrow_phase/found_contact.hpp"
+#include "narrow_phase/sweep.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -15,7 +16,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// result of one tells whether there is another.
 enum class SearchPass : std::uint8_t {
   none,      ///< the search is over
-  surfaces,  ///< with spheres enlarged so that they find all contact of the surfaces that they stand for
+  surfaces,  ///< with spheres enlarged so that they find all contact of the surfaces that they stand for;
+             ///< once for each pose of a pair that is swept
   touch,     ///< with spheres as they are, where the surfaces showed no overlap: it may be too deep
   deep,      ///< with spheres enlarged so that they fill their solids, where it is: for the way out
   volumes,   ///< where the volume of overlap is all that is wanted
@@ -53,6 +55,7 @@ class PackingVsPacking : public FoundContact {
   const PackingShape* b_;
   Placed now_;
   StepAhead step_;
+  Sweep sweep_;
   std::optional<ContactSettings> search_;  ///< settings of a search that is under way
   std::vector<SphereContact> contacts_;    ///< the samples
   std::size_t count_a_ = 0;                ///< of A's spheres, which come first

@@ -6,6 +6,7 @@
 
 #include "narrow_phase/contact_patches.hpp"
 #include "narrow_phase/contact_settings.hpp"
+#include "narrow_phase/sweep.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -70,6 +71,14 @@ PackingVsShape::PackingVsShape(const PackingShape& packing, const btCollisionSha
     : packing_(packing), other_(other), surface_(makeShapeSurface(other)) {}
 
 void PackingVsShape::search(const ContactOptions& options, const Placed& now, const StepAhead& step) {
+  Sweep sweep(packing_, other_, now, step);
+  do {
+    searchAt(sweep.placed(), options, sweep.ahead());
+  } while (isKnown() && settings->on_surfaces && sweep.goesOn(memory.patches));
+  sweep.finish(memory.patches);
+}
+
+void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, const StepAhead& step) {
   static thread_local std::vector<SphereContact> contacts;
   forget();
   overlap_.reset();

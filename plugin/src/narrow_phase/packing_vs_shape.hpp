@@ -21,7 +21,7 @@ class PackingVsShape : public FoundContact {
   /// Takes the packing and the shape, which must both outlive it.
   PackingVsShape(const PackingShape& packing, const btCollisionShape& other);
 
-  /// Searches for contacts up to `step.needed` apart.
+  /// Searches for contacts up to `step.needed` apart, all along the step if the pair is swept.
   void search(const ContactOptions& options, const Placed& now, const StepAhead& step);
 
   bool hasSameShapes() override;
@@ -31,6 +31,8 @@ class PackingVsShape : public FoundContact {
   Overlap volumesAt(const ContactOptions& options, const Placed& now) const;
 
  private:
+  /// Searches where the bodies are at `now`, or will be then.
+  void searchAt(const Placed& now, const ContactOptions& options, const StepAhead& step);
   void capsOf(const PlacedPacking& a, btScalar search_margin, std::vector<SphereContact>& caps) const;
 
   const PackingShape& packing_;

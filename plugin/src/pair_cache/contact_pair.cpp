@@ -51,8 +51,9 @@ btVector3 impulseOf(const btManifoldPoint& point) {
            point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2);
 }
 
-PairMotion motionOf(const BodySnapshot& a, const BodySnapshot& b) {
-  return {a.transform().getOrigin(), a.velocity(), b.transform().getOrigin(), b.velocity()};
+PairMotion motionOf(const BodySnapshot& a, const BodySnapshot& b, btScalar time_step) {
+  return {a.transform().getOrigin(), a.velocity(), b.transform().getOrigin(), b.velocity(),
+          isSwept(a.motion(), b.motion(), time_step)};
 }
 
 template <typename Visit>
@@ -140,7 +141,8 @@ void ContactPair::publish(const StepSettings& settings, const BodySnapshot& body
 void ContactPair::write(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
                         btManifoldResult* result) {
   depth = deepest(found->patches());
-  manifolds.write(*a.object, *b.object, motionOf(body_a, body_b), origin(), found->patches(), lawOf(settings),
+  manifolds.write(*a.object, *b.object, motionOf(body_a, body_b, settings.time_step), origin(),
+                  found->patches(), lawOf(settings),
                   speculativeDistance(body_a.motion(), body_b.motion(), settings.time_step), result);
 }
 

@@ -13,7 +13,8 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Runs searches. All pairs go through the same passes together, each pass one query. The first one can be
+/// Runs searches. All pairs go through the same passes together, each pass one query; pairs that are swept go
+/// through the first one once for each pose. The first one can be
 /// under way on a device while the caller does something else.
 class PackingSearch {
  public:
@@ -42,11 +43,12 @@ class PackingSearch {
       context_.wait(result_);
       take(SearchPass::surfaces, done);
     }
-    for (const SearchPass pass : {SearchPass::touch, SearchPass::deep, SearchPass::volumes}) {
-      makeQueries(pass);
-      if (queries_.empty()) continue;
-      context_.run(queries_.data(), queries_.size(), queryOptionsOf(pass, estimator_), result_);
-      take(pass, done);
+    for (const SearchPass pass :
+         {SearchPass::surfaces, SearchPass::touch, SearchPass::deep, SearchPass::volumes}) {
+      for (makeQueries(pass); !queries_.empty(); makeQueries(pass)) {
+        context_.run(queries_.data(), queries_.size(), queryOptionsOf(pass, estimator_), result_);
+        take(pass, done);
+      }
     }
     releaseUnused();
     clear();

@@ -33,10 +33,11 @@ bool place(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b) {
 StepAhead stepAheadOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                       btScalar time_step) {
   const btVector3 origin = pair.origin();
-  return {
-      {a.transform().getOrigin() - origin, a.velocity(), b.transform().getOrigin() - origin, b.velocity()},
-      time_step,
-      neededSeparation(pair, a, b, time_step)};
+  return {{a.transform().getOrigin() - origin, a.velocity(), b.transform().getOrigin() - origin, b.velocity(),
+           isSwept(a.motion(), b.motion(), time_step)},
+          time_step,
+          neededSeparation(pair, a, b, time_step),
+          btMin(a.motion().size, b.motion().size)};
 }
 
 /// The first pass of a search that needs queries.

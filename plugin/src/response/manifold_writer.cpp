@@ -27,6 +27,7 @@ struct NewPoint {
   btVector3 on_b{0, 0, 0};     ///< in the world
   btVector3 local_a{0, 0, 0};  ///< the point on A, in the frame of A's object
   btVector3 slip{0, 0, 0};     ///< of A on B, that friction is to undo
+  btVector3 aside{0, 0, 0};    ///< of the point on A from the one on B
   btScalar friction = 1;       ///< share of it
   btScalar curvature = 0;      ///< of both surfaces [1/m]
 };
@@ -84,6 +85,15 @@ void letGo(const btCollisionObject& a, const btCollisionObject& b, btManifoldPoi
   if (cached.m_appliedImpulseLateral1 == 0) cached.m_appliedImpulseLateral1 = kSome;
 }
 
+/// Bullet takes points for one that are nearer to each other than the distance at which it drops contacts.
+/// For bodies that are swept that is further than they are large: a new point gets a place to be put in.
+void keepApart(const btVector3& local_a, btPersistentManifold& manifold) {
+  if (manifold.getNumContacts() == 0) return;
+  btManifoldPoint place;
+  place.m_localPointA = local_a;
+  manifold.addManifoldPoint(place);
+}
+
 /// Stiffness, damping and the depth they act on, and the slip that friction is to undo, unless the user has
 /// set a law of their own, through the bodies or in a material callback. The callback has seen the true
 /// depth.
@@ -124,6 +134,8 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     const btScalar turning = motion.approachByTurningAt(from.on_b, from.normal);
     depth = btMin(btScalar(0), depth + turning * law.time_step * law.time_step / 2);
   }
+  // A spring gives way by a part of the speed that it stops: too far for what is thin.
+  if (motion.isSwept() && meets && approach * law.time_step > depth) spring = false;
   if (spring) {
     // The solver starts with a part of the last impulse. What is short of a load that lies still would make
     // it sink until its spring has replaced it: where the spring bears more, it starts with all of it.
@@ -138,9 +150,10 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   const bool held = !driven_apart && !from.slip.isZero() && !belt;
   point.m_contactPointFlags &= ~BT_CONTACT_FLAG_FRICTION_ANCHOR;
   if (held) point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
-  if (depth == from.depth && !held) return;
+  if (depth == from.depth && !held && from.aside.isZero()) return;
   point.m_distance1 = -depth;
   point.m_positionWorldOnA = from.on_b + from.normal * depth;
+  if (!from.aside.isZero()) point.m_positionWorldOnA += from.aside;
   if (held) point.m_positionWorldOnA += from.slip;
   point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
 }
@@ -160,6 +173,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
     point.normal = patch.points[i].normal;
     point.curvature = patch.points[i].curvature_a + patch.points[i].curvature_b;
     point.on_b = origin + patch.points[i].on_b;
+    point.aside = patch.points[i].aside;
     point.local_a = a.getWorldTransform().invXform(point.on_b + point.normal * point.depth);
     ++count;
   }
@@ -179,6 +193,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
       cached.m_localPointA = point.local_a;
       letGo(a, b, cached);
     }
+    if (motion.isSwept() && match[i] < 0) keepApart(point.local_a, manifold);
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
     if (btManifoldPoint* added = pointAt(manifold, point.on_b))
       setLaw(*added, point, a, motion, warm_starting);
