@@ -25,6 +25,10 @@ constexpr btScalar kSearchAgain = btScalar(0.5);
 /// In units of the spacing: contacts are moved along with bodies that have moved by less than this since
 /// depths were evaluated. The error is of second order: on a ball of five spacings a hundredth of this.
 constexpr btScalar kRefineAgain = btScalar(0.1);
+/// The same for bodies that are enclosed. They touch now here and now there within their clearance, so that
+/// other spheres are the ones to measure sooner, and other samples the deepest.
+constexpr btScalar kSearchEnclosedAgain = btScalar(0.1);
+constexpr btScalar kRefineEnclosedAgain = btScalar(0.01);
 
 /// Returns an upper bound for how far a place on one body moves, as seen from the other, where both reach:
 /// within the smaller one [m].
@@ -39,7 +43,7 @@ class ContactTransport {
   const Placed& searchedAt() const { return searched_at_; }
   const Placed& measuredAt() const { return measured_at_; }
   /// Returns true for a nut on its thread, a peg, teeth that mesh: bodies that rattle in their clearance
-  /// touch now here and now there, so that contact is searched for whenever they move.
+  /// touch now here and now there, so that contact is searched for again sooner.
   bool isEnclosed() const { return enclosed_; }
   /// Returns the narrowest gap when depths were evaluated [m]; it is negative where the bodies overlap.
   btScalar gap() const { return gap_; }

@@ -41,11 +41,14 @@ Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot
   const btScalar size_a = sizeOf(*pair.a.shape), size_b = sizeOf(*pair.b.shape);
   const btScalar needed = neededSeparation(pair, a, b, time_step);
   const btScalar moved = motionBetween(memory.searchedAt(), now, size_a, size_b);
-  const btScalar farthest = memory.isEnclosed() ? btScalar(0) : kSearchAgain * settings.spacing;
+  const bool enclosed = memory.isEnclosed();
+  const btScalar farthest = (enclosed ? kSearchEnclosedAgain : kSearchAgain) * settings.spacing;
   if (moved > farthest || needed + moved > settings.separation) return Reuse::search;
   if (memory.isEmpty()) return std::max(least, Reuse::transport);
   const btScalar turned = motionBetween(memory.measuredAt(), now, size_a, size_b);
-  const btScalar carried = btMax(kRefineAgain * settings.spacing, kRefineGap * (memory.gap() - needed));
+  const btScalar carried = enclosed
+                               ? kRefineEnclosedAgain * settings.spacing
+                               : btMax(kRefineAgain * settings.spacing, kRefineGap * (memory.gap() - needed));
   return std::max(least, turned > carried ? Reuse::refine : Reuse::transport);
 }
 
