@@ -315,7 +315,8 @@ TEST(Frame, MovesAsTheChildOfACompound) {
     EXPECT_LT(places[0].getOrigin().distance(places[1].getOrigin()), 1e-4) << on_packing;
     for (int i = 0; i < 3; ++i)
       EXPECT_LT(places[0].getBasis()[i].distance(places[1].getBasis()[i]), 1e-4) << on_packing;
-    EXPECT_NEAR(overlaps[0].depth, overlaps[1].depth, 1e-5) << on_packing;
+    // The corners bear it. What the axes may differ by lifts them by half of that.
+    EXPECT_NEAR(overlaps[0].depth, overlaps[1].depth, 0.5e-4) << on_packing;
     EXPECT_NEAR(overlaps[0].force.length(), 9.81, 0.05) << on_packing;
     EXPECT_LT(overlaps[0].force.distance(overlaps[1].force), 0.05) << on_packing;
   }
