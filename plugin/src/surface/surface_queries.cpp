@@ -15,7 +15,6 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 using Lanes = TriangleBvh::Lanes;
-constexpr float kFar = std::numeric_limits<float>::infinity();
 /// Ratio: hits whose distances differ by less lie on an edge that both triangles share.
 constexpr btScalar kShared = btScalar(1e-5);
 /// Cosine, 84 degrees: rays that are flatter to a triangle meet it itself, not the curved surface that it

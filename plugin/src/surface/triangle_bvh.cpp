@@ -13,7 +13,6 @@ constexpr std::size_t kTrianglesPerLeaf = 2;
 /// Boxes are larger than their triangles by this fraction of the surface's size, so that rounding does not
 /// let a ray miss the flat ones that it runs along.
 constexpr float kPadding = 4e-6F;
-constexpr float kFar = std::numeric_limits<float>::infinity();
 
 /// Largest coordinate: what rounding follows.
 float sizeOf(const Surface& surface) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <LinearMath/btVector3.h>
@@ -13,6 +14,9 @@
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Stands for the distance of what a search does not meet.
+constexpr float kFar = std::numeric_limits<float>::infinity();
 
 /// This is a tree of boxes in the surface's frame, which one walk searches: for the first triangle on a ray,
 /// the nearest to a point, or all in a box. Const members are safe to call from several threads at once.
