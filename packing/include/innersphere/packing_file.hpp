@@ -19,4 +19,12 @@ Packing readPacking(const std::string& path);
 /// (unknown ending), file_exists, write_failed, and what validate() throws.
 void writePacking(const Packing& packing, const std::string& path, bool overwrite = false);
 
+/// Returns the bytes of a .cbor file, for sockets, databases and other processes. Throws what validate()
+/// throws.
+std::string encodePacking(const Packing& packing);
+
+/// Reads what encodePacking() returns, bit for bit. No bytes crash it. Throws Error: bad_format,
+/// unsupported_version, empty_input, not_finite.
+Packing decodePacking(const std::string& bytes);
+
 }  // namespace innersphere

@@ -63,4 +63,19 @@ void writePacking(const Packing& packing, const std::string& path, bool overwrit
   throw Error(ErrorCode::bad_argument, "a packing is written to .json, .cbor, .ply or .xyzr, not to " + path);
 }
 
+std::string encodePacking(const Packing& packing) {
+  validate(packing);
+  return toCbor(packing);
+}
+
+Packing decodePacking(const std::string& bytes) {
+  try {
+    Packing packing = fromCbor(bytes);
+    validate(packing);
+    return packing;
+  } catch (const Error& error) {
+    rethrowNaming("encoded packing", error);
+  }
+}
+
 }  // namespace innersphere

@@ -1,0 +1,60 @@
+"""Overlaps of solids of any shape, by inner-sphere packings.
+
+A packing fills a solid with spheres that do not overlap. Two packings tell in microseconds which volume their solids
+share, and which force drives them apart. Lengths are in metres.
+
+    import innersphere
+
+    ring = innersphere.pack("ring.obj", spheres=1000)
+    query = innersphere.Query()
+    shared = query.overlap(ring, ring, pose_b=([0.1, 0, 0], [0, 0, 0, 1]))
+    print(shared["volume"], shared["force"])
+"""
+
+from ._core import Packing, Query, __version__, cuda_available, overlap_dtype, pair_dtype
+from ._errors import (
+    CancelledError,
+    DeviceError,
+    DeviceMemoryError,
+    EmptyInputError,
+    Error,
+    FileMissingError,
+    FileThereError,
+    FormatError,
+    InvalidArgumentError,
+    NoDeviceError,
+    NoSphereFitsError,
+    NotASolidError,
+    NotFiniteError,
+    UnsupportedVersionError,
+    WriteError,
+)
+from ._pack import pack, read
+from ._progress import ProgressBar
+
+__all__ = [
+    "CancelledError",
+    "DeviceError",
+    "DeviceMemoryError",
+    "EmptyInputError",
+    "Error",
+    "FileMissingError",
+    "FileThereError",
+    "FormatError",
+    "InvalidArgumentError",
+    "NoDeviceError",
+    "NoSphereFitsError",
+    "NotASolidError",
+    "NotFiniteError",
+    "Packing",
+    "ProgressBar",
+    "Query",
+    "UnsupportedVersionError",
+    "WriteError",
+    "__version__",
+    "cuda_available",
+    "overlap_dtype",
+    "pack",
+    "pair_dtype",
+    "read",
+]

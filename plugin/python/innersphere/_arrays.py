@@ -1,0 +1,29 @@
+"""Arrays as users have them become arrays as the C++ library wants them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def as_float64(values: Any, name: str) -> NDArray[np.float64]:
+    """Makes an array of doubles. Raises TypeError for anything but real numbers."""
+    try:
+        array = np.asarray(values)
+    except ValueError as error:  # rows of different lengths
+        raise ValueError(f"{name}: {error}") from None
+    if array.dtype.kind not in "fiu" and array.size > 0:
+        raise TypeError(f"{name} has the dtype {array.dtype}; it must be of real numbers")
+    return array.astype(np.float64, copy=False)
+
+
+def as_indices(values: Any, name: str) -> NDArray[np.int64]:
+    """Makes an array of indices. Raises TypeError for anything but integers."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "iu" and array.size > 0:
+        raise TypeError(f"{name} has the dtype {array.dtype}; it must be of integers")
+    if array.dtype == np.uint64 and array.size > 0 and array.max() > np.iinfo(np.int64).max:
+        raise ValueError(f"{name} holds {array.max()}, which names no vertex")
+    return np.ascontiguousarray(array, dtype=np.int64)

@@ -1,0 +1,255 @@
+// Overlap queries: arrays of poses in, structured arrays out, without the GIL in between.
+#include <nanobind/stl/string.h>
+
+#include <cstddef>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "bindings.hpp"
+#include "innersphere/query.hpp"
+#include "poses.hpp"
+
+namespace innersphere::python {
+namespace {
+
+using namespace nb::literals;
+
+constexpr std::pair<const char*, Backend> kBackends[] = {
+    {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
+constexpr std::pair<const char*, Estimator> kEstimators[] = {{"volume_true", Estimator::volume_true},
+                                                             {"raw", Estimator::raw}};
+constexpr std::pair<const char*, Want> kWants[] = {
+    {"touch", Want::touch}, {"volume", Want::volume}, {"wrench", Want::wrench}};
+
+/// The types of structured results. They live as long as the module.
+struct Types {
+  PyObject* overlap = nullptr;
+  PyObject* pair = nullptr;
+};
+Types types;
+
+/// A dtype with the fields of a struct: name, type, offset.
+nb::object structuredType(std::size_t size,
+                          std::initializer_list<std::tuple<const char*, const char*, std::size_t>> fields) {
+  nb::list names, formats, offsets;
+  for (const auto& [name, format, offset] : fields) {
+    names.append(name);
+    formats.append(format);
+    offsets.append(offset);
+  }
+  nb::dict all;
+  all["names"] = names;
+  all["formats"] = formats;
+  all["offsets"] = offsets;
+  all["itemsize"] = size;
+  return nb::module_::import_("numpy").attr("dtype")(all);
+}
+
+/// Gives a vector to numpy, without a copy, as a structured array of one dimension.
+template <typename T>
+nb::object structuredArray(std::vector<T>&& items, nb::handle type) {
+  if (items.empty()) return nb::module_::import_("numpy").attr("empty")(0, type);
+  auto* kept = new std::vector<T>(std::move(items));
+  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  const nb::object bytes = nb::cast(nb::ndarray<nb::numpy, std::uint8_t>(
+      reinterpret_cast<std::uint8_t*>(kept->data()), {kept->size() * sizeof(T)}, owner));
+  return bytes.attr("view")(type);
+}
+
+/// Runs queries for Python. One at a time: a second thread waits for the first.
+class Query {
+ public:
+  Query(const std::string& backend, int threads)
+      : context_(QueryContextOptions{parseWord("backend", backend, kBackends), threads, false}) {}
+
+  nb::object overlap(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b,
+                     const std::string& want, const std::string& estimator, double margin) {
+    const Batch batch(a, b, pose_a, pose_b, margin);
+    std::vector<Overlap> overlaps =
+        run(batch, {parseWord("want", want, kWants), parseWord("estimator", estimator, kEstimators)})
+            .overlaps;
+    const nb::object array = structuredArray(std::move(overlaps), types.overlap);
+    if (batch.shape.empty()) return array[0];
+    if (batch.shape.size() == 1) return array;
+    nb::list shape;
+    for (const std::size_t n : batch.shape) shape.append(n);
+    return array.attr("reshape")(nb::tuple(shape));
+  }
+
+  nb::tuple pairs(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b,
+                  const std::string& estimator, double margin) {
+    const Batch batch(a, b, pose_a, pose_b, margin);
+    QueryResult result = run(batch, {Want::pairs, parseWord("estimator", estimator, kEstimators)});
+    auto* first = new std::vector<std::size_t>(std::move(result.pairs.first));
+    const nb::capsule owner(first,
+                            [](void* p) noexcept { delete static_cast<std::vector<std::size_t>*>(p); });
+    return nb::make_tuple(structuredArray(std::move(result.pairs.items), types.pair),
+                          nb::ndarray<nb::numpy, std::int64_t>(reinterpret_cast<std::int64_t*>(first->data()),
+                                                               {first->size()}, owner));
+  }
+
+  const char* lastBackend() {
+    const nb::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
+    return context_.lastBackend() == Backend::cuda ? "cuda" : "cpu";
+  }
+
+ private:
+  struct Batch {
+    const SharedPacking& a;
+    const SharedPacking& b;
+    Poses poses_a;
+    Poses poses_b;
+    double margin;
+    std::vector<std::size_t> shape;
+    std::size_t count = 1;
+
+    Batch(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b, double margin)
+        : a(a), b(b), poses_a(pose_a, "pose_a"), poses_b(pose_b, "pose_b"), margin(margin) {
+      shape = commonShape(poses_a.shape(), poses_b.shape(), "pose_a and pose_b");
+      poses_a.broadcast(shape);
+      poses_b.broadcast(shape);
+      for (const std::size_t n : shape) count *= n;
+    }
+  };
+
+  QueryResult run(const Batch& batch, const QueryOptions& options) {
+    const nb::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
+    const Packing& a = batch.a.packing();
+    const Packing& b = batch.b.packing();
+    PairQuery query;
+    query.a = batch.a.model.get();
+    query.b = batch.b.model.get();
+    query.prefix_a = batch.a.count;
+    query.prefix_b = batch.b.count;
+    query.margin = batch.margin;
+    queries_.assign(batch.count, query);
+    batch.poses_a.forEach(batch.count, [&](std::size_t i, const Placement& pose) {
+      queries_[i].placement_a = placed(a, pose);
+    });
+    batch.poses_b.forEach(batch.count, [&](std::size_t i, const Placement& pose) {
+      queries_[i].placement_b = placed(b, pose);
+    });
+    QueryResult result;
+    context_.run(queries_.data(), queries_.size(), options, result);
+    toFramesOfSolids(a, b, result.overlaps);
+    return result;
+  }
+
+  /// The query's points are relative to the packings' frames, which differ from those of the solids for
+  /// solids that are far from their own origin.
+  void toFramesOfSolids(const Packing& a, const Packing& b, std::vector<Overlap>& overlaps) const {
+    const auto turned = [](const Placement& place, const Vec3d& v) {
+      const Mat3d& r = place.rotation;
+      return Vec3d{r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
+                   r[6] * v.x + r[7] * v.y + r[8] * v.z};
+    };
+    if (a.origin != Vec3d{}) {
+      for (std::size_t i = 0; i < overlaps.size(); ++i) {
+        if (overlaps[i].volume > 0)
+          overlaps[i].centroid = overlaps[i].centroid + turned(queries_[i].placement_a, a.origin);
+      }
+    }
+    if (b.origin != Vec3d{}) {
+      for (std::size_t i = 0; i < overlaps.size(); ++i)
+        overlaps[i].torque =
+            overlaps[i].torque + cross(turned(queries_[i].placement_b, b.origin), overlaps[i].force);
+    }
+  }
+
+  std::mutex mutex_;
+  QueryContext context_;
+  std::vector<PairQuery> queries_;
+};
+
+nb::object overlapType() {
+  const auto at = [](const auto Overlap::*member) {
+    static const Overlap one;
+    return static_cast<std::size_t>(reinterpret_cast<const char*>(&(one.*member)) -
+                                    reinterpret_cast<const char*>(&one));
+  };
+  return structuredType(sizeof(Overlap), {{"volume", "<f8", at(&Overlap::volume)},
+                                          {"centroid", "(3,)<f8", at(&Overlap::centroid)},
+                                          {"force", "(3,)<f8", at(&Overlap::force)},
+                                          {"torque", "(3,)<f8", at(&Overlap::torque)},
+                                          {"area", "(3,)<f8", at(&Overlap::area)},
+                                          {"stiffness", "<f8", at(&Overlap::stiffness)},
+                                          {"energy", "<f8", at(&Overlap::energy)},
+                                          {"pair_count", "<u8", at(&Overlap::pair_count)}});
+}
+
+}  // namespace
+
+void bindOverlaps(nb::module_& module) {
+  nb::object overlap = overlapType();
+  nb::object pair = structuredType(
+      sizeof(SpherePair), {{"a", "<u4", offsetof(SpherePair, a)}, {"b", "<u4", offsetof(SpherePair, b)}});
+  module.attr("overlap_dtype") = overlap;
+  module.attr("pair_dtype") = pair;
+  types = {overlap.release().ptr(), pair.release().ptr()};
+
+  nb::class_<Query>(module, "Query",
+                    R"(Finds the volume that two packings share, and the force that drives them apart.
+
+backend: "auto" (the CPU or, if there is enough work and a device, CUDA; both give the same bits), "cpu", or "cuda",
+    which raises NoDeviceError where there is none.
+threads: of the CPU; 0 are all cores. Results do not depend on it.
+
+The GIL is free while a query runs. One object runs one query at a time: give each thread its own.)")
+      .def(nb::init<const std::string&, int>(), "backend"_a = "auto", "threads"_a = 0,
+           nb::sig("def __init__(self, backend: typing.Literal['auto', 'cpu', 'cuda'] = 'auto', threads: int "
+                   "= 0) -> None"))
+      .def(
+          "overlap", &Query::overlap, "a"_a, "b"_a, "pose_a"_a.none() = nb::none(),
+          "pose_b"_a.none() = nb::none(), nb::kw_only(), "want"_a = "wrench", "estimator"_a = "volume_true",
+          "margin"_a = 0.0,
+          nb::sig("def overlap(self, a: Packing, b: Packing, pose_a: numpy.typing.ArrayLike | "
+                  "tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None, pose_b: "
+                  "numpy.typing.ArrayLike | tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = "
+                  "None, *, want: typing.Literal['touch', 'volume', 'wrench'] = 'wrench', estimator: "
+                  "typing.Literal['volume_true', 'raw'] = 'volume_true', margin: float = 0.0) -> typing.Any"),
+          R"(Overlaps of two packings in one pose or in many.
+
+a, b: packings, or slices of them: packing[:256].
+pose_a, pose_b: where the solids are in the world. Each is None (at the origin), an array (..., 4, 4) of matrices that
+    act on columns, or a tuple of positions (..., 3) [m] and unit quaternions (..., 4), x y z w. The shapes before that
+    are broadcast together, as numpy does it.
+want: "touch" (pair_count is 0 or 1, all else is zero), "volume" (volume, centroid, pair_count) or "wrench" (all).
+    Less costs less.
+estimator: "volume_true" (radii whose volumes sum to the solid's) or "raw" (those of the spheres: volumes are low).
+margin: distance up to which spheres count as overlapping [m], at least 0. All spheres of A grow by it.
+
+Returns a structured array of the shape of the poses; for a single pose one element of it. Vectors have the axes of the
+world. The fields, all float64 but the last:
+
+volume      that they share [m^3]
+centroid    of that volume, relative to the translation of pose_a [m]; zero where nothing overlaps
+force       on B for unit stiffness [m^3]: minus the gradient of energy
+torque      of that force on B about the translation of pose_b [m^4]
+area        minus the gradient of volume by the position of B [m^2]: along the normal, as long as the contact is large
+stiffness   by which the force grows with depth [m^2]
+energy      potential of the force for unit stiffness [m^4]
+pair_count  overlapping pairs of spheres, uint64
+
+Raises TypeError and ValueError for arrays of the wrong type or shape; InvalidArgumentError and NotFiniteError, with
+the number of the query in C's order, for poses that are none; DeviceError.)")
+      .def("pairs", &Query::pairs, "a"_a, "b"_a, "pose_a"_a.none() = nb::none(),
+           "pose_b"_a.none() = nb::none(), nb::kw_only(), "estimator"_a = "volume_true", "margin"_a = 0.0,
+           nb::sig("def pairs(self, a: Packing, b: Packing, pose_a: numpy.typing.ArrayLike | "
+                   "tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None, pose_b: "
+                   "numpy.typing.ArrayLike | tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = "
+                   "None, *, estimator: typing.Literal['volume_true', 'raw'] = 'volume_true', margin: float "
+                   "= 0.0) -> tuple[numpy.typing.NDArray[typing.Any], numpy.typing.NDArray[numpy.int64]]"),
+           R"(The overlapping pairs of spheres. Arguments and errors are those of overlap().
+
+Returns (pairs, first): a structured array with the fields a and b, uint32, rows of a.spheres and b.spheres; and where
+the pairs of each query begin: those of query i are pairs[first[i]:first[i + 1]], sorted. Queries are in C's order.)")
+      .def_prop_ro("last_backend", &Query::lastBackend,
+                   nb::sig("def last_backend(self) -> typing.Literal['cpu', 'cuda']"),
+                   "Where the last query ran: cpu or cuda; cpu before the first.");
+  module.def("cuda_available", &cudaAvailable, "Whether CUDA is built in and a device answers.");
+}
+
+}  // namespace innersphere::python

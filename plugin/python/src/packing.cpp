@@ -1,0 +1,324 @@
+// Packings: made from meshes, read, written, and seen as numpy arrays.
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "bindings.hpp"
+#include "innersphere/check.hpp"
+#include "innersphere/mesh.hpp"
+#include "innersphere/pack_mesh.hpp"
+#include "innersphere/packing_file.hpp"
+
+namespace innersphere::python {
+namespace {
+
+using namespace nb::literals;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+SharedPacking share(Packing&& packing) {
+  const auto count = static_cast<std::uint32_t>(packing.spheres.size());
+  return {std::make_shared<CollisionModel>(std::make_shared<const Packing>(std::move(packing))), count};
+}
+
+/// Calls a Python function on progress, which may be None, and looks for Ctrl-C. What Python raises waits
+/// here until the packer has returned.
+class PythonProgress {
+ public:
+  explicit PythonProgress(nb::object callback) : callback_(std::move(callback)) {}
+
+  bool operator()(const char* stage, double fraction) {
+    const nb::gil_scoped_acquire acquire;
+    try {
+      if (PyErr_CheckSignals() != 0) throw nb::python_error();
+      return callback_.is_none() || callback_(stage, fraction).ptr() != Py_False;
+    } catch (...) {
+      raised_ = std::current_exception();
+      return false;
+    }
+  }
+
+  void rethrow() const {
+    if (raised_) std::rethrow_exception(raised_);
+  }
+
+ private:
+  nb::object callback_;
+  std::exception_ptr raised_;
+};
+
+using Vertices = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Faces = nb::ndarray<const std::int64_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+
+Mesh meshOf(const Vertices& vertices, const Faces& faces) {
+  const std::int64_t count = static_cast<std::int64_t>(vertices.shape(0));
+  for (std::size_t i = 0; i < 3 * faces.shape(0); ++i) {
+    const std::int64_t index = faces.data()[i];
+    if (index < 0 || index >= count) {
+      throw Error(ErrorCode::bad_argument, "face " + std::to_string(i / 3) + " names vertex " +
+                                               std::to_string(index) + "; there are " +
+                                               std::to_string(count));
+    }
+  }
+  return meshFrom(vertices.data(), vertices.shape(0), faces.data(), faces.shape(0));
+}
+
+Mesh readScaledMesh(const std::filesystem::path& path, double scale) {
+  const nb::gil_scoped_release release;
+  MeshOptions options;
+  options.scale = scale;
+  return readMesh(path.string(), options);
+}
+
+std::size_t natural(const char* name, std::int64_t value) {
+  if (value < 0)
+    throw Error(ErrorCode::bad_argument,
+                std::string(name) + " is " + std::to_string(value) + "; it must not be negative");
+  return static_cast<std::size_t>(value);
+}
+
+SharedPacking packWith(const Mesh& mesh, const std::string& name, std::int64_t spheres, double min_radius,
+                       double density, double gap, double delta, bool overlap_errors, int threads,
+                       bool repair, const std::filesystem::path& cache, nb::object progress) {
+  PackMeshOptions options;
+  options.pack.spheres = natural("spheres", spheres);
+  options.pack.min_radius = min_radius;
+  options.pack.density = density;
+  options.pack.gap = gap;
+  options.pack.delta = delta;
+  options.pack.overlap_errors = overlap_errors;
+  options.pack.threads = threads;
+  options.repair = repair;
+  options.cache_folder = cache.string();
+  std::vector<std::string> notices;
+  options.notice = [&](const std::string& message) { notices.push_back(message); };
+  PythonProgress python(std::move(progress));
+  SharedPacking result;
+  try {
+    const nb::gil_scoped_release release;
+    result = share(packMesh(mesh, name, options, std::ref(python)));
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::cancelled) python.rethrow();
+    throw;
+  }
+  for (const std::string& notice : notices) {
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, notice.c_str(), 1) != 0) throw nb::python_error();
+  }
+  return result;
+}
+
+SharedPacking readShared(const std::filesystem::path& path) {
+  const nb::gil_scoped_release release;
+  return share(readPacking(path.string()));
+}
+
+void save(const SharedPacking& self, const std::filesystem::path& path, bool overwrite) {
+  if (!self.whole()) {
+    throw Error(
+        ErrorCode::bad_argument,
+        "a slice of a packing cannot be saved; save the whole packing, and slice what read() returns");
+  }
+  const nb::gil_scoped_release release;
+  writePacking(self.packing(), path.string(), overwrite);
+}
+
+SharedPacking slice(const SharedPacking& self, nb::handle index) {
+  if (!PySlice_Check(index.ptr()))
+    throw nb::type_error("packings take slices [:n] only; a single sphere is a row of .spheres");
+  Py_ssize_t start = 0, stop = 0, step = 0;
+  if (PySlice_Unpack(index.ptr(), &start, &stop, &step) != 0) throw nb::python_error();
+  const Py_ssize_t count = PySlice_AdjustIndices(self.count, &start, &stop, step);
+  if (start != 0 || step != 1 || count == 0)
+    throw nb::value_error("a slice of a packing is its largest spheres: [:n], with at least one of them");
+  return {self.model, static_cast<std::uint32_t>(count)};
+}
+
+/// Rows of `width` numbers that belong to `owner`, read-only.
+template <typename T>
+nb::object rows(const T* first, std::size_t count, std::size_t width, nb::handle owner) {
+  return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<2>>(first, {count, width}, owner));
+}
+
+/// Numbers that Python may change, in an array of its own.
+template <typename T>
+nb::object copyOf(const T& numbers, std::initializer_list<std::size_t> shape) {
+  double* data = new double[numbers.end() - numbers.begin()];
+  std::copy(numbers.begin(), numbers.end(), data);
+  const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, double>(data, shape, owner));
+}
+
+double densityOf(const SharedPacking& self) {
+  if (self.whole()) return self.packing().quality.density;
+  double cubes = 0;
+  for (std::uint32_t i = 0; i < self.count; ++i)
+    cubes += std::pow(double(self.packing().spheres[i].radius), 3);
+  return cubes * 4 / 3 * std::acos(-1.0) / self.packing().solid.volume;
+}
+
+nb::dict qualityOf(const SharedPacking& self) {
+  const Quality& quality = self.packing().quality;
+  const Certificate& certificate = self.packing().certificate;
+  const auto of_whole = [&](double value) { return self.whole() ? value : kUnknown; };
+  nb::dict result;
+  result["density"] = densityOf(self);
+  result["gap_mean"] = of_whole(quality.gap_mean);
+  result["gap_p95"] = of_whole(quality.gap_p95);
+  result["gap_max"] = of_whole(quality.gap_max);
+  result["largest_missing_radius"] =
+      of_whole(certificate.delta > 0 ? certificate.largest_missing_radius : kUnknown);
+  return result;
+}
+
+nb::dict provenanceOf(const SharedPacking& self) {
+  const Provenance& from = self.packing().provenance;
+  nb::dict result;
+  result["source"] = from.source;
+  result["source_hash"] = from.source_hash;
+  result["options"] = from.options;
+  result["version"] = from.version;
+  return result;
+}
+
+std::string describe(const SharedPacking& self) {
+  char text[120];
+  std::snprintf(text, sizeof text, "<innersphere.Packing: %u spheres, %.3g of %.3g m^3>", self.count,
+                densityOf(self), self.packing().solid.volume);
+  return text;
+}
+
+nb::tuple state(const SharedPacking& self) {
+  std::string bytes;
+  {
+    const nb::gil_scoped_release release;
+    bytes = encodePacking(self.packing());
+  }
+  return nb::make_tuple(nb::bytes(bytes.data(), bytes.size()), self.count);
+}
+
+void restore(SharedPacking& self, const std::pair<nb::bytes, std::uint32_t>& state) {
+  SharedPacking read = share(decodePacking(std::string(state.first.c_str(), state.first.size())));
+  if (state.second == 0 || state.second > read.count)
+    throw Error(ErrorCode::bad_format, "the pickle of a packing names more spheres than it holds");
+  read.count = state.second;
+  new (&self) SharedPacking(std::move(read));
+}
+
+}  // namespace
+
+void bindPacking(nb::module_& module) {
+  nb::class_<SharedPacking>(module, "Packing", R"(Spheres inside a solid that do not overlap, largest first.
+
+Made by pack() or read(). It never changes, and can be shared by threads and pickled. All places are in the
+packing's own frame: x_solid = origin + x. Lengths are in metres.
+
+``packing[:n]`` are the n largest spheres: a coarser packing of the same solid. It shares memory with the whole.)")
+      .def_prop_ro(
+          "spheres",
+          [](nb::handle_t<SharedPacking> self) {
+            const auto& p = nb::cast<const SharedPacking&>(self);
+            return rows(&p.packing().spheres[0].x, p.count, 4, self);
+          },
+          nb::sig("def spheres(self) -> numpy.typing.NDArray[numpy.float32]"),
+          "Centre x y z and radius of each sphere [m]: (n, 4) float32, read-only, no copy.")
+      .def_prop_ro(
+          "origin", [](const SharedPacking& p) { return copyOf(p.packing().origin, {3}); },
+          nb::sig("def origin(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Where the packing's frame is in that of the solid [m]: (3,) float64. Zero unless the solid is "
+          "farther than eight of its sizes from its own origin. Poses are always those of the solid.")
+      .def_prop_ro(
+          "vertices",
+          [](nb::handle_t<SharedPacking> self) {
+            const Surface& surface = nb::cast<const SharedPacking&>(self).packing().surface;
+            return rows(reinterpret_cast<const float*>(surface.vertices.data()), surface.vertices.size(), 3,
+                        self);
+          },
+          nb::sig("def vertices(self) -> numpy.typing.NDArray[numpy.float32]"),
+          "Vertices of the solid's surface [m]: (n, 3) float32, read-only, no copy. Empty if the surface is "
+          "unknown.")
+      .def_prop_ro(
+          "faces",
+          [](nb::handle_t<SharedPacking> self) {
+            const Surface& surface = nb::cast<const SharedPacking&>(self).packing().surface;
+            return rows(reinterpret_cast<const std::uint32_t*>(surface.triangles.data()),
+                        surface.triangles.size(), 3, self);
+          },
+          nb::sig("def faces(self) -> numpy.typing.NDArray[numpy.uint32]"),
+          "Triangles of the surface, counter-clockwise seen from outside, as rows of vertices: (m, 3) "
+          "uint32, read-only, no copy.")
+      .def_prop_ro(
+          "volume", [](const SharedPacking& p) { return p.packing().solid.volume; },
+          "Volume of the solid, not of the spheres [m^3].")
+      .def_prop_ro(
+          "center_of_mass",
+          [](const SharedPacking& p) { return copyOf(p.packing().solid.centre_of_mass, {3}); },
+          nb::sig("def center_of_mass(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Centre of mass of the homogeneous solid, in the packing's frame [m]: (3,) float64.")
+      .def_prop_ro(
+          "inertia",
+          [](const SharedPacking& p) {
+            return copyOf(p.packing().solid.inertia, {3, 3});
+          },
+          nb::sig("def inertia(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Inertia about the centre of mass for unit density, along the axes of the solid [m^5]: (3, 3) "
+          "float64. Times the density [kg/m^3] it is in kg m^2.")
+      .def_prop_ro("quality", &qualityOf, nb::sig("def quality(self) -> dict[str, float]"),
+                   R"(How well the spheres fill the solid. nan where that is unknown, as gaps of a slice are.
+
+density: volume of the spheres over that of the solid, 0 to 1.
+gap_mean, gap_p95, gap_max: distance from the surface to the nearest sphere [m]: mean, 95th percentile, largest.
+largest_missing_radius: no larger sphere fits between those that are there [m].)")
+      .def_prop_ro(
+          "warnings", [](const SharedPacking& p) { return p.packing().warnings; },
+          "What to know of the packing, a sentence each: what was mended in the mesh, parts without spheres.")
+      .def_prop_ro("provenance", &provenanceOf, nb::sig("def provenance(self) -> dict[str, str]"),
+                   "Where the packing comes from: source, source_hash, options, version.")
+      .def("save", &save, "path"_a, "overwrite"_a = false,
+           nb::sig("def save(self, path: str | os.PathLike[str], overwrite: bool = False) -> None"),
+           R"(Writes the packing to a file: .cbor (small), .json (readable), or .ply or .xyzr (spheres only).
+
+The file appears under its name only when it is complete. Raises FileExistsError without ``overwrite``,
+WriteError, and InvalidArgumentError for another ending or a slice.)")
+      .def("__len__", [](const SharedPacking& p) { return p.count; })
+      .def("__getitem__", &slice, nb::sig("def __getitem__(self, index: slice) -> Packing"),
+           "The n largest spheres, as a packing: packing[:n]. Raises ValueError for any other slice.")
+      .def("__repr__", &describe)
+      .def(
+          "__copy__", [](nb::object self) { return self; }, nb::sig("def __copy__(self) -> Packing"))
+      .def(
+          "__deepcopy__", [](nb::object self, nb::handle) { return self; }, "memo"_a,
+          nb::sig("def __deepcopy__(self, memo: dict) -> Packing"))
+      .def("__getstate__", &state, nb::sig("def __getstate__(self) -> tuple[bytes, int]"))
+      .def("__setstate__", &restore, nb::sig("def __setstate__(self, state: tuple[bytes, int]) -> None"));
+
+  nb::class_<Mesh>(module, "Mesh", "Triangles that pack() takes.");
+  module.def("read_mesh", &readScaledMesh, "path"_a, "scale"_a);
+  module.def("mesh_of", &meshOf, "vertices"_a, "faces"_a);
+  module.def("pack", &packWith, "mesh"_a, "name"_a, "spheres"_a, "min_radius"_a, "density"_a, "gap"_a,
+             "delta"_a, "overlap_errors"_a, "threads"_a, "repair"_a, "cache"_a, "progress"_a.none());
+  module.def("read", &readShared, "path"_a);
+  const PackOptions defaults;
+  module.attr("pack_defaults") = [&] {
+    nb::dict all;
+    all["spheres"] = defaults.spheres;
+    all["min_radius"] = defaults.min_radius;
+    all["density"] = defaults.density;
+    all["gap"] = defaults.gap;
+    all["delta"] = defaults.delta;
+    all["overlap_errors"] = defaults.overlap_errors;
+    all["threads"] = defaults.threads;
+    all["repair"] = MeshOptions().repair;
+    all["scale"] = MeshOptions().scale;
+    return all;
+  }();
+}
+
+}  // namespace innersphere::python

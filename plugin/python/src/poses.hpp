@@ -1,0 +1,65 @@
+// Poses as Python has them: arrays of matrices, or of positions and quaternions, of any strides.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bindings.hpp"
+#include "innersphere/placement.hpp"
+
+namespace innersphere::python {
+
+/// Holds the poses of one body, without a copy where the array is of double precision.
+class Poses {
+ public:
+  /// Takes None (the identity), an array (..., 4, 4), or a tuple of positions (..., 3) and quaternions
+  /// (..., 4), x y z w. `name` is that of the argument. Throws Python's TypeError and ValueError. Needs the
+  /// GIL, in the destructor, too.
+  Poses(nb::handle poses, const std::string& name);
+
+  /// Returns the shape without the dimensions of a single pose.
+  const std::vector<std::size_t>& shape() const { return shape_; }
+
+  /// Makes all() give a pose for each element of `shape`, to which its own shape can be broadcast.
+  void broadcast(const std::vector<std::size_t>& shape);
+
+  /// Calls `use(i, placement)` for each element of the shape, in C's order. Does not need the GIL. Throws
+  /// Error bad_argument, which names the element, for a matrix whose last row is not 0 0 0 1.
+  template <typename Use>
+  void forEach(std::size_t count, const Use& use) const {
+    std::vector<std::size_t> at(shape_.size(), 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      use(i, placement(i, at));
+      for (std::size_t k = at.size(); k-- > 0;) {
+        if (++at[k] < shape_[k]) break;
+        at[k] = 0;
+      }
+    }
+  }
+
+ private:
+  using Array = nb::ndarray<const double, nb::device::cpu>;
+
+  struct Operand {
+    Array array;
+    std::vector<std::size_t> shape;     ///< without the last `inner` dimensions
+    std::vector<std::int64_t> strides;  ///< of these, in elements
+    std::vector<std::int64_t> inner;    ///< the strides of a single pose
+    const double* at(const std::vector<std::size_t>& index) const;
+    void broadcast(const std::vector<std::size_t>& to);
+  };
+
+  Operand operand(nb::handle array, const std::vector<std::size_t>& inner_shape, const std::string& name);
+  Placement placement(std::size_t number, const std::vector<std::size_t>& at) const;
+
+  std::string name_;
+  std::vector<Operand> operands_;  ///< none, a matrix, or a position and a quaternion
+  std::vector<std::size_t> shape_;
+};
+
+/// Returns the shape that both can be broadcast to, as numpy does it. Throws Python's ValueError.
+std::vector<std::size_t> commonShape(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b,
+                                     const std::string& what);
+
+}  // namespace innersphere::python
