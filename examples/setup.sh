@@ -55,6 +55,22 @@ need_packages() {
 build_packages="g++ cmake ninja-build pkg-config libbullet-dev libtbb-dev libeigen3-dev libassimp-dev libembree-dev \
 libcli11-dev nlohmann-json3-dev libpng-dev libjs-three"
 
+# shellcheck disable=SC2034
+python_packages="python3-dev python3-venv"
+
+# python_environment FOLDER NAME...: makes a virtual environment with these packages from PyPI, which Debian has too old or not.
+python_environment() {
+  local folder=$1
+  shift
+  if [ -x "$folder/bin/python" ] && "$folder/bin/python" -c 'import sys, importlib.metadata as m; [m.version(name) for name in sys.argv[1:]]' \
+    "$@" 2>/dev/null; then
+    return
+  fi
+  say "Installing Python packages into $folder: $*"
+  attend /usr/bin/python3 -m venv "$folder" || exit 1
+  attend "$folder/bin/pip" install --quiet --disable-pip-version-check "$@" || exit 1
+}
+
 # cuda_architectures: those of the cards that are here; fails if there is none.
 cuda_architectures() {
   local found

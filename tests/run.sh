@@ -16,8 +16,10 @@ if [ "${1:-}" = --gpu ]; then
   export INNERSPHERE_REQUIRE_GPU=1
 fi
 # shellcheck disable=SC2086  # a list of names
-need_packages $build_packages libgtest-dev librapidcheck-dev libbullet-extras-dev
+need_packages $build_packages $python_packages libgtest-dev librapidcheck-dev libbullet-extras-dev
+python_environment build/python-env nanobind numpy pytest typing_extensions
 build release all -DINNERSPHERE_TESTS=ON "-DINNERSPHERE_PRECISIONS=float32;float64" -DINNERSPHERE_CUDA=$cuda \
+  -DINNERSPHERE_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/python-env/bin/python" \
   "-DCMAKE_CUDA_ARCHITECTURES=$(cuda_architectures || echo 75)"
 
 log=$(mktemp)

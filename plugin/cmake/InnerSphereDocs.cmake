@@ -27,5 +27,5 @@ set(DOXYGEN_QUIET YES)
 set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
 file(GLOB results RELATIVE "${PROJECT_SOURCE_DIR}" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/benchmarks/results/*.md")
 doxygen_add_docs(docs packing/include gpu/include plugin/include
-  README.md plugin/README.md plugin/src/README.md examples/README.md tests/README.md CONTRIBUTING.md CHANGELOG.md ${results}
+  README.md plugin/README.md plugin/python/README.md plugin/src/README.md examples/README.md tests/README.md CONTRIBUTING.md CHANGELOG.md ${results}
   WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}" COMMENT "Writing build/docs/html/index.html")

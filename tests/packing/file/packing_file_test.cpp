@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -107,6 +109,25 @@ TEST(FilePacking, JsonAndCborGiveTheSameBitsBack) {
     expectSame(readPacking(scratch.path(name)), packing);
   }
   EXPECT_EQ(scratch.files(), 3u);
+}
+
+TEST(FilePacking, BytesInMemoryAreThoseOfAFile) {
+  const Packing packing = somePacking(20);
+  const std::string bytes = encodePacking(packing);
+  expectSame(decodePacking(bytes), packing);
+  const std::string path = testing::TempDir() + "/encoded.cbor";
+  writePacking(packing, path, true);
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), bytes);
+  for (const std::string& damaged : {std::string(), bytes.substr(0, bytes.size() / 2), "x" + bytes}) {
+    try {
+      decodePacking(damaged);
+      ADD_FAILURE() << "damaged bytes were accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_format) << error.what();
+    }
+  }
+  EXPECT_THROW(encodePacking(Packing()), Error);
 }
 
 TEST(FilePacking, EmptySurfaceAndPrefixesAreFine) {

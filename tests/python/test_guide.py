@@ -1,0 +1,40 @@
+"""Runs the code that users read, and looks at what it computed."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import BOX_VERTICES, write_obj
+
+SOURCE = Path(__file__).resolve().parents[2]
+
+
+def run(document, folder, monkeypatch):
+    """Runs all blocks of Python of a document, one after the other, beside a mesh of 1 x 1 x 1 m."""
+    write_obj(folder / "your.obj", BOX_VERTICES / [1, 2, 3])
+    monkeypatch.chdir(folder)
+    blocks = re.findall(r"```python\n(.*?)```", (SOURCE / document).read_text(), re.DOTALL)
+    assert blocks
+    names: dict = {}
+    for block in blocks:
+        exec(compile(block, document, "exec"), names)
+    return names
+
+
+def test_the_guide(tmp_path, monkeypatch):
+    names = run("plugin/python/README.md", tmp_path, monkeypatch)
+    assert len(names["packing"]) == len(names["spheres"]) == 1000 and len(names["coarse"]) == 256
+    assert names["mass"] == pytest.approx(7800)
+    np.testing.assert_allclose(names["inertia"], 7800 / 6 * np.eye(3), atol=1e-6)
+    assert names["shared"]["volume"] == pytest.approx(0.5, rel=0.05)
+    # Volume-true spheres are right in the mean: half of the way half is shared.
+    assert names["volume"].mean() == pytest.approx(0.5, rel=0.1)
+    assert names["force"].shape == (1000, 3)
+    assert len(names["of_second_pose"]) > 0
+    assert names["message"].startswith("query 17: the placement of B")
+
+
+def test_the_readme(tmp_path, monkeypatch):
+    names = run("README.md", tmp_path, monkeypatch)
+    np.testing.assert_allclose(names["shared"]["volume"], [0.9, 0.5, 0.1], rtol=0.2)
