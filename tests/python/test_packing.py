@@ -255,7 +255,15 @@ def test_progress_is_told_and_can_cancel(capsys):
     assert shown.err.endswith("\r")
 
 
-def test_ctrl_c_ends_packing():
+@pytest.fixture
+def ctrl_c():
+    """Ctrl-C as a terminal has it: a shell lets programs in the background ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_ctrl_c_ends_packing(ctrl_c):
     def interrupt(stage, fraction):
         os.kill(os.getpid(), signal.SIGINT)
 
