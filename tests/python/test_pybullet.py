@@ -1,6 +1,7 @@
 """Packings inside a running PyBullet: what physics says of bodies that hang, lie and roll, and what errors leave behind."""
 
 import math
+import os
 
 import numpy as np
 import pytest
@@ -231,6 +232,43 @@ def test_detaching_gives_shapes_back(client, ring):
     assert height(client, body) == pytest.approx(TUBE, abs=5e-4)
 
 
+def test_two_attachments_of_a_client_are_one(client, ring):
+    first, second = isp.attach(client), isp.attach(client, response="rigid")
+    body = two_links(first, ring)
+    run(client, 1)
+    assert height(client, body) == pytest.approx(-PITCH, abs=5e-3)  # rigid contacts give more
+    assert len(first.overlaps()) == len(second.overlaps()) == 1
+    second.detach()
+    with pytest.raises(isp.PyBulletError, match="detached, in client"):
+        first.overlaps()
+
+
+def test_a_client_that_was_connected_anew_is_another(client, ring):
+    sim = isp.attach(client)
+    two_links(sim, ring)
+    p.disconnect(client)
+    assert p.connect(p.DIRECT) == client
+    with pytest.raises(isp.PyBulletError, match="connected anew"):
+        sim.overlaps()
+    sim.detach()  # does nothing
+    p.setGravity(0, 0, -9.81, physicsClientId=client)
+    body = two_links(isp.attach(client), ring)
+    run(client, 1)
+    assert height(client, body) == pytest.approx(-PITCH, abs=1e-3)
+
+
+def test_a_server_in_a_thread(ring):
+    client = p.connect(p.SHARED_MEMORY_SERVER, os.getpid())  # as that of p.GUI, without a window
+    try:
+        sim = isp.attach(client)
+        p.setGravity(0, 0, -9.81, physicsClientId=client)
+        body = two_links(sim, ring)
+        run(client, 1)
+        assert height(client, body) == pytest.approx(-PITCH, abs=1e-3)
+    finally:
+        p.disconnect(client)
+
+
 def test_errors_say_what_and_where(client, ring):
     sim = isp.attach(client)
     body = sim.create_body(ring)
@@ -253,6 +291,7 @@ def test_errors_say_what_and_where(client, ring):
         isp.attach(client, response="soft")
     with pytest.raises(innersphere.InvalidArgumentError, match="stiffness"):
         isp.attach(client, stiffness=-1)
+    assert len(sim.overlaps()) == 0  # still attached
     with pytest.raises(isp.PyBulletError, match="client 99 of PyBullet is not connected"):
         isp.attach(99)
     with pytest.raises(TypeError, match="client is 'me'"):

@@ -92,7 +92,7 @@ def attach(
     two_friction_directions: sets SOLVER_USE_2_FRICTION_DIRECTIONS for the whole world. Without it grippers drop what they
         hold. Unlike PyBullet's, this is the default.
 
-    The options hold after resetSimulation(), too. Attaching again makes a second object; the options of the last one hold.
+    The options hold after resetSimulation(), too. Attaching again replaces them; detach() of either object then ends both.
 
     Raises PyBulletError, which names the versions, where this PyBullet is not understood: its API version, classes or values
     differ from what is known. TypeError and InvalidArgumentError for options out of range; NoDeviceError.
@@ -106,12 +106,8 @@ def attach(
     if plugin < 0:
         raise PyBulletError(f"PyBullet did not load innersphere's plug-in: {_versions()}")
     sim = Simulation(client, plugin)
-    try:
-        sim._check()
-        sim._run(_core.pybullet.set_options, response, backend, accuracy, stiffness, damping, two_friction_directions)
-    except BaseException:
-        sim.detach()
-        raise
+    sim._check()
+    sim._run(_core.pybullet.set_options, response, backend, accuracy, stiffness, damping, two_friction_directions)
     return sim
 
 
@@ -138,9 +134,8 @@ class Simulation:
         if self._plugin is None:
             raise PyBulletError(f"innersphere is detached from client {self.client}")
         job = prepare(*arguments)
-        p.executePluginCommand(self._plugin, "", [job.number, os.getpid()], [], physicsClientId=self.client)
         try:
-            found = job.result()
+            found = self._result(job)
         except RuntimeError as error:  # by Plugin::world()
             if isinstance(error, Error):
                 raise
@@ -155,6 +150,11 @@ class Simulation:
                 f"anew, or has unloaded the plug-in"
             )
         return found
+
+    def _result(self, job: Any) -> Any:
+        """Returns what came of a job, or None if the server did not run it."""
+        p.executePluginCommand(self._plugin, "", [job.number, os.getpid()], [], physicsClientId=self.client)
+        return job.result()
 
     def _check(self) -> None:
         """Compares what the world holds with what PyBullet says. Raises PyBulletError where they differ."""
@@ -338,7 +338,8 @@ class Simulation:
         """
         if self._plugin is not None and p.isConnected(self.client):
             # Not by p.unloadPlugin(): PyBullet crashes when it loads the same plug-in again.
-            self._run(_core.pybullet.release)
+            # A server that does not answer has no bodies of ours.
+            self._result(_core.pybullet.release())
         self._plugin = None
 
     def __enter__(self) -> Simulation:

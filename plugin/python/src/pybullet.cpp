@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include "bindings.hpp"
 #include "innersphere/packing_shape.hpp"
@@ -95,12 +96,16 @@ struct Seen {
 };
 
 Seen look(Plugin& plugin) {
-  btMultiBodyDynamicsWorld& world = plugin.world();
+  btMultiBodyDynamicsWorld& world = plugin.find();
   Seen seen{world.getSolverInfo().m_numIterations, from(world.getGravity()), {}};
   for (int i = 0; i < world.getNumCollisionObjects(); ++i) {
-    const btCollisionObject& object = *world.getCollisionObjectArray()[i];
-    const auto [body, link] = pybullet::numbersOf(object);
-    if (link < 0) seen.bases.emplace_back(body, from(object.getWorldTransform()));
+    const btCollisionObject* object = world.getCollisionObjectArray()[i];
+    const auto [body, link] = pybullet::numbersOf(*object);
+    if (const auto* collider = btMultiBodyLinkCollider::upcast(object)) {
+      if (link < 0) seen.bases.emplace_back(body, from(collider->m_multiBody->getBaseWorldTransform()));
+    } else if (const btRigidBody* rigid = btRigidBody::upcast(object)) {
+      seen.bases.emplace_back(body, from(rigid->getWorldTransform()));
+    }
   }
   return seen;
 }

@@ -51,6 +51,7 @@ void withdraw(int number) {
 
 // At the end of a connection the world has gone before; the registration is then dropped without touching it.
 void Plugin::release() {
+  attached_ = false;
   std::string why;
   btMultiBodyDynamicsWorld* world = findWorld(command_processor_, why);
   if (world == nullptr || !PackingCollisionAlgorithm::isRegistered(world->getDispatcher())) {
@@ -72,27 +73,40 @@ void Plugin::release() {
 }
 
 void Plugin::setOptions(const ContactOptions& options, bool two_friction_directions) {
+  registerWith(find(), options);  // throws before anything is changed
   options_ = options;
   two_friction_directions_ = two_friction_directions;
-  btMultiBodyDynamicsWorld& found = world();
-  PackingCollisionAlgorithm::registerAlgorithm(found, options_);
-  int& mode = found.getSolverInfo().m_solverMode;
+  attached_ = true;
+  int& mode = world().getSolverInfo().m_solverMode;
   mode = two_friction_directions ? mode | SOLVER_USE_2_FRICTION_DIRECTIONS
                                  : mode & ~SOLVER_USE_2_FRICTION_DIRECTIONS;
 }
 
-btMultiBodyDynamicsWorld& Plugin::world() {
+void Plugin::registerWith(btMultiBodyDynamicsWorld& world, const ContactOptions& options) {
+  // Where it is not registered, the dispatcher of before was that of a world that has been reset.
+  if (dispatcher_ != nullptr && !PackingCollisionAlgorithm::isRegistered(world.getDispatcher())) {
+    PackingCollisionAlgorithm::forget(dispatcher_);
+    dispatcher_ = nullptr;
+  }
+  PackingCollisionAlgorithm::registerAlgorithm(world, options);
+  dispatcher_ = world.getDispatcher();
+}
+
+btMultiBodyDynamicsWorld& Plugin::find() const {
   std::string why;
   btMultiBodyDynamicsWorld* found = findWorld(command_processor_, why);
   if (found == nullptr) throw std::runtime_error(why);
-  if (!PackingCollisionAlgorithm::isRegistered(found->getDispatcher())) {  // the first one, or one after a reset
-    if (dispatcher_ != nullptr) PackingCollisionAlgorithm::forget(dispatcher_);
-    dispatcher_ = nullptr;
-    PackingCollisionAlgorithm::registerAlgorithm(*found, options_);
-    dispatcher_ = found->getDispatcher();
-    if (two_friction_directions_) found->getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
-  }
   return *found;
+}
+
+btMultiBodyDynamicsWorld& Plugin::world() {
+  if (!attached_) throw std::invalid_argument("innersphere is detached");
+  btMultiBodyDynamicsWorld& found = find();
+  if (!PackingCollisionAlgorithm::isRegistered(found.getDispatcher())) {
+    registerWith(found, options_);
+    if (two_friction_directions_) found.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  }
+  return found;
 }
 
 btCollisionObject& Plugin::collider(int body, int link) {

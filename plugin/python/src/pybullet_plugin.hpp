@@ -30,20 +30,24 @@ class Plugin {
   /// Gives bodies their shapes back, and the dispatcher its own functions, if the world is still there.
   void release();
 
-  /// Sets options, for this world and those that follow it after a reset.
+  /// Returns the world as it is. Throws std::runtime_error if it is not understood.
+  btMultiBodyDynamicsWorld& find() const;
+  /// Attaches: sets options, for this world and those that follow it after a reset.
   void setOptions(const ContactOptions& options, bool two_friction_directions);
-  /// Returns the world, in which packings collide from then on. Throws std::runtime_error if it is not understood.
+  /// Returns the world, in which packings collide. Throws std::invalid_argument if it was released, and as find() does.
   btMultiBodyDynamicsWorld& world();
   /// Returns the collision object of a link. Throws std::invalid_argument if there is none.
   btCollisionObject& collider(int body, int link);
   void give(int body, int link, std::unique_ptr<PackingShape> shape);
 
  private:
+  void registerWith(btMultiBodyDynamicsWorld& world, const ContactOptions& options);
   void dropUnused(btMultiBodyDynamicsWorld& world);
 
   void* command_processor_;
   ContactOptions options_;
   bool two_friction_directions_ = true;
+  bool attached_ = false;
   const btDispatcher* dispatcher_ = nullptr;  ///< registered last; it may be gone
   std::vector<Given> given_;
 };
