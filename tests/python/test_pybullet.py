@@ -1,4 +1,4 @@
-"""Packings inside a running PyBullet: what physics says of bodies that hang, lie and roll, and what errors leave behind."""
+"""Packings inside a running PyBullet: what physics says of bodies that hang and lie, and what errors leave behind."""
 
 import math
 import os
@@ -31,7 +31,10 @@ def torus_mesh(around=64, across=24):
     def at(i, j):
         return (i % around) * across + j % across
 
-    faces = [np.stack([at(u, v), at(u + 1, v), at(u + 1, v + 1)], -1), np.stack([at(u, v), at(u + 1, v + 1), at(u, v + 1)], -1)]
+    faces = [
+        np.stack([at(u, v), at(u + 1, v), at(u + 1, v + 1)], -1),
+        np.stack([at(u, v), at(u + 1, v + 1), at(u, v + 1)], -1),
+    ]
     return vertices, np.concatenate(faces).reshape(-1, 3)
 
 
@@ -68,7 +71,9 @@ def two_links(sim, ring):
 def test_a_chain_of_six_hangs_taut(client, ring, maximal):
     sim = isp.attach(client)
     links = [
-        sim.create_body(ring, MASS * (i > 0), [0, 0, -0.156 * i], ACROSS if i % 2 else UPRIGHT, maximal_coordinates=maximal)
+        sim.create_body(
+            ring, MASS * (i > 0), [0, 0, -0.156 * i], ACROSS if i % 2 else UPRIGHT, maximal_coordinates=maximal
+        )
         for i in range(6)
     ]
     run(client, 10)
@@ -133,9 +138,11 @@ def test_mass_properties_and_places_are_those_of_the_mesh(client):
 
 
 URDF = """<robot name="part"><link name="base">
-<inertial><origin xyz="0.01 0 0.02"/><mass value="0.2"/><inertia ixx="6e-4" ixy="0" ixz="0" iyy="6e-4" iyz="0" izz="1e-3"/></inertial>
+<inertial><origin xyz="0.01 0 0.02"/><mass value="0.2"/>
+<inertia ixx="6e-4" ixy="0" ixz="0" iyy="6e-4" iyz="0" izz="1e-3"/></inertial>
 <collision><origin xyz="0.05 0 0" rpy="0 0 0"/><geometry><mesh filename="ring.obj"/></geometry></collision></link>
-<link name="arm"><inertial><mass value="0.1"/><inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial>
+<link name="arm"><inertial><mass value="0.1"/>
+<inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial>
 <collision><geometry><box size="0.01 0.01 0.01"/></geometry></collision></link>
 <joint name="hinge" type="fixed"><parent link="base"/><child link="arm"/><origin xyz="0.05 0 0.3"/></joint></robot>"""
 

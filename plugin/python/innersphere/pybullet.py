@@ -8,8 +8,8 @@
     ring = sim.create_body(innersphere.read("ring.cbor"), mass=0.2, position=[0, 0, 1])
     p.stepSimulation()
 
-Needs PyBullet (pip install pybullet) and an innersphere that was built where Bullet is (libbullet-dev). Everything else of
-PyBullet is used as before: only the contacts of bodies with a packing are innersphere's.
+Needs PyBullet (pip install pybullet) and an innersphere that was built where Bullet is (libbullet-dev). Everything else
+of PyBullet is used as before: only the contacts of bodies with a packing are innersphere's.
 """
 
 from __future__ import annotations
@@ -66,7 +66,9 @@ def _pose(position: Any, orientation: Any, what: str) -> tuple[tuple[float, ...]
         parts.append(array)
     length = float(np.linalg.norm(parts[1]))
     if abs(length - 1) > 1e-3:
-        raise ValueError(f"orientation of {what} has the length {length:g}; it must be a quaternion x y z w of length 1")
+        raise ValueError(
+            f"orientation of {what} has the length {length:g}; it must be a quaternion x y z w of length 1"
+        )
     return tuple(parts[0].tolist()), tuple((parts[1] / length).tolist())
 
 
@@ -89,13 +91,14 @@ def attach(
     accuracy: largest gap to the surfaces that a pair may leave, by using fewer spheres [m]; 0 uses all.
     stiffness: pressure that a metre of overlap causes [N/m^3]; 0 is as stiff as the time step resolves.
     damping: fraction of critical damping; 0 is bouncy.
-    two_friction_directions: sets SOLVER_USE_2_FRICTION_DIRECTIONS for the whole world. Without it grippers drop what they
-        hold. Unlike PyBullet's, this is the default.
+    two_friction_directions: sets SOLVER_USE_2_FRICTION_DIRECTIONS for the whole world. Without it grippers drop what
+        they hold. Unlike PyBullet's, this is the default.
 
-    The options hold after resetSimulation(), too. Attaching again replaces them; detach() of either object then ends both.
+    The options hold after resetSimulation(), too. Attaching again replaces them; detach() of either
+    object then ends both.
 
-    Raises PyBulletError, which names the versions, where this PyBullet is not understood: its API version, classes or values
-    differ from what is known. TypeError and InvalidArgumentError for options out of range; NoDeviceError.
+    Raises PyBulletError, which names the versions, where this PyBullet is not understood: its API version, classes
+    or values differ from what is known. TypeError and InvalidArgumentError for options out of range; NoDeviceError.
     """
     if not hasattr(_core, "pybullet"):
         raise PyBulletError("this innersphere was built without Bullet; install libbullet-dev and build it again")
@@ -146,8 +149,8 @@ class Simulation:
             raise PyBulletError(f"{error}, in client {self.client}") from None
         if found is None:
             raise PyBulletError(
-                f"client {self.client} did not run innersphere's command: its server is in another process, was connected "
-                f"anew, or has unloaded the plug-in"
+                f"client {self.client} did not run innersphere's command: its server is in another process, was "
+                f"connected anew, or has unloaded the plug-in"
             )
         return found
 
@@ -180,7 +183,10 @@ class Simulation:
             if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
                 raise TypeError(f"{name} is {value!r}; it must be an integer")
         _check_connected(self.client)
-        bodies = [p.getBodyUniqueId(i, physicsClientId=self.client) for i in range(p.getNumBodies(physicsClientId=self.client))]
+        bodies = [
+            p.getBodyUniqueId(i, physicsClientId=self.client)
+            for i in range(p.getNumBodies(physicsClientId=self.client))
+        ]
         if body not in bodies:
             raise PyBulletError(f"there is no body {body} in client {self.client}; there are {bodies}")
         links = p.getNumJoints(body, physicsClientId=self.client)
@@ -201,8 +207,8 @@ class Simulation:
 
         packing: its shape, and by its mass properties the inertia. packing[:n] collides with n spheres only.
         mass: [kg]; 0 is a body that never moves.
-        position, orientation: where the packing's mesh is in the world [m]: its origin, and a quaternion x y z w. PyBullet
-            tells the place of the centre of mass; mesh_pose() that of the mesh.
+        position, orientation: where the packing's mesh is in the world [m]: its origin, and a quaternion x y z w.
+            PyBullet tells the place of the centre of mass; mesh_pose() that of the mesh.
         maximal_coordinates: makes a btRigidBody, where PyBullet makes a btMultiBody without.
         visual: a visual shape of PyBullet's, in the frame of the mesh; None draws the packing's surface.
 
@@ -270,8 +276,8 @@ class Simulation:
 
         body, link: as PyBullet numbers them; -1 is the base. Mass, inertia, friction and the rest stay as they are.
         packing: packing[:n] collides with n spheres only.
-        position, orientation: where the packing's mesh is in the frame of the link, as <origin> of <collision> says it in a
-            URDF [m]: its origin, and a quaternion x y z w.
+        position, orientation: where the packing's mesh is in the frame of the link, as <origin> of <collision> says it
+            in a URDF [m]: its origin, and a quaternion x y z w.
 
         Raises PyBulletError if there is no such body or link, or it has no collision shape; TypeError; ValueError.
         """
@@ -286,10 +292,11 @@ class Simulation:
     def pack_all(self, body: int, **options: Any) -> dict[int, _core.Packing]:
         """Gives every link of a body that collides with one mesh a packing of it.
 
-        options: those of innersphere.pack(): spheres, cache, repair, progress. With cache, each mesh is packed only once.
+        options: those of innersphere.pack(): spheres, cache, repair, progress. With cache, each mesh is packed only
+            once.
 
-        Returns the packings by link; links of other shapes stay as they are. Raises what pack() and set_shape() raise. It
-        packs all meshes first: on an error nothing has changed.
+        Returns the packings by link; links of other shapes stay as they are. Raises what pack() and set_shape() raise.
+        It packs all meshes first: on an error nothing has changed.
         """
         self._check_link(body, -1)
         found: dict[int, tuple[_core.Packing, Any]] = {}
@@ -300,7 +307,9 @@ class Simulation:
                 continue
             _, _, _, scale, file, position, orientation = meshes[0][:7]
             if not np.allclose(scale, scale[0]):
-                raise InvalidArgumentError(f"link {link} of body {body} is scaled by {scale}; packings scale alike in all axes")
+                raise InvalidArgumentError(
+                    f"link {link} of body {body} is scaled by {scale}; packings scale alike in all axes"
+                )
             found[link] = pack(file.decode(), scale=float(scale[0]), **options), (position, orientation)
         for link, (packing, frame) in found.items():
             self._run(_core.pybullet.set_shape, body, link, packing, frame)

@@ -151,7 +151,8 @@ ContactOptions contactOptions(const std::string& response, const std::string& ba
 }  // namespace
 
 void bindPyBullet(nb::module_& module) {
-  nb::module_ jobs = module.def_submodule("pybullet", "Jobs for PyBullet's server; see innersphere.pybullet.");
+  nb::module_ jobs =
+      module.def_submodule("pybullet", "Jobs for PyBullet's server; see innersphere.pybullet.");
   nb::class_<Seen>(jobs, "Seen")
       .def_ro("iterations", &Seen::iterations)
       .def_ro("gravity", &Seen::gravity)
@@ -177,8 +178,8 @@ void bindPyBullet(nb::module_& module) {
   jobs.def(
       "set_shape",
       [](int body, int link, const SharedPacking& packing, const Pose& mesh_to_body) {
-        auto shape =
-            std::make_shared<std::unique_ptr<PackingShape>>(std::make_unique<PackingShape>(packing.model, transform(mesh_to_body)));
+        auto shape = std::make_shared<std::unique_ptr<PackingShape>>(
+            std::make_unique<PackingShape>(packing.model, transform(mesh_to_body)));
         (*shape)->setSphereCount(packing.count);
         return Waiting<bool>([=](Plugin& plugin) {
           plugin.give(body, link, std::move(*shape));

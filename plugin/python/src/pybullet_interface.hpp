@@ -1,5 +1,5 @@
-// What PyBullet and its plug-ins hand each other, as of its API version 202010061. PyBullet's headers are not packaged, so
-// the layouts are declared here; attach() checks that they are understood.
+// What PyBullet and its plug-ins hand each other, as of its API version 202010061. PyBullet's headers are not
+// packaged, so the layouts are declared here; attach() checks that they are understood.
 #pragma once
 
 namespace innersphere::pybullet {

@@ -152,7 +152,8 @@ INNERSPHERE_PLUGIN_FUNCTION void exitPlugin_innersphere(innersphere::pybullet::C
   context->user = nullptr;
 }
 
-/// The integers are the number of a job, and the process that knows it. Returns 0 if the job was run, and -1 if it is unknown.
+/// The integers are the number of a job, and the process that knows it. Returns 0 if the job was run, and -1
+/// if it is unknown.
 INNERSPHERE_PLUGIN_FUNCTION int executePluginCommand_innersphere(
     innersphere::pybullet::Context* context, const innersphere::pybullet::Arguments* arguments) {
   using namespace innersphere::pybullet;

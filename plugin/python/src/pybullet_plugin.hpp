@@ -1,4 +1,5 @@
-// The plug-in that PyBullet loads: the module itself. It runs jobs that Python has prepared in the thread of PyBullet's server.
+// The plug-in that PyBullet loads: the module itself. It runs jobs that Python has prepared in the thread of
+// PyBullet's server.
 #pragma once
 
 #include <exception>
@@ -34,7 +35,8 @@ class Plugin {
   btMultiBodyDynamicsWorld& find() const;
   /// Attaches: sets options, for this world and those that follow it after a reset.
   void setOptions(const ContactOptions& options, bool two_friction_directions);
-  /// Returns the world, in which packings collide. Throws std::invalid_argument if it was released, and as find() does.
+  /// Returns the world, in which packings collide. Throws std::invalid_argument if it was released, and as
+  /// find() does.
   btMultiBodyDynamicsWorld& world();
   /// Returns the collision object of a link. Throws std::invalid_argument if there is none.
   btCollisionObject& collider(int body, int link);
@@ -52,7 +54,8 @@ class Plugin {
   std::vector<Given> given_;
 };
 
-/// Is done once in the thread of PyBullet's server, which may not call Python. Python waits for it, with the GIL.
+/// Is done once in the thread of PyBullet's server, which may not call Python. Python waits for it, with the
+/// GIL.
 struct Job {
   std::function<void(Plugin&)> work;
   std::exception_ptr error;

@@ -35,8 +35,8 @@ const void* moduleOf(const void* address) {
   return address != nullptr && dladdr(address, &info) != 0 ? info.dli_fbase : nullptr;
 }
 
-/// Returns the mangled name of an object's class if that is one of `module`'s, else nothing. By the Itanium C++ ABI the
-/// type_info is in the slot before the first virtual function, and its second word is the name.
+/// Returns the mangled name of an object's class if that is one of `module`'s, else nothing. By the Itanium
+/// C++ ABI the type_info is in the slot before the first virtual function, and its second word is the name.
 std::string_view classOf(const void* object, const void* module) {
   const void* table = wordAt(object);
   if (table == nullptr || moduleOf(table) != module) return {};
@@ -71,8 +71,9 @@ btMultiBodyDynamicsWorld* findWorld(void* command_processor, std::string& why) {
   void* data = const_cast<void*>(wordAt(static_cast<void**>(command_processor) + 1));
   constexpr std::size_t kMostBytes = 1 << 19;
   void* first = nullptr;
-  const std::size_t bytes =
-      data != nullptr && read(data, &first, sizeof first) ? std::min(malloc_usable_size(data), kMostBytes) : 0;
+  const std::size_t bytes = data != nullptr && read(data, &first, sizeof first)
+                                ? std::min(malloc_usable_size(data), kMostBytes)
+                                : 0;
   std::vector<void*> members(bytes / sizeof(void*));
   if (members.empty() || !read(data, members.data(), members.size() * sizeof(void*))) {
     why = "the command processor's data cannot be read";
