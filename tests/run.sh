@@ -17,7 +17,13 @@ if [ "${1:-}" = --gpu ]; then
 fi
 # shellcheck disable=SC2086  # a list of names
 need_packages $build_packages $python_packages libgtest-dev librapidcheck-dev libbullet-extras-dev
-python_environment build/python-env nanobind numpy pytest typing_extensions
+python_modules="nanobind numpy pytest typing_extensions"
+# Elsewhere PyBullet has no wheels; its tests are skipped there.
+if [ "$(uname -m)" = x86_64 ] && /usr/bin/python3 -c 'import sys; sys.exit(sys.version_info >= (3, 12))'; then
+  python_modules="$python_modules pybullet"
+fi
+# shellcheck disable=SC2086  # a list of names
+python_environment build/python-env $python_modules
 build release all -DINNERSPHERE_TESTS=ON "-DINNERSPHERE_PRECISIONS=float32;float64" -DINNERSPHERE_CUDA=$cuda \
   -DINNERSPHERE_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/python-env/bin/python" \
   "-DCMAKE_CUDA_ARCHITECTURES=$(cuda_architectures || echo 75)"

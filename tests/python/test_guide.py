@@ -1,11 +1,14 @@
 """Runs the code that users read, and looks at what it computed."""
 
+import importlib.util
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import BOX_VERTICES, write_obj
+
+import innersphere
 
 SOURCE = Path(__file__).resolve().parents[2]
 
@@ -22,6 +25,9 @@ def run(document, folder, monkeypatch):
     return names
 
 
+@pytest.mark.skipif(
+    importlib.util.find_spec("pybullet") is None or not hasattr(innersphere._core, "pybullet"), reason="needs PyBullet"
+)
 def test_the_guide(tmp_path, monkeypatch):
     names = run("plugin/python/README.md", tmp_path, monkeypatch)
     assert len(names["packing"]) == len(names["spheres"]) == 1000 and len(names["coarse"]) == 256
@@ -32,6 +38,9 @@ def test_the_guide(tmp_path, monkeypatch):
     assert names["volume"].mean() == pytest.approx(0.5, rel=0.1)
     assert names["force"].shape == (1000, 3)
     assert len(names["of_second_pose"]) > 0
+    assert names["place"][0] == pytest.approx([3, 0, 0], abs=2e-3)
+    assert names["touching"]["force"][:, 2].sum() == pytest.approx(-2 * 9.81, rel=0.05)  # both lie
+    names["p"].disconnect()
     assert names["message"].startswith("query 17: the placement of B")
 
 

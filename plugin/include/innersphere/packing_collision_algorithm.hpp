@@ -62,6 +62,13 @@ struct PackingCollisionAlgorithm {
   /// dispatcher that is not registered.
   static void unregisterAlgorithm(btDispatcher* dispatcher);
 
+  /// Drops what was kept for a dispatcher that is gone already, where nobody could call unregisterAlgorithm()
+  /// in time: a world that belongs to another program, for example. The pointer is only compared, so it may
+  /// dangle. Call it when the dispatcher's last pair is gone too, and before another dispatcher that may lie
+  /// at the same address is registered: one that is still in use would be left with functions that are no
+  /// more. Does nothing for an address that was never registered, or has been taken back.
+  static void forget(const btDispatcher* gone) noexcept;
+
   /// Returns true if packings collide in the worlds of a dispatcher. Where a registration was forgotten,
   /// Bullet collides convex shapes with the triangles of a packing, as with a hollow mesh, and lets packings
   /// fall through each other, through planes and through meshes. The log names the packing when Bullet's

@@ -40,5 +40,6 @@ T parseWord(const char* argument, const std::string& word, const std::pair<const
 void bindErrors();
 void bindPacking(nb::module_& module);
 void bindOverlaps(nb::module_& module);
+void bindPyBullet(nb::module_& module);
 
 }  // namespace innersphere::python

@@ -7,4 +7,7 @@ NB_MODULE(_core, module) {
   innersphere::python::bindErrors();
   innersphere::python::bindPacking(module);
   innersphere::python::bindOverlaps(module);
+#ifdef INNERSPHERE_PYBULLET
+  innersphere::python::bindPyBullet(module);
+#endif
 }

@@ -85,6 +85,10 @@ void PackingCollisionAlgorithm::unregisterAlgorithm(btDispatcher* dispatcher) {
   if (btCollisionDispatcher* collision = collisionDispatcher(dispatcher)) Registration::remove(collision);
 }
 
+void PackingCollisionAlgorithm::forget(const btDispatcher* gone) noexcept {
+  Registration::forget(gone);
+}
+
 bool PackingCollisionAlgorithm::isRegistered(const btDispatcher* dispatcher) {
   return Registration::find(dynamic_cast<const btCollisionDispatcher*>(dispatcher)) != nullptr;
 }

@@ -87,6 +87,11 @@ void Registration::remove(btCollisionDispatcher* dispatcher) {
   std::erase(kept().registrations, found);
 }
 
+void Registration::forget(const btDispatcher* gone) noexcept {
+  const std::lock_guard<std::mutex> lock(kept().mutex);
+  std::erase_if(kept().registrations, [&](const auto& one) { return one->dispatcher_ == gone; });
+}
+
 void Registration::fillTables(btCollisionDispatcher* dispatcher) {
   // Not the dispatcher's own table, which may hold our functions already, but what the configuration started
   // it with.

@@ -34,7 +34,7 @@ class CreateFunc : public btCollisionAlgorithmCreateFunc {
 /// Holds the table of pairs of one dispatcher, and fills the dispatcher's own table of algorithms.
 class Registration : public std::enable_shared_from_this<Registration> {
  public:
-  explicit Registration(btCollisionDispatcher* dispatcher) : table_(dispatcher) {}
+  explicit Registration(btCollisionDispatcher* dispatcher) : dispatcher_(dispatcher), table_(dispatcher) {}
 
   /// Returns the registration of a dispatcher, which is made on first use and kept until remove(), or to the
   /// end of the process: a dispatcher does not tell when it goes, and its table refers to our functions until
@@ -44,12 +44,15 @@ class Registration : public std::enable_shared_from_this<Registration> {
   static std::shared_ptr<Registration> find(const btCollisionDispatcher* dispatcher);
   /// Takes the registration from a dispatcher. What is kept for it lives as long as pairs do.
   static void remove(btCollisionDispatcher* dispatcher);
+  /// Drops all registrations of a dispatcher that is gone, without touching it.
+  static void forget(const btDispatcher* gone) noexcept;
 
   PairTable& table() { return table_; }
 
  private:
   void fillTables(btCollisionDispatcher* dispatcher);
 
+  const btDispatcher* const dispatcher_;  ///< to be compared; it may be gone
   PairTable table_;
   std::deque<CreateFunc> create_funcs_;
 };

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <new>
 #include <optional>
 
 #include <BulletCollision/CollisionShapes/btSdfCollisionShape.h>
@@ -186,6 +188,46 @@ TEST(Registration, TakenBackItIsFreedWithTheLastPair) {
     EXPECT_FALSE(registration.expired());
   }
   EXPECT_TRUE(registration.expired());
+}
+
+TEST(Registration, IsForgottenWhenTheDispatcherIsGone) {
+  std::weak_ptr<Registration> registration;
+  const btDispatcher* gone = nullptr;
+  TestWorld other;
+  {
+    TestWorld world;
+    gone = &world.dispatcher;
+    registration = Registration::find(&world.dispatcher);
+    world.addFloor();
+    world.add(makeShape(latticeBox({1, 1, 1}, 4)), 1, btVector3(0, 0, btScalar(0.5)));
+    world.run(0.1);
+    EXPECT_GT(world.contactCount(), 0);
+  }
+  EXPECT_FALSE(registration.expired());  // nobody has told
+  PackingCollisionAlgorithm::forget(gone);
+  EXPECT_TRUE(registration.expired());
+  PackingCollisionAlgorithm::forget(gone);
+  PackingCollisionAlgorithm::forget(nullptr);
+  EXPECT_TRUE(PackingCollisionAlgorithm::isRegistered(&other.dispatcher));
+}
+
+TEST(Registration, ForgettingDoesNotTouchTheDispatcher) {
+  btDefaultCollisionConfiguration configuration;
+  alignas(btCollisionDispatcher) unsigned char place[sizeof(btCollisionDispatcher)];
+  auto* dispatcher = new (place) btCollisionDispatcher(&configuration);
+  PackingCollisionAlgorithm::registerAlgorithm(dispatcher);
+  const std::weak_ptr<Registration> first = Registration::find(dispatcher);
+  dispatcher->~btCollisionDispatcher();
+  std::fill(std::begin(place), std::end(place), static_cast<unsigned char>(0xab));
+  PackingCollisionAlgorithm::forget(dispatcher);
+  EXPECT_TRUE(first.expired());
+  EXPECT_TRUE(std::all_of(std::begin(place), std::end(place), [](unsigned char c) { return c == 0xab; }));
+  dispatcher = new (place) btCollisionDispatcher(&configuration);  // another one, at the same address
+  PackingCollisionAlgorithm::registerAlgorithm(dispatcher);
+  EXPECT_TRUE(PackingCollisionAlgorithm::isRegistered(dispatcher));
+  PackingCollisionAlgorithm::unregisterAlgorithm(dispatcher);
+  PackingCollisionAlgorithm::forget(dispatcher);  // does nothing
+  dispatcher->~btCollisionDispatcher();
 }
 
 TEST(Registration, UnregisteredPackingStillMeetsConvexShapes) {

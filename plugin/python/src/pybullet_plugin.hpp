@@ -1,0 +1,70 @@
+// The plug-in that PyBullet loads: the module itself. It runs jobs that Python has prepared in the thread of
+// PyBullet's server.
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "innersphere/contact_options.hpp"
+#include "innersphere/packing_shape.hpp"
+
+class btCollisionObject;
+class btDispatcher;
+class btMultiBodyDynamicsWorld;
+
+namespace innersphere::pybullet {
+
+/// A body's shape that was replaced by a packing.
+struct Given {
+  std::unique_ptr<PackingShape> shape;
+  btCollisionShape* before = nullptr;  ///< PyBullet's
+};
+
+/// What is kept for a client from attach() to detach(). Only the server's thread uses it.
+class Plugin {
+ public:
+  explicit Plugin(void* command_processor) : command_processor_(command_processor) {}
+  ~Plugin() { release(); }
+
+  /// Gives bodies their shapes back, and the dispatcher its own functions, if the world is still there.
+  void release();
+
+  /// Returns the world as it is. Throws std::runtime_error if it is not understood.
+  btMultiBodyDynamicsWorld& find() const;
+  /// Attaches: sets options, for this world and those that follow it after a reset.
+  void setOptions(const ContactOptions& options, bool two_friction_directions);
+  /// Returns the world, in which packings collide. Throws std::invalid_argument if it was released, and as
+  /// find() does.
+  btMultiBodyDynamicsWorld& world();
+  /// Returns the collision object of a link. Throws std::invalid_argument if there is none.
+  btCollisionObject& collider(int body, int link);
+  void give(int body, int link, std::unique_ptr<PackingShape> shape);
+
+ private:
+  void registerWith(btMultiBodyDynamicsWorld& world, const ContactOptions& options);
+  void dropUnused(btMultiBodyDynamicsWorld& world);
+
+  void* command_processor_;
+  ContactOptions options_;
+  bool two_friction_directions_ = true;
+  bool attached_ = false;
+  const btDispatcher* dispatcher_ = nullptr;  ///< registered last; it may be gone
+  std::vector<Given> given_;
+};
+
+/// Is done once in the thread of PyBullet's server, which may not call Python. Python waits for it, with the
+/// GIL.
+struct Job {
+  std::function<void(Plugin&)> work;
+  std::exception_ptr error;
+  bool done = false;
+};
+
+/// Keeps a job until the server asks for it, and returns its number.
+int announce(std::shared_ptr<Job> job);
+/// Drops a job that the server may not have asked for.
+void withdraw(int number);
+
+}  // namespace innersphere::pybullet

@@ -1,0 +1,124 @@
+#include "pybullet_world.hpp"
+
+#include <dlfcn.h>
+#include <malloc.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+namespace innersphere::pybullet {
+namespace {
+
+/// Reads memory of this process; returns false where there is none.
+bool read(const void* from, void* to, std::size_t bytes) {
+  const iovec here{to, bytes};
+  const iovec there{const_cast<void*>(from), bytes};
+  return process_vm_readv(getpid(), &here, 1, &there, 1, 0) == static_cast<ssize_t>(bytes);
+}
+
+const void* wordAt(const void* address) {
+  const void* word = nullptr;
+  const bool aligned = reinterpret_cast<std::uintptr_t>(address) % alignof(void*) == 0;
+  return address != nullptr && aligned && read(address, &word, sizeof word) ? word : nullptr;
+}
+
+/// Returns where the shared object begins that an address lies in.
+const void* moduleOf(const void* address) {
+  Dl_info info{};
+  return address != nullptr && dladdr(address, &info) != 0 ? info.dli_fbase : nullptr;
+}
+
+/// Returns the mangled name of an object's class if that is one of `module`'s, else nothing. By the Itanium
+/// C++ ABI the type_info is in the slot before the first virtual function, and its second word is the name.
+std::string_view classOf(const void* object, const void* module) {
+  const void* table = wordAt(object);
+  if (table == nullptr || moduleOf(table) != module) return {};
+  const void* info = wordAt(static_cast<const void* const*>(table) - 1);
+  if (info == nullptr || moduleOf(info) != module) return {};
+  const auto* name = static_cast<const char*>(wordAt(static_cast<const void* const*>(info) + 1));
+  if (name == nullptr || moduleOf(name) != module) return {};
+  return *name == '*' ? name + 1 : name;
+}
+
+bool endsWith(std::string_view name, std::string_view end) {
+  return name.size() >= end.size() && name.substr(name.size() - end.size()) == end;
+}
+
+/// Checks the layout of the world's class by what its members are.
+bool hasKnownMembers(btMultiBodyDynamicsWorld& world, const void* module) {
+  return classOf(world.getDispatcher(), module) == "21btCollisionDispatcher" &&
+         endsWith(classOf(world.getBroadphase(), module), "Broadphase") &&
+         endsWith(classOf(world.getConstraintSolver(), module), "Solver") &&
+         endsWith(classOf(world.getPairCache(), module), "PairCache");
+}
+
+}  // namespace
+
+btMultiBodyDynamicsWorld* findWorld(void* command_processor, std::string& why) {
+  const void* module = moduleOf(wordAt(command_processor));
+  if (module == nullptr || classOf(command_processor, module) != "29PhysicsServerCommandProcessor") {
+    why = "its command processor is of an unknown class";
+    return nullptr;
+  }
+  // The processor's data are its first member: a block of some kilobytes.
+  void* data = const_cast<void*>(wordAt(static_cast<void**>(command_processor) + 1));
+  constexpr std::size_t kMostBytes = 1 << 19;
+  void* first = nullptr;
+  const std::size_t bytes = data != nullptr && read(data, &first, sizeof first)
+                                ? std::min(malloc_usable_size(data), kMostBytes)
+                                : 0;
+  std::vector<void*> members(bytes / sizeof(void*));
+  if (members.empty() || !read(data, members.data(), members.size() * sizeof(void*))) {
+    why = "the command processor's data cannot be read";
+    return nullptr;
+  }
+  btMultiBodyDynamicsWorld* found = nullptr;
+  for (void* member : members) {
+    if (!endsWith(classOf(member, module), "DynamicsWorld")) continue;
+    auto* world = dynamic_cast<btMultiBodyDynamicsWorld*>(static_cast<btDynamicsWorld*>(member));
+    if (world == nullptr || world == found) continue;
+    if (found != nullptr) {
+      why = "it holds more than one world";
+      return nullptr;
+    }
+    found = world;
+  }
+  if (found == nullptr) {
+    why = "it holds no btMultiBodyDynamicsWorld";
+  } else if (!hasKnownMembers(*found, module)) {
+    why = "the members of its world are not where Bullet 3.24 to 3.26 has them";
+    found = nullptr;
+  }
+  return found;
+}
+
+std::pair<int, int> numbersOf(const btCollisionObject& object) {
+  if (const auto* collider = btMultiBodyLinkCollider::upcast(&object))
+    return {collider->m_multiBody->getUserIndex2(), collider->m_link};
+  return {object.getUserIndex2(), -1};
+}
+
+btCollisionObject* findCollider(btMultiBodyDynamicsWorld& world, int body, int link) {
+  for (int i = 0; i < world.getNumCollisionObjects(); ++i) {
+    btCollisionObject* object = world.getCollisionObjectArray()[i];
+    if (numbersOf(*object) == std::pair(body, link)) return object;
+  }
+  return nullptr;
+}
+
+void swapShape(btMultiBodyDynamicsWorld& world, btCollisionObject& object, btCollisionShape* shape) {
+  if (btBroadphaseProxy* proxy = object.getBroadphaseHandle())
+    world.getPairCache()->cleanProxyFromPairs(proxy, world.getDispatcher());
+  object.setCollisionShape(shape);
+  world.updateSingleAabb(&object);
+  object.activate(true);
+}
+
+}  // namespace innersphere::pybullet

@@ -1,0 +1,316 @@
+"""Packings inside a running PyBullet: what physics says of bodies that hang and lie, and what errors leave behind."""
+
+import math
+import os
+
+import numpy as np
+import pytest
+from conftest import write_obj
+
+import innersphere
+
+p = pytest.importorskip("pybullet", reason="PyBullet has no wheel for this Python")
+if not hasattr(innersphere._core, "pybullet"):
+    pytest.skip("innersphere was built without Bullet", allow_module_level=True)
+
+import innersphere.pybullet as isp  # noqa: E402
+
+RING, TUBE, MASS = 0.10, 0.02, 0.2  # of a link [m], [kg]
+PITCH = 2 * (RING - TUBE)  # of a taut chain [m]
+UPRIGHT = p.getQuaternionFromEuler([math.pi / 2, 0, 0])
+ACROSS = p.getQuaternionFromEuler([math.pi / 2, 0, math.pi / 2])
+
+
+def torus_mesh(around=64, across=24):
+    """Vertices and faces of a ring about z; its surface goes through the middle of what it bounds, to second order."""
+    u, v = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
+    a, b = 2 * np.pi * u / around, 2 * np.pi * v / across
+    r = RING + TUBE * np.cos(b)
+    vertices = np.stack([r * np.cos(a), r * np.sin(a), TUBE * np.sin(b)], axis=-1).reshape(-1, 3)
+
+    def at(i, j):
+        return (i % around) * across + j % across
+
+    faces = [
+        np.stack([at(u, v), at(u + 1, v), at(u + 1, v + 1)], -1),
+        np.stack([at(u, v), at(u + 1, v + 1), at(u, v + 1)], -1),
+    ]
+    return vertices, np.concatenate(faces).reshape(-1, 3)
+
+
+@pytest.fixture(scope="module")
+def ring():
+    return innersphere.pack(torus_mesh(), spheres=1000, overlap_errors=False)
+
+
+@pytest.fixture
+def client():
+    number = p.connect(p.DIRECT)
+    p.setGravity(0, 0, -9.81, physicsClientId=number)
+    yield number
+    if p.isConnected(number):
+        p.disconnect(number)
+
+
+def run(client, seconds):
+    for _ in range(round(240 * seconds)):
+        p.stepSimulation(physicsClientId=client)
+
+
+def height(client, body):
+    return p.getBasePositionAndOrientation(body, physicsClientId=client)[0][2]
+
+
+def two_links(sim, ring):
+    """A fixed link and one that hangs in it; its place at rest is -PITCH."""
+    sim.create_body(ring, 0, [0, 0, 0], UPRIGHT)
+    return sim.create_body(ring, MASS, [0, 0, -0.156], ACROSS)
+
+
+@pytest.mark.parametrize("maximal", [False, True])
+def test_a_chain_of_six_hangs_taut(client, ring, maximal):
+    sim = isp.attach(client)
+    links = [
+        sim.create_body(
+            ring, MASS * (i > 0), [0, 0, -0.156 * i], ACROSS if i % 2 else UPRIGHT, maximal_coordinates=maximal
+        )
+        for i in range(6)
+    ]
+    run(client, 10)
+    z = np.array([height(client, body) for body in links])
+    np.testing.assert_allclose(z, -PITCH * np.arange(6), atol=1e-3)
+    rows = sim.overlaps()
+    top = rows[(np.minimum(rows["body_a"], rows["body_b"]) == links[0])]
+    assert abs(top["force"][:, 2].sum()) == pytest.approx(5 * MASS * 9.81, rel=0.02)
+
+
+def test_a_ring_lies_on_a_plane_and_a_ball_in_its_hole(client, ring):
+    sim = isp.attach(client)
+    plane = p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE, physicsClientId=client), physicsClientId=client)
+    body = sim.create_body(ring, MASS, [0, 0, 0.05])
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.03, physicsClientId=client)
+    ball = p.createMultiBody(0.05, shape, -1, [0, 0, 0.2], physicsClientId=client)
+    run(client, 3)
+    assert height(client, body) == pytest.approx(TUBE, abs=5e-4)
+    assert height(client, ball) == pytest.approx(0.03, abs=5e-4)
+    rows = sim.overlaps()
+    assert rows.dtype == isp.contact_dtype
+    assert [(r["body_a"], r["link_a"], r["body_b"], r["link_b"]) for r in rows] == [(body, -1, plane, -1)]
+    assert rows["force"][0, 2] == pytest.approx(-MASS * 9.81, rel=0.02)
+
+
+def test_mass_properties_and_places_are_those_of_the_mesh(client):
+    # An L of two boxes has no symmetry to hide behind; its mass and inertia are sums over boxes.
+    low, high = np.array([[0, 0, 0], [0, 0.1, 0]]), np.array([[0.3, 0.1, 0.05], [0.1, 0.4, 0.05]])
+    outline = np.array([[0, 0], [0.3, 0], [0.3, 0.1], [0.1, 0.1], [0.1, 0.4], [0, 0.4]])
+    top = np.c_[outline, np.full(6, 0.05)]
+    caps = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]
+    faces = [c[::-1] for c in caps] + [[6 + i for i in c] for c in caps]
+    for i in range(6):
+        j = (i + 1) % 6
+        faces += [[i, j, 6 + j], [i, 6 + j, 6 + i]]
+    packing = innersphere.pack((np.r_[np.c_[outline, np.zeros(6)], top], faces), spheres=200, overlap_errors=False)
+    mass = np.prod(high - low, axis=1)
+    middle = (high + low) / 2
+    centre = mass @ middle / mass.sum()
+    inertia = np.zeros((3, 3))
+    for m, size, at in zip(mass, high - low, middle - centre):
+        inertia += m * (np.diag((size @ size - size**2) / 12) + at @ at * np.eye(3) - np.outer(at, at))
+    moments = np.linalg.eigvalsh(inertia / mass.sum())
+
+    sim = isp.attach(client)
+    place, turn = [1.0, 2.0, 3.0], [0.5, 0.5, 0.5, 0.5]
+    body = sim.create_body(packing, 2.0, place, turn)
+    got = sim.mesh_pose(body)
+    np.testing.assert_allclose(got[0], place, atol=1e-6)
+    np.testing.assert_allclose(np.abs(np.dot(got[1], turn)), 1, atol=1e-9)
+    expected, _ = p.multiplyTransforms(place, turn, centre, [0, 0, 0, 1])
+    np.testing.assert_allclose(p.getBasePositionAndOrientation(body, physicsClientId=client)[0], expected, atol=1e-6)
+    np.testing.assert_allclose(sorted(p.getDynamicsInfo(body, -1, physicsClientId=client)[2]), 2 * moments, rtol=1e-4)
+
+    def ray(x, y):
+        ends = [p.multiplyTransforms(place, turn, [x, y, z], [0, 0, 0, 1])[0] for z in (1, -1)]
+        return p.rayTest(*ends, physicsClientId=client)[0][2]
+
+    assert ray(0.2, 0.05) == pytest.approx(0.475, abs=1e-4)  # on the face at z = 0.05
+    assert ray(0.05, 0.3) == pytest.approx(0.475, abs=1e-4)
+    assert ray(0.2, 0.3) == 1  # past the inner corner
+
+
+URDF = """<robot name="part"><link name="base">
+<inertial><origin xyz="0.01 0 0.02"/><mass value="0.2"/>
+<inertia ixx="6e-4" ixy="0" ixz="0" iyy="6e-4" iyz="0" izz="1e-3"/></inertial>
+<collision><origin xyz="0.05 0 0" rpy="0 0 0"/><geometry><mesh filename="ring.obj"/></geometry></collision></link>
+<link name="arm"><inertial><mass value="0.1"/>
+<inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial>
+<collision><geometry><box size="0.01 0.01 0.01"/></geometry></collision></link>
+<joint name="hinge" type="fixed"><parent link="base"/><child link="arm"/><origin xyz="0.05 0 0.3"/></joint></robot>"""
+
+
+def test_links_of_a_urdf_get_packings_of_their_meshes(client, tmp_path):
+    write_obj(tmp_path / "ring.obj", *torus_mesh())
+    (tmp_path / "part.urdf").write_text(URDF)
+    sim = isp.attach(client)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE, physicsClientId=client), physicsClientId=client)
+    body = p.loadURDF(str(tmp_path / "part.urdf"), [0, 0, 0.05], physicsClientId=client)
+    packings = sim.pack_all(body, spheres=500, cache=tmp_path / "cache")
+    assert list(packings) == [-1] and len(packings[-1]) == 500
+    position, _ = sim.mesh_pose(body)
+    np.testing.assert_allclose(position, [0.05, 0, 0.05], atol=1e-9)  # as the URDF says
+    by_hand = p.loadURDF(str(tmp_path / "part.urdf"), [1, 0, 0.05], physicsClientId=client)
+    sim.set_shape(by_hand, packings[-1], position=[0.05, 0, 0])
+    np.testing.assert_allclose(sim.mesh_pose(by_hand)[0], [1.05, 0, 0.05], atol=1e-9)
+    run(client, 2)
+    for one in (body, by_hand):
+        assert sim.mesh_pose(one)[0][2] == pytest.approx(TUBE, abs=1e-3)
+    with pytest.raises(isp.PyBulletError, match="has no packing"):
+        sim.mesh_pose(body, 0)
+
+
+def test_resets_and_removal(client, ring):
+    sim = isp.attach(client)
+    heights = []
+    for _ in range(5):
+        p.resetSimulation(physicsClientId=client)
+        p.setGravity(0, 0, -9.81, physicsClientId=client)
+        body = two_links(sim, ring)
+        run(client, 1)
+        heights.append(height(client, body))
+    np.testing.assert_allclose(heights, -PITCH, atol=1e-3)
+    assert len(set(heights)) == 1
+    p.removeBody(body, physicsClientId=client)  # while it touches
+    run(client, 0.1)
+    assert len(sim.overlaps()) == 0
+    with pytest.raises(isp.PyBulletError, match=f"no body {body} "):
+        sim.set_shape(body, ring)
+    body = sim.create_body(ring, MASS, [0, 0, -0.156], ACROSS)
+    run(client, 1)
+    assert height(client, body) == pytest.approx(-PITCH, abs=1e-3)
+
+
+def test_clients_do_not_mix(client, ring):
+    other = p.connect(p.DIRECT)
+    a, b = isp.attach(client), isp.attach(other)
+    hangs, falls = two_links(a, ring), b.create_body(ring, MASS)
+    p.setGravity(0, 0, -1, physicsClientId=other)
+    run(other, 1)
+    run(client, 1)
+    assert height(client, hangs) == pytest.approx(-PITCH, abs=1e-3)
+    assert height(other, falls) == pytest.approx(-0.5, abs=0.02)
+    p.disconnect(other)
+    run(client, 0.5)
+    assert height(client, hangs) == pytest.approx(-PITCH, abs=1e-3)
+    with pytest.raises(isp.PyBulletError, match=f"client {other} of PyBullet is not connected"):
+        b.overlaps()
+    b.detach()  # does nothing
+
+
+def test_states_are_restored(client, ring):
+    sim = isp.attach(client)
+    body = two_links(sim, ring)
+    run(client, 1)
+    state, before = p.saveState(physicsClientId=client), height(client, body)
+    p.resetBasePositionAndOrientation(body, [0.5, 0, 1], ACROSS, physicsClientId=client)
+    run(client, 0.1)
+    p.restoreState(state, physicsClientId=client)
+    assert height(client, body) == pytest.approx(before, abs=1e-12)
+    run(client, 1)
+    assert height(client, body) == pytest.approx(-PITCH, abs=1e-3)
+
+
+def test_detaching_gives_shapes_back(client, ring):
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.05, physicsClientId=client)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE, physicsClientId=client), physicsClientId=client)
+    body = p.createMultiBody(MASS, shape, -1, [0, 0, 0.1], physicsClientId=client)
+    with isp.attach(client) as sim:
+        sim.set_shape(body, ring)
+        sim.set_shape(body, ring[:256])
+        run(client, 1)
+        assert height(client, body) == pytest.approx(TUBE, abs=5e-4)
+    p.resetBasePositionAndOrientation(body, [0, 0, 0.1], [0, 0, 0, 1], physicsClientId=client)
+    run(client, 1)
+    assert height(client, body) == pytest.approx(0.05, abs=5e-4)
+    sim.detach()
+    with pytest.raises(isp.PyBulletError, match="detached"):
+        sim.overlaps()
+    again = isp.attach(client)
+    again.set_shape(body, ring)
+    run(client, 1)
+    assert height(client, body) == pytest.approx(TUBE, abs=5e-4)
+
+
+def test_two_attachments_of_a_client_are_one(client, ring):
+    first, second = isp.attach(client), isp.attach(client, response="rigid")
+    body = two_links(first, ring)
+    run(client, 1)
+    assert height(client, body) == pytest.approx(-PITCH, abs=5e-3)  # rigid contacts give more
+    assert len(first.overlaps()) == len(second.overlaps()) == 1
+    second.detach()
+    with pytest.raises(isp.PyBulletError, match="detached, in client"):
+        first.overlaps()
+
+
+def test_a_client_that_was_connected_anew_is_another(client, ring):
+    sim = isp.attach(client)
+    two_links(sim, ring)
+    p.disconnect(client)
+    assert p.connect(p.DIRECT) == client
+    with pytest.raises(isp.PyBulletError, match="connected anew"):
+        sim.overlaps()
+    sim.detach()  # does nothing
+    p.setGravity(0, 0, -9.81, physicsClientId=client)
+    body = two_links(isp.attach(client), ring)
+    run(client, 1)
+    assert height(client, body) == pytest.approx(-PITCH, abs=1e-3)
+
+
+def test_a_server_in_a_thread(ring):
+    client = p.connect(p.SHARED_MEMORY_SERVER, os.getpid())  # as that of p.GUI, without a window
+    try:
+        sim = isp.attach(client)
+        p.setGravity(0, 0, -9.81, physicsClientId=client)
+        body = two_links(sim, ring)
+        run(client, 1)
+        assert height(client, body) == pytest.approx(-PITCH, abs=1e-3)
+    finally:
+        p.disconnect(client)
+
+
+def test_errors_say_what_and_where(client, ring):
+    sim = isp.attach(client)
+    body = sim.create_body(ring)
+    with pytest.raises(isp.PyBulletError, match=f"body {body} has no link 3; its links are -1"):
+        sim.set_shape(body, ring, link=3)
+    with pytest.raises(TypeError, match="packing is a str"):
+        sim.set_shape(body, "ring")
+    with pytest.raises(TypeError, match="body is 'ring'"):
+        sim.set_shape("ring", ring)
+    with pytest.raises(ValueError, match=r"position of the body has the shape \(2,\)"):
+        sim.create_body(ring, position=[0, 0])
+    with pytest.raises(ValueError, match="finite"):
+        sim.create_body(ring, position=[0, 0, math.nan])
+    with pytest.raises(ValueError, match="length 2"):
+        sim.create_body(ring, orientation=[0, 0, 0, 2])
+    with pytest.raises(ValueError, match="mass is -1"):
+        sim.create_body(ring, -1)
+    assert p.getNumBodies(physicsClientId=client) == 1
+    with pytest.raises(innersphere.InvalidArgumentError, match="response is 'soft'"):
+        isp.attach(client, response="soft")
+    with pytest.raises(innersphere.InvalidArgumentError, match="stiffness"):
+        isp.attach(client, stiffness=-1)
+    assert len(sim.overlaps()) == 0  # still attached
+    with pytest.raises(isp.PyBulletError, match="client 99 of PyBullet is not connected"):
+        isp.attach(99)
+    with pytest.raises(TypeError, match="client is 'me'"):
+        isp.attach("me")
+
+
+def test_a_pybullet_that_differs_is_refused(client, monkeypatch):
+    monkeypatch.setattr(p, "getAPIVersion", lambda: 202301010)
+    with pytest.raises(isp.PyBulletError, match=r"API version must be 202010061: PyBullet .* \(API 202301010\)"):
+        isp.attach(client)
+    monkeypatch.undo()
+    said = p.getPhysicsEngineParameters(physicsClientId=client) | {"numSolverIterations": 7}
+    monkeypatch.setattr(p, "getPhysicsEngineParameters", lambda **_: said)
+    with pytest.raises(isp.PyBulletError, match="iterations and gravity .* PyBullet .*innersphere"):
+        isp.attach(client)
