@@ -19,6 +19,12 @@ struct MeshOptions {
   /// fans, and a point is inside where the winding number exceeds 1/2. Distances near a hole are to its fan,
   /// so the fill is only as good as that guess.
   bool repair = false;
+  /// Whether readMesh() lets assimp work in a forked child process of its own, which may take 1 GB of memory,
+  /// and 4 s and a second more for each megabyte of the file: a file that makes assimp crash or hang is then
+  /// an error. OBJ, STL, PLY and OFF need none. False where a program must not fork: such a file then ends
+  /// the program. If another thread holds a lock of the C or C++ library while the child is made, the child
+  /// may wait for it in vain until its time is over; calling again helps.
+  bool own_process = true;
 };
 
 /// Tells what was found in a mesh.

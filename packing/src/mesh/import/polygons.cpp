@@ -32,7 +32,7 @@ class Triangulator {
   bool covers(std::uint32_t ear, const Point& p) const;
 
   // So many looks at a corner take about a second; files of real polygons need a thousandth of it.
-  static constexpr std::size_t kMostLooks = 400'000'000;
+  static constexpr std::size_t kMostLooks = 100'000'000;
 
   const std::vector<Vec3d>& vertices_;
   std::size_t looks_ = 0;

@@ -6,6 +6,7 @@
 #include "file/file_io.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/mesh.hpp"
+#include "mesh/import/read_apart.hpp"
 #include "mesh/import/read_assimp.hpp"
 #include "mesh/import/readers.hpp"
 #include "mesh/mesh_clean.hpp"
@@ -59,7 +60,10 @@ Mesh readMesh(const std::string& path, const MeshOptions& options) {
   }
   requireReadableFile(path);
   const Reader reader = readerOf(endingOf(path));
-  Mesh mesh = reader ? reader(readFile(path), path) : readAssimp(path);
+  const auto read_other = [&] {
+    return options.own_process ? readApart(readAssimp, path) : readAssimp(path);
+  };
+  Mesh mesh = reader ? reader(readFile(path), path) : read_other();
   if (mesh.triangles.empty()) {
     throw Error(ErrorCode::empty_input, path + " has no triangles; export the surface, not points or curves");
   }
