@@ -86,6 +86,7 @@ void addRepairOption(Command& command, MeshOptions& options) {
 }
 
 std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments) {
+  const EndsAtOnce at_once;
   if (isNamedSolid(arguments.source)) {
     return demo::scaledSolid(makeNamedSolid(arguments.source), arguments.mesh.scale);
   }

@@ -7,14 +7,23 @@
 #include <cstdio>
 #include <cstring>
 
+#include "exit_codes.hpp"
+#include "innersphere/error.hpp"
+
 namespace innersphere::tool {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t ends_at_once = 0;
 bool quiet_mode = false;
 bool bar_shown = false;
 
 void onInterrupt(int signal) {
+  if (ends_at_once != 0) {
+    constexpr char kLine[] = "innersphere: cancelled while a solid was read [cancelled]\n";
+    [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, kLine, sizeof kLine - 1);
+    _exit(kCancelled);
+  }
   interrupted = 1;
   std::signal(signal, SIG_DFL);
 }
@@ -34,6 +43,17 @@ void drawBar(const char* stage, double fraction) {
 void catchInterrupts() {
   std::signal(SIGINT, onInterrupt);
   std::signal(SIGTERM, onInterrupt);
+}
+
+EndsAtOnce::EndsAtOnce() {
+  ends_at_once = 1;
+  if (interrupted == 0) return;
+  ends_at_once = 0;
+  throw Error(ErrorCode::cancelled, "cancelled before a solid was read");
+}
+
+EndsAtOnce::~EndsAtOnce() {
+  ends_at_once = 0;
 }
 
 void setQuiet(bool quiet) {

@@ -7,8 +7,18 @@
 
 namespace innersphere::tool {
 
-/// From now on Ctrl-C asks running work to stop; a second Ctrl-C ends the program.
+/// From now on Ctrl-C and SIGTERM ask running work to stop; a second one ends the program.
 void catchInterrupts();
+
+/// While this lives, Ctrl-C and SIGTERM end the program at once, with kCancelled: for work that does not ask
+/// whether to stop, and has nothing to clean up. The constructor throws Error cancelled if one came before.
+class EndsAtOnce {
+ public:
+  EndsAtOnce();
+  ~EndsAtOnce();
+  EndsAtOnce(const EndsAtOnce&) = delete;
+  EndsAtOnce& operator=(const EndsAtOnce&) = delete;
+};
 
 /// Keeps notes and progress off stderr.
 void setQuiet(bool quiet);

@@ -1,5 +1,6 @@
 // What users get wrong: the message names it, the exit status says what kind it is, and nothing is left
 // behind.
+#include <chrono>
 #include <filesystem>
 
 #include "meshes.hpp"
@@ -94,6 +95,26 @@ TEST_F(BadInput, PoseTables) {
   expect("nan.csv", {"nan.csv", "line 2"});
   expect("scaled.csv", {"scaled.csv", "line 2", "scale"});
   expect("mirror.csv", {"mirror.csv", "line 2", "mirror"});
+}
+
+// So many parts are judged for seconds. The sleep lets that begin.
+TEST_F(BadInput, SignalsEndReadingWithinASecond) {
+  std::string crowd;
+  for (int i = 0; i < 40000; ++i) {
+    const std::string x = std::to_string(2 * i), y = std::to_string(2 * i + 1);
+    crowd += "v " + x + " 0 0\nv " + y + " 0 0\nv " + x + " 1 0\nv " + x +
+             " 0 1\nf -4 -2 -3\nf -4 -3 -1\nf -4 -1 -2\nf -3 -2 -1\n";
+  }
+  writeFile(path("crowd.obj"), crowd);
+  for (const std::string signal : {"INT", "TERM"}) {
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome outcome = shell("\"$TOOL\" pack crowd.obj -o out.cbor & tool=$!; sleep 0.5; kill -" +
+                                  signal + " $tool; wait $tool");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(1500));
+    EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+    EXPECT_NE(outcome.err.find("cancelled"), std::string::npos) << outcome.err;
+    EXPECT_EQ(files().count("out.cbor"), 0u);
+  }
 }
 
 // A file system without free space.

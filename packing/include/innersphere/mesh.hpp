@@ -13,12 +13,18 @@ namespace innersphere {
 /// Says how meshes are read and judged.
 struct MeshOptions {
   /// The factor by which readMesh() multiplies all coordinates: 0.001 for a file in millimetres. It must be
-  /// positive. makeSolid() ignores it.
+  /// positive. makeSolid() uses it only to see whether coordinates came in single precision.
   double scale = 1;
   /// Whether makeSolid() accepts a mesh that does not bound a volume. Its holes are then closed with flat
   /// fans, and a point is inside where the winding number exceeds 1/2. Distances near a hole are to its fan,
   /// so the fill is only as good as that guess.
   bool repair = false;
+  /// Whether readMesh() lets assimp work in a forked child process of its own, which may take 1 GB of memory,
+  /// and 4 s and a second more for each megabyte of the file: a file that makes assimp crash or hang is then
+  /// an error. OBJ, STL, PLY and OFF need none. False where a program must not fork: such a file then ends
+  /// the program. If another thread holds a lock of the C or C++ library while the child is made, the child
+  /// may wait for it in vain until its time is over; calling again helps.
+  bool own_process = true;
 };
 
 /// Tells what was found in a mesh.
@@ -39,10 +45,13 @@ struct MeshReport {
   std::vector<std::string> notes;  ///< A sentence for each thing that was mended or looks suspicious.
 };
 
-/// Reads a mesh through assimp (OBJ, STL, PLY, OFF, glTF, ...), with node transforms applied in double and
-/// equal positions welded. assimp keeps coordinates in single precision: what is far from its origin is read
-/// coarsely, and makeSolid() notes it. Throws Error: file_not_found, bad_format, empty_input, not_finite,
-/// bad_argument (the scale).
+/// Reads a mesh and welds equal positions. The ending of the path names the format. OBJ, STL, PLY and OFF, as
+/// text or binary, are read by checked readers of the project, in double: memory and time follow from the
+/// size of the file, whatever it says. All other formats (glTF, ...) go through assimp, with node transforms
+/// applied in double; assimp keeps coordinates in single precision: what is far from its origin is read
+/// coarsely, and makeSolid() notes it. Polygons are cut into triangles along their dents. Throws Error, with
+/// the line or the byte where the file has one: file_not_found, bad_format, empty_input, not_finite (also for
+/// numbers beyond single precision), bad_argument (the scale).
 Mesh readMesh(const std::string& path, const MeshOptions& options = {});
 
 /// Judges a mesh and makes it a solid with exact distances. It mends what is safe and notes it: it welds

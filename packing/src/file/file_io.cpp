@@ -73,7 +73,7 @@ std::string readFile(const std::string& path) {
   while (const std::size_t n = std::fread(block, 1, sizeof block, file.get())) {
     bytes.append(block, n);
     if (bytes.size() > kLargest)
-      throw Error(ErrorCode::bad_format, path + " is over 2 GiB, too large for a packing");
+      throw Error(ErrorCode::bad_format, path + " is over 2 GiB, too large to be read");
   }
   if (std::ferror(file.get())) {
     throw Error(ErrorCode::bad_format, path + " could not be read to its end (" + std::strerror(errno) + ")");

@@ -92,16 +92,25 @@ void noteUnits(MeshReport& report) {
   }
 }
 
-void notePlace(MeshReport& report) {
+// Only where all numbers are those of single precision was something lost on the way.
+bool isSingle(const Mesh& mesh, double scale) {
+  for (const Vec3d& v : mesh.vertices) {
+    for (double x : v) {
+      if (scale * static_cast<double>(static_cast<float>(x / scale)) != x) return false;
+    }
+  }
+  return true;
+}
+
+void notePlace(const Mesh& mesh, double scale, MeshReport& report) {
   double farthest = 0;
   for (int k = 0; k < 3; ++k) {
     farthest = std::max({farthest, std::abs(report.bounds.min[k]), std::abs(report.bounds.max[k])});
   }
   const double size = diagonal(report.bounds), step = farthest * std::numeric_limits<float>::epsilon();
-  if (step > kCoarse * size) {
+  if (step > kCoarse * size && isSingle(mesh, scale)) {
     report.notes.push_back("the mesh is " + text(farthest / size) +
-                           " of its sizes away from the origin; mesh files are read in single precision, "
-                           "whose numbers are " +
+                           " of its sizes away from the origin, in single precision, whose numbers are " +
                            text(step) + " m apart there: move it to the origin before it is exported");
   }
 }
@@ -144,7 +153,7 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
   }
   describe(topology, mesh, report);
   noteUnits(report);
-  notePlace(report);
+  notePlace(mesh, options.scale, report);
   if (report.non_manifold_edges > 0) {
     report.notes.push_back(counted(report.non_manifold_edges, "edge") + " used by more than two triangles");
   }

@@ -1,13 +1,13 @@
+#include "mesh/import/read_assimp.hpp"
+
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
-#include <filesystem>
+#include <utility>
 
 #include "common/bounds.hpp"
 #include "innersphere/error.hpp"
-#include "innersphere/mesh.hpp"
-#include "mesh/mesh_clean.hpp"
 #include "mesh/mesh_report.hpp"
 
 namespace innersphere {
@@ -69,7 +69,7 @@ class Collector {
         }
         triangle[k] = first + face.mIndices[k];
       }
-      if (frame.mirrors()) flip(triangle);
+      if (frame.mirrors()) std::swap(triangle[1], triangle[2]);
       mesh.triangles.push_back(triangle);
     }
   }
@@ -78,29 +78,9 @@ class Collector {
   const std::string& path_;
 };
 
-void requireReadableFile(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) {
-    throw Error(ErrorCode::file_not_found, "there is no file " + path + "; check the path");
-  }
-  if (std::filesystem::is_directory(status)) {
-    throw Error(ErrorCode::file_not_found, path + " is a folder; name a mesh file in it");
-  }
-  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0 && !error) {
-    throw Error(ErrorCode::empty_input, path + " is empty (0 bytes); export the mesh again");
-  }
-}
-
 }  // namespace
 
-Mesh readMesh(const std::string& path, const MeshOptions& options) {
-  if (!(options.scale > 0) || !std::isfinite(options.scale)) {
-    throw Error(ErrorCode::bad_argument,
-                "the scale of a mesh has to be a number over 0, not " + text(options.scale));
-  }
-  requireReadableFile(path);
-
+Mesh readAssimp(const std::string& path) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType);
   if (!scene || !scene->mRootNode) {
@@ -108,12 +88,7 @@ Mesh readMesh(const std::string& path, const MeshOptions& options) {
                                            "); use OBJ, STL, PLY, OFF or glTF with the matching ending");
   }
   Collector collector(*scene, path);
-  const double s = options.scale;
-  collector.addNode(*scene->mRootNode, {{{{s, 0, 0}, {0, s, 0}, {0, 0, s}}}, {}});
-  if (collector.mesh.triangles.empty()) {
-    throw Error(ErrorCode::empty_input, path + " has no triangles; export the surface, not points or curves");
-  }
-  weldEqual(collector.mesh);
+  collector.addNode(*scene->mRootNode, {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}});
   return std::move(collector.mesh);
 }
 

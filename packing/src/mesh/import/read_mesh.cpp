@@ -1,0 +1,75 @@
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "common/bounds.hpp"
+#include "file/file_io.hpp"
+#include "innersphere/error.hpp"
+#include "innersphere/mesh.hpp"
+#include "mesh/import/read_apart.hpp"
+#include "mesh/import/read_assimp.hpp"
+#include "mesh/import/readers.hpp"
+#include "mesh/mesh_clean.hpp"
+#include "mesh/mesh_report.hpp"
+
+namespace innersphere {
+namespace {
+
+void requireReadableFile(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw Error(ErrorCode::file_not_found, "there is no file " + path + "; check the path");
+  }
+  if (std::filesystem::is_directory(status)) {
+    throw Error(ErrorCode::file_not_found, path + " is a folder; name a mesh file in it");
+  }
+  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0 && !error) {
+    throw Error(ErrorCode::empty_input, path + " is empty (0 bytes); export the mesh again");
+  }
+}
+
+using Reader = Mesh (*)(std::string_view bytes, const std::string& path);
+
+// The project's own reader of a format, null if assimp reads it.
+Reader readerOf(const std::string& ending) {
+  if (ending == "obj") return readObj;
+  if (ending == "off") return readOff;
+  if (ending == "ply") return readPly;
+  if (ending == "stl") return readStl;
+  return nullptr;
+}
+
+void scaleBy(double scale, Mesh& mesh, const std::string& path) {
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    Vec3d& v = mesh.vertices[i];
+    const Vec3d before = v;
+    v = scale * v;
+    if (isFinite(v)) continue;
+    throw Error(ErrorCode::not_finite, "vertex " + std::to_string(i) + " of " + path + ", " + text(before) +
+                                           ", is too far away for the scale " + text(scale));
+  }
+}
+
+}  // namespace
+
+Mesh readMesh(const std::string& path, const MeshOptions& options) {
+  if (!(options.scale > 0) || !std::isfinite(options.scale)) {
+    throw Error(ErrorCode::bad_argument,
+                "the scale of a mesh has to be a number over 0, not " + text(options.scale));
+  }
+  requireReadableFile(path);
+  const Reader reader = readerOf(endingOf(path));
+  const auto read_other = [&] {
+    return options.own_process ? readApart(readAssimp, path) : readAssimp(path);
+  };
+  Mesh mesh = reader ? reader(readFile(path), path) : read_other();
+  if (mesh.triangles.empty()) {
+    throw Error(ErrorCode::empty_input, path + " has no triangles; export the surface, not points or curves");
+  }
+  scaleBy(options.scale, mesh, path);
+  weldEqual(mesh);
+  return mesh;
+}
+
+}  // namespace innersphere
