@@ -133,7 +133,7 @@ void buildPile50(SceneWorld& world, const SceneOptions& options) {
   kinds.insert(kinds.end(), {"knot", "bolt"});
   addPile(world, options, 50, addSolids(world, options, kinds, kDiagonal), gridOfNine());
   expectRest(world, 10);
-  expectNoneInFloor(world, 0, 4, {2, 0.1});  // bowls or bolts, in long steps more
+  expectNoneInFloor(world, 0, 4);
 }
 
 void buildScanBin(SceneWorld& world, const SceneOptions& options) {
@@ -141,7 +141,7 @@ void buildScanBin(SceneWorld& world, const SceneOptions& options) {
   addTray(world, kTray);
   addPile(world, options, 16, addSolids(world, options, scans(), kDiagonal), gridOfNine());
   expectRest(world, 8);
-  expectNoneInFloor(world, 0, 3, {3, 0.2});  // walls of the open horns
+  expectNoneInFloor(world, 0, 3);
 }
 
 }  // namespace innersphere::demo

@@ -115,7 +115,8 @@ constexpr std::size_t kSectors = 8;
 constexpr std::size_t kMostFacing = 6;
 /// This is how many others are samples, evenly spaced in the list.
 constexpr std::size_t kEvenlySpaced = 6;
-/// In spacings: a sphere that is this much less deep than the deepest only touches as it was enlarged.
+/// In spacings: a sphere that does not overlap, and is this much less deep than the deepest, is not worth a
+/// probe.
 constexpr btScalar kLessDeep = 2;
 
 // --- Manifold reduction ----------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "innersphere/patch.hpp"
 #include "narrow_phase/contact_samples.hpp"
@@ -36,6 +37,7 @@ struct Scratch {
   Scratch() { found.reserve(2 * kUsualSamples); }
   SortedContacts sorted;
   std::vector<SphereContact> aimed;
+  std::vector<btScalar> depths;
   std::vector<std::size_t> indices;
   std::vector<std::uint64_t> old_ids;
   SelectionScratch selection;
@@ -102,6 +104,21 @@ void aimAtSurface(const std::vector<SphereContact>& contacts, const SurfaceProbe
   }
 }
 
+/// Where there are spheres of the packing, they alone say where and how large a patch is.
+void measureByPacking(const std::vector<SphereContact>& contacts, const ContactSpheres& spheres,
+                      const btMatrix3x3& reference, std::vector<std::size_t>& indices,
+                      SortedContacts& sorted) {
+  for (std::size_t p = 0; p < sorted.moments.size(); ++p) {
+    const std::vector<std::size_t>& members = sorted.members[p];
+    indices.clear();
+    std::copy_if(members.begin(), members.end(), std::back_inserter(indices),
+                 [&](std::size_t i) { return spheres.isOfPacking(i); });
+    if (indices.empty() || indices.size() == members.size()) continue;
+    const PatchMoments moments = patchMoments(contacts, indices, reference);
+    if (moments.area > 0) sorted.moments[p] = moments;
+  }
+}
+
 void collectIds(const std::vector<ContactPatch>& patches, std::vector<std::uint64_t>& ids) {
   ids.clear();
   for (const ContactPatch& patch : patches) {
@@ -135,6 +152,8 @@ void selectFiltered(const std::vector<SphereContact>& contacts, const Probe& pro
   if (scratch.sorted.patches.empty() && !contacts.empty()) {
     aimAtSurface(contacts, probe, scratch.aimed);
     sortIntoPatches(scratch.aimed, reference, scratch.sorted);
+  } else {
+    measureByPacking(contacts, probe, reference, scratch.indices, scratch.sorted);
   }
   for (std::size_t p = 0; p < scratch.sorted.moments.size(); ++p) {
     const PatchMoments& moments = scratch.sorted.moments[p];
@@ -185,8 +204,11 @@ void selectSamples(const std::vector<SphereContact>& contacts, const PackingProb
 void selectSamples(const std::vector<SphereContact>& contacts, const ShapeProbe& probe,
                    const ContactSettings& settings, const StepAhead& step, const btMatrix3x3& reference,
                    const std::vector<ContactPatch>& patches, Samples& samples) {
+  std::vector<btScalar>& depths = scratchOfThread().depths;
+  depths.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) depths.push_back(probe.depth(i));
   const auto filter = [&](std::vector<std::size_t>& indices) {
-    dropShallow(contacts, settings.spacing, step.needed, indices);
+    dropShallow(depths, settings.spacing, step.needed, settings.inset_a, indices);
   };
   selectFiltered(contacts, probe, reference, patches, filter, samples);
 }

@@ -153,6 +153,12 @@ class PatchContactPoints {
     if (!has_corners && !crosses) addFace(sample, normal);
   }
 
+  /// For a sample whose line leaves A by its side: an edge or a corner of A beside it bears.
+  void addBeside(const ProbedSample& sample) {
+    EdgeContact crossing;
+    if (!sample.points.areFlat() || !addCrossing(sample.points, crossing)) addPeaks(sample, true);
+  }
+
   bool addCrossing(const OpposedPoints& points, EdgeContact& crossing) {
     return probe_.crossing(points, patch_.normal, crossing) &&
            (isFound(crossing.id) ||
@@ -215,7 +221,7 @@ class PatchContactPoints {
 
   void addFace(const ProbedSample& sample, const btVector3& normal) {
     const OpposedPoints& points = sample.points;
-    const bool faces = !points.areFlat() || opposed(points);
+    const bool faces = !points.areFlat() || points.normal_a.dot(points.normal_b) > kAlignedOnFacesCosine;
     if (!add(points, normal, sample.id, faces ? Kind::faces : Kind::edge)) return;
     found_.back().point.curvature_a = points.curvature_a;
     found_.back().point.curvature_b = points.curvature_b;
@@ -267,10 +273,7 @@ void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separati
   const ContactNormal normals(scratch.probed, nullptr);
   PatchContactPoints points(probe, of.patch, separation, scratch, found);
   for (const ProbedSample& sample : scratch.probed) points.addSample(sample, normals.at(sample));
-  for (const ProbedSample& sample : scratch.sideways) {
-    EdgeContact crossing;
-    if (sample.points.areFlat()) points.addCrossing(sample.points, crossing);
-  }
+  for (const ProbedSample& sample : scratch.sideways) points.addBeside(sample);
   points.shareOutArea();
 }
 

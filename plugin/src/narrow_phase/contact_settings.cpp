@@ -23,7 +23,10 @@ ContactSettings::ContactSettings(const ContactOptions& options, const PackingSha
     estimator = options.estimator;
     return;
   }
-  search_margin_a = separation + prefix_a->inset() * a.getLocalScaling().x();
+  // Other packings do not see feelers.
+  const btScalar inset = packing_b == nullptr ? prefix_a->feelers().inset : prefix_a->inset();
+  inset_a = inset * a.getLocalScaling().x();
+  search_margin_a = separation + inset_a;
   if (packing_b != nullptr) search_margin_b = prefix_b->inset() * b.getLocalScaling().x();
 }
 

@@ -82,7 +82,7 @@ bool PackingProbe::nearest(std::size_t index, btVector3& direction, OpposedPoint
   const std::size_t sphere = contacts_[index].sphere;
   const btVector3 centre = own.origin() + own.centreOf(sphere) - other.origin();
   const btScalar distance = 2 * (own.ownRadius(sphere) + a_.search_margin + b_.search_margin);
-  (of_a ? points.triangle_a : points.triangle_b) = own.shape().solid->triangleNear(sphere);
+  (of_a ? points.triangle_a : points.triangle_b) = own.triangleNear(sphere);
   SurfaceQueries::Nearest nearest;
   if (!other.nearest(centre, distance, nearest)) return false;
   if (!nearest.beside) (of_a ? points.triangle_b : points.triangle_a) = nearest.triangle;

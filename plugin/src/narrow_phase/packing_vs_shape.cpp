@@ -45,7 +45,7 @@ Overlap sumOf(const PlacedPacking& a, const std::vector<NearSphere>& near_sphere
   btVector3 force(0, 0, 0), torque(0, 0, 0), area(0, 0, 0), moment(0, 0, 0);
   for (const NearSphere& near_sphere : near_spheres) {
     const btScalar r = a.radiusOf(near_sphere.sphere) + a.margin;
-    if (!(near_sphere.distance < r)) continue;
+    if (!(near_sphere.distance < r) || a.isFeeler(near_sphere.sphere)) continue;
     const btVector3 centre = a.centreOf(near_sphere.sphere);
     const SphereContact contact = cap(near_sphere, centre, r);
     const btVector3 push = near_sphere.normal * btScalar(-contact.volume);
@@ -87,22 +87,23 @@ void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, 
     return;
   }
   const ContactSettings measure(options, packing_, other_, step.needed);
-  const PlacedPacking a(packing_, now.a, measure.estimator, measure.search_margin_a, measure.prefix_a);
+  PlacedPacking a(packing_, now.a, measure.estimator, measure.search_margin_a, measure.prefix_a);
+  if (measure.on_surfaces) a.addFeelers();
   near_spheres_.clear();
   surface_->findNearSpheres(a, now.b, near_spheres_);
   releaseIfEmpty(near_spheres_);
   on_surfaces = measure.on_surfaces;
   if (measure.on_surfaces) {
-    capsOf(a, a.search_margin, contacts);
+    searchCapsOf(a, contacts);
     assert(contacts.size() == near_spheres_.size());  // the probe counts on it
     const ShapeProbe probe(a, *surface_, now.b, near_spheres_);
     selectSamples(contacts, probe, measure, step, now.a.getBasis(), memory.patches, memory.samples);
     const bool near = refinePatches(memory.samples, probe, measure, step, memory.patches);
     // Spheres that overlap where no surface is near: the packing is too deep for them.
-    if (!near) capsOf(a, 0, contacts);
+    if (!near) volumeCapsOf(a, contacts);
     on_surfaces = near || contacts.empty();
   } else {
-    capsOf(a, 0, contacts);
+    volumeCapsOf(a, contacts);
     if (options.response == Response::penalty) overlap_ = sumOf(a, near_spheres_);
   }
   if (!on_surfaces) volumePatches(contacts, measure.spacing, now.a.getBasis(), memory.patches);
@@ -111,12 +112,18 @@ void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, 
   settings = measure;
 }
 
-void PackingVsShape::capsOf(const PlacedPacking& a, btScalar search_margin,
-                            std::vector<SphereContact>& caps) const {
+void PackingVsShape::searchCapsOf(const PlacedPacking& a, std::vector<SphereContact>& caps) const {
+  caps.clear();
+  for (const NearSphere& near_sphere : near_spheres_)
+    caps.push_back(cap(near_sphere, a.centreOf(near_sphere.sphere) + near_sphere.aside,
+                       a.searchRadius(near_sphere.sphere)));
+}
+
+void PackingVsShape::volumeCapsOf(const PlacedPacking& a, std::vector<SphereContact>& caps) const {
   caps.clear();
   for (const NearSphere& near_sphere : near_spheres_) {
-    const btScalar reach = a.radiusOf(near_sphere.sphere) + a.margin + search_margin;
-    if (near_sphere.distance < reach)
+    const btScalar reach = a.radiusOf(near_sphere.sphere) + a.margin;
+    if (near_sphere.distance < reach && !a.isFeeler(near_sphere.sphere))
       caps.push_back(cap(near_sphere, a.centreOf(near_sphere.sphere) + near_sphere.aside, reach));
   }
 }
@@ -129,14 +136,15 @@ bool PackingVsShape::hasSameShapes() {
 
 bool PackingVsShape::refine(const Placed& now, const StepAhead& step) {
   const btScalar separation = btMax(settings->spacing, step.needed + kSearchAgain * settings->spacing);
-  const btScalar search_margin = separation + settings->prefix_a->inset() * packing_.getLocalScaling().x();
-  const PlacedPacking a(packing_, now.a, settings->estimator, search_margin, settings->prefix_a);
+  PlacedPacking a(packing_, now.a, settings->estimator, separation + settings->inset_a, settings->prefix_a);
+  if (settings->on_surfaces) a.addFeelers();
   if (!surface_->updateNearSpheres(a, now.b, near_spheres_)) return false;
   memory.turnTo(now);
   const ShapeProbe probe(a, *surface_, now.b, near_spheres_);
   const bool near = refinePatches(memory.samples, probe, *settings, step, memory.patches);
   const auto cuts = [&](const NearSphere& near_sphere) {
-    return near_sphere.distance < a.radiusOf(near_sphere.sphere) + a.margin;
+    return !a.isFeeler(near_sphere.sphere) &&
+           near_sphere.distance < a.radiusOf(near_sphere.sphere) + a.margin;
   };
   if (!near && std::any_of(near_spheres_.begin(), near_spheres_.end(), cuts)) return false;
   memory.noteDepths(now, settings->separation);

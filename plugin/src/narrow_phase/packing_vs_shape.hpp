@@ -33,7 +33,10 @@ class PackingVsShape : public FoundContact {
  private:
   /// Searches where the bodies are at `now`, or will be then.
   void searchAt(const Placed& now, const ContactOptions& options, const StepAhead& step);
-  void capsOf(const PlacedPacking& a, btScalar search_margin, std::vector<SphereContact>& caps) const;
+  /// Lists what B cuts from the near spheres and feelers, as far as they search: one for each.
+  void searchCapsOf(const PlacedPacking& a, std::vector<SphereContact>& caps) const;
+  /// Lists what B cuts from the spheres themselves.
+  void volumeCapsOf(const PlacedPacking& a, std::vector<SphereContact>& caps) const;
 
   const PackingShape& packing_;
   const btCollisionShape& other_;

@@ -14,12 +14,6 @@ bool isOld(const PatchContacts& from, std::uint64_t id) {
   return std::find(from.old_ids.begin(), from.old_ids.end(), id) != from.old_ids.end();
 }
 
-/// A cap's depth is about twice its volume over its area. A sphere that is inside as a whole has no area.
-btScalar depthOf(const SphereContact& contact) {
-  const btScalar area = toBullet(contact.area).length();
-  return area > 0 ? 2 * contact.volume / area : btScalar(0);
-}
-
 struct Furthest {
   std::size_t index = 0;
   btScalar distance = -BT_LARGE_FLOAT;
@@ -110,15 +104,14 @@ void dropUnprobed(Samples& samples) {
   samples.lines.resize(kept);
 }
 
-void dropShallow(const std::vector<SphereContact>& contacts, btScalar spacing, btScalar needed,
+void dropShallow(const std::vector<btScalar>& depths, btScalar spacing, btScalar needed, btScalar inset,
                  std::vector<std::size_t>& indices) {
-  btScalar deepest = 0;
-  for (std::size_t i : indices) deepest = btMax(deepest, depthOf(contacts[i]));
-  const auto isShallow = [&](std::size_t i) {
-    const btScalar depth = depthOf(contacts[i]);
-    return depth > 0 && depth < deepest - kLessDeep * spacing - needed;
-  };
-  indices.erase(std::remove_if(indices.begin(), indices.end(), isShallow), indices.end());
+  btScalar deepest = -BT_LARGE_FLOAT;
+  for (std::size_t i : indices) deepest = btMax(deepest, depths[i]);
+  const btScalar least = btMin(deepest - kLessDeep * spacing - needed - inset, btScalar(0));
+  indices.erase(
+      std::remove_if(indices.begin(), indices.end(), [&](std::size_t i) { return depths[i] < least; }),
+      indices.end());
 }
 
 void appendSamples(const PatchContacts& from, SelectionScratch& scratch, Samples& samples) {

@@ -44,6 +44,8 @@ class ContactSpheres {
     btScalar distance;
   };
   virtual Protrusion protrusion(std::size_t index, const btVector3& normal) const = 0;
+  /// Returns false for a feeler: it overlaps spheres, which tell how large the contact is.
+  virtual bool isOfPacking(std::size_t) const { return true; }
 };
 
 /// Holds what appendSamples() chooses from.
@@ -67,10 +69,12 @@ void turn(const btMatrix3x3& by, Samples& samples);
 /// Drops the samples without a line: it met no surfaces, or these were too far apart to be probed again.
 void dropUnprobed(Samples& samples);
 
-/// Drops contacts that are far less deep than the deepest of them: these only touch because they were
-/// enlarged. But where bodies move, all that might meet within the step stays: what is `needed` [m] less
-/// deep. `spacing` is that of ContactSettings [m].
-void dropShallow(const std::vector<SphereContact>& contacts, btScalar spacing, btScalar needed,
+/// Drops contacts that only touch because they were enlarged, and are far less deep than the deepest.
+/// `depths` are those of the spheres themselves, negative where they are apart [m]. But a sphere may end as
+/// much as `inset` [m] further inside of the surface than the deepest, so what is less deep by that stays;
+/// and where bodies move, all that might meet within the step: what is `needed` [m] less deep. `spacing` is
+/// that of ContactSettings [m].
+void dropShallow(const std::vector<btScalar>& depths, btScalar spacing, btScalar needed, btScalar inset,
                  std::vector<std::size_t>& indices);
 
 /// Appends some contacts of a patch: those of the step before, those that span the patch, those that stand

@@ -69,7 +69,7 @@ bool ShapeProbe::goesOn(const NearSphere& near_sphere, const btVector3& place) c
 }
 
 bool ShapeProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const {
-  points.triangle_a = a_.shape().solid->triangleNear(near_spheres_[index].sphere);
+  points.triangle_a = a_.triangleNear(near_spheres_[index].sphere);
   direction = -near_spheres_[index].normal;
   return true;
 }
@@ -120,8 +120,7 @@ bool ShapeProbe::crossing(const OpposedPoints& points, const btVector3& directio
 }
 
 ContactSpheres::Protrusion ShapeProbe::protrusion(std::size_t index, const btVector3&) const {
-  const NearSphere& near_sphere = near_spheres_[index];
-  return {true, a_.ownRadius(near_sphere.sphere) - near_sphere.distance};
+  return {true, depth(index)};
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -35,6 +35,12 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
                 EdgeContact& crossing) const override;
   std::uint64_t id(std::size_t index) const override { return near_spheres_[index].sphere; }
   Protrusion protrusion(std::size_t index, const btVector3& normal) const override;
+  bool isOfPacking(std::size_t index) const override { return !a_.isFeeler(near_spheres_[index].sphere); }
+  /// Returns how deep the sphere itself is in the other shape, negative if it is outside [m].
+  btScalar depth(std::size_t index) const {
+    const NearSphere& near_sphere = near_spheres_[index];
+    return a_.ownRadius(near_sphere.sphere) + a_.margin - near_sphere.distance;
+  }
 
  private:
   /// Finds what a sphere at `from` would see, beside where one of ours is. Returns false if that is not

@@ -42,22 +42,36 @@ btScalar largestOvershoot(const Packing& packing, const VolumeTrueRadii* radii) 
 
 }  // namespace
 
-Prefix::Prefix(const Packing& packing, std::size_t sphere_count)
+Prefix::Prefix(const PackedModel& model, std::size_t sphere_count)
     : count(sphere_count),
-      volume_true(volumeTrueRadii(packing, sphere_count)),
-      largest_overshoot(largestOvershoot(packing, volume_true)),
-      median_radius(btScalar(packing.spheres[sphere_count / 2].radius)),
-      packing_(packing) {}
+      volume_true(volumeTrueRadii(model.packing(), sphere_count)),
+      largest_overshoot(largestOvershoot(model.packing(), volume_true)),
+      median_radius(btScalar(model.packing().spheres[sphere_count / 2].radius)),
+      model_(model) {}
 
 const SphereBvh& Prefix::tree() const {
-  return tree_.get([this] { return std::make_unique<SphereBvh>(packing_.spheres, count); });
+  return tree_.get([this] { return std::make_unique<SphereBvh>(model_.packing().spheres, count); });
 }
 
 btScalar Prefix::inset() const {
-  if (count == packing_.spheres.size() && packing_.quality.gap_max > 0) {
-    return btScalar(packing_.quality.gap_max);
+  const Packing& packing = model_.packing();
+  if (count == packing.spheres.size() && packing.quality.gap_max > 0) {
+    return btScalar(packing.quality.gap_max);
   }
-  return inset_.get([this] { return std::make_unique<btScalar>(largestInset(packing_, count)); });
+  return inset_.get([&] { return std::make_unique<btScalar>(largestInset(packing, count)); });
+}
+
+const Feelers& Prefix::feelers() const {
+  return feelers_.get([this] {
+    return std::make_unique<Feelers>(placeFeelers(model_.packing(), count, inset(), model_.surfaceQueries()));
+  });
+}
+
+const SphereBvh& Prefix::feelingTree() const {
+  const Feelers& more = feelers();
+  if (more.balls.empty()) return tree();
+  return feeling_tree_.get(
+      [&] { return std::make_unique<SphereBvh>(model_.packing().spheres, count, more.balls); });
 }
 
 PackedModel::PackedModel(std::shared_ptr<const CollisionModel> collision_model)
@@ -81,7 +95,7 @@ std::shared_ptr<const PackedModel> PackedModel::of(std::shared_ptr<const Collisi
 
 const Prefix& PackedModel::prefix(std::size_t count) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return prefixes_.try_emplace(count, packing(), count).first->second;
+  return prefixes_.try_emplace(count, *this, count).first->second;
 }
 
 const Prefix& PackedModel::prefixWithin(btScalar gap, const Prefix& most) const {

@@ -8,6 +8,7 @@
 
 #include "common/lazy.hpp"
 #include "innersphere/collision_model.hpp"
+#include "shape/feelers.hpp"
 #include "shape/principal_frame.hpp"
 #include "shape/shape_frame.hpp"
 #include "shape/sphere_bvh.hpp"
@@ -17,15 +18,24 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Holds the first spheres of a packing. Lengths are for scale 1 [m].
+class PackedModel;
+
+/// Holds the first spheres of a packing, and the feelers where these leave its surface out. Lengths are for
+/// scale 1 [m].
 class Prefix {
  public:
-  Prefix(const Packing& packing, std::size_t count);
+  /// The model must outlive it.
+  Prefix(const PackedModel& model, std::size_t count);
 
   const SphereBvh& tree() const;
   bool hasTree() const { return tree_.made(); }
   /// Returns how far the spheres may end inside of the surface; 0 if the packing has none.
   btScalar inset() const;
+  /// Returns the balls that feel where no sphere is near the surface: none where spheres are near it
+  /// everywhere. Call it only if the packing has a surface.
+  const Feelers& feelers() const;
+  /// Returns the tree of the spheres and, counted on from there, the feelers.
+  const SphereBvh& feelingTree() const;
 
   const std::size_t count;
   const VolumeTrueRadii* const volume_true;  ///< the longest list that is not longer, or null
@@ -33,9 +43,11 @@ class Prefix {
   const btScalar median_radius;
 
  private:
-  const Packing& packing_;
+  const PackedModel& model_;
   Lazy<SphereBvh> tree_;
   Lazy<btScalar> inset_;
+  Lazy<Feelers> feelers_;
+  Lazy<SphereBvh> feeling_tree_;
 };
 
 /// Holds what a model's shapes share. Trees are built when they are first asked for. Const members are safe

@@ -18,19 +18,30 @@ struct PlacedPacking {
 
   const PackingShape::Impl& shape() const { return *impl; }
   std::size_t count() const { return prefix->count; }
-  const SphereBvh& sphereBvh() const { return prefix->tree(); }
+  const SphereBvh& sphereBvh() const { return feelers == nullptr ? prefix->tree() : prefix->feelingTree(); }
   btScalar scale() const { return impl->scaling.x(); }
   const btVector3& origin() const { return world.getOrigin(); }
 
-  /// Returns the centre of sphere i relative to origin(), in axes of the world [m].
-  btVector3 centreOf(std::size_t i) const {
-    return world.getBasis() * (centre(impl->packing().spheres[i]) * scale());
+  /// Has feelers from now on: spheres from count() on, which bear no volume. Call it only if the packing has
+  /// a surface.
+  void addFeelers() { feelers = &prefix->feelers(); }
+  bool isFeeler(std::size_t i) const { return i >= count(); }
+  /// Returns sphere i, in the packing's frame and its lengths.
+  const Sphere& sphere(std::size_t i) const {
+    return isFeeler(i) ? feelers->balls[i - count()] : impl->packing().spheres[i];
   }
+  /// Returns a triangle near sphere i. Call it only if the packing has a surface.
+  std::size_t triangleNear(std::size_t i) const {
+    return isFeeler(i) ? feelers->triangles[i - count()] : impl->solid->triangleNear(i);
+  }
+
+  /// Returns the centre of sphere i relative to origin(), in axes of the world [m].
+  btVector3 centreOf(std::size_t i) const { return world.getBasis() * (centre(sphere(i)) * scale()); }
   /// Returns the sphere's own radius [m].
-  btScalar ownRadius(std::size_t i) const { return btScalar(impl->packing().spheres[i].radius) * scale(); }
+  btScalar ownRadius(std::size_t i) const { return btScalar(sphere(i).radius) * scale(); }
   /// Returns the sphere's radius for the estimator [m].
   btScalar radiusOf(std::size_t i) const {
-    return radii == nullptr ? ownRadius(i) : btScalar(radii[i]) * scale();
+    return radii == nullptr || isFeeler(i) ? ownRadius(i) : btScalar(radii[i]) * scale();
   }
   /// Returns how close to the other surface its centre must be to be reported [m].
   btScalar searchRadius(std::size_t i) const { return radiusOf(i) + margin + search_margin; }
@@ -46,9 +57,10 @@ struct PlacedPacking {
 
   const PackingShape::Impl* impl;
   const Prefix* prefix;
-  btTransform world;             ///< from the packing's frame, scaled, to the world
-  const float* radii = nullptr;  ///< volume-true radii, or null for the spheres' own
-  btScalar margin;               ///< of the shape: the solid is this much larger on all sides [m]
+  const Feelers* feelers = nullptr;  ///< null if they are not used
+  btTransform world;                 ///< from the packing's frame, scaled, to the world
+  const float* radii = nullptr;      ///< volume-true radii, or null for the spheres' own
+  btScalar margin;                   ///< of the shape: the solid is this much larger on all sides [m]
   btScalar search_margin;
   btScalar excess = 0;  ///< largest volume-true radius minus own radius [m]
 };

@@ -5,13 +5,16 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-SphereBvh::SphereBvh(const std::vector<Sphere>& spheres, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    btDbvtNode* leaf =
-        tree_.insert(btDbvtVolume::FromCR(centre(spheres[i]), btScalar(spheres[i].radius)), nullptr);
-    leaf->dataAsInt = static_cast<int>(i);
-  }
+SphereBvh::SphereBvh(const std::vector<Sphere>& spheres, std::size_t count,
+                     const std::vector<Sphere>& others) {
+  for (std::size_t i = 0; i < count; ++i) insert(spheres[i], i);
+  for (std::size_t i = 0; i < others.size(); ++i) insert(others[i], count + i);
   tree_.optimizeTopDown();
+}
+
+void SphereBvh::insert(const Sphere& sphere, std::size_t index) {
+  btDbvtNode* leaf = tree_.insert(btDbvtVolume::FromCR(centre(sphere), btScalar(sphere.radius)), nullptr);
+  leaf->dataAsInt = static_cast<int>(index);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -16,8 +16,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// from several threads at once.
 class SphereBvh {
  public:
-  /// Builds the tree of the first `count` spheres.
-  SphereBvh(const std::vector<Sphere>& spheres, std::size_t count);
+  /// Builds the tree of the first `count` spheres, and of others, which are counted on from there.
+  SphereBvh(const std::vector<Sphere>& spheres, std::size_t count, const std::vector<Sphere>& others = {});
   SphereBvh(const SphereBvh&) = delete;
   SphereBvh& operator=(const SphereBvh&) = delete;
 
@@ -28,6 +28,7 @@ class SphereBvh {
   }
 
  private:
+  void insert(const Sphere& sphere, std::size_t index);
   template <typename Enter, typename Visit>
   static void descend(const btDbvtNode* node, const Enter& enter, const Visit& visit) {
     if (!enter(node->volume.Mins(), node->volume.Maxs())) return;

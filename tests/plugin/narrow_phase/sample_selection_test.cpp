@@ -133,16 +133,27 @@ TEST(AppendSamples, AppendsPatchAfterPatch) {
 }
 
 TEST(DropShallow, KeepsWhatIsAlmostAsDeepAsTheDeepest) {
-  // Caps of depths 0 to 9 mm, twice their volume over their area; the last is inside as a whole.
-  std::vector<SphereContact> contacts(11);
-  std::vector<std::size_t> indices;
+  // 10 to 0.5 mm apart.
+  std::vector<btScalar> depths;
+  std::vector<std::size_t> all;
   for (std::size_t i = 0; i < 11; ++i) {
-    contacts[i].area = {0, 0, i < 10 ? 0.02F : 0.0F};
-    contacts[i].volume = 0.01F * (float(i) + 0.5F) * 1e-3F;
-    indices.push_back(i);
+    depths.push_back(btScalar(1e-3) * (btScalar(i) - btScalar(10.5)));
+    all.push_back(i);
   }
-  dropShallow(contacts, btScalar(1.6e-3), 0, indices);  // 3.2 mm less deep than 9.5 mm is not
-  EXPECT_EQ(indices, (std::vector<std::size_t>{6, 7, 8, 9, 10}));
+  std::vector<std::size_t> kept = all;
+  dropShallow(depths, btScalar(1.6e-3), 0, 0, kept);  // 3.2 mm less deep than 0.5 mm apart is not
+  EXPECT_EQ(kept, (std::vector<std::size_t>{7, 8, 9, 10}));
+  kept = all;
+  dropShallow(depths, btScalar(1.6e-3), btScalar(2e-3), btScalar(1e-3), kept);
+  EXPECT_EQ(kept, (std::vector<std::size_t>{4, 5, 6, 7, 8, 9, 10}));
+}
+
+TEST(DropShallow, KeepsAllThatOverlap) {
+  // However deep one is: what is in the other body has to come out.
+  const std::vector<btScalar> depths{btScalar(-0.01), btScalar(-0.001), btScalar(0.001), btScalar(0.3)};
+  std::vector<std::size_t> kept{0, 1, 2, 3};
+  dropShallow(depths, btScalar(1e-3), 0, 0, kept);
+  EXPECT_EQ(kept, (std::vector<std::size_t>{2, 3}));
 }
 
 TEST(Turn, TurnsNormalsAndLines) {

@@ -37,7 +37,7 @@ bool DistanceSurface::updateNearSpheres(const PlacedPacking& body, const btTrans
 bool DistanceSurface::updateNearSphere(const PlacedPacking& body, const btTransform& world,
                                        const btTransform& to_shape, NearSphere& near_sphere) const {
   Nearest found;
-  const Sphere& sphere = body.shape().packing().spheres[near_sphere.sphere];
+  const Sphere& sphere = body.sphere(near_sphere.sphere);
   if (!nearest(to_shape(centre(sphere) * body.scale()), found)) return false;
   near_sphere.distance = found.distance;
   near_sphere.normal = world.getBasis() * found.normal;

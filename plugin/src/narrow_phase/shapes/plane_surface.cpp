@@ -29,7 +29,7 @@ class PlaneSurface : public DistanceSurface {
       return across.dot(min + max) / 2 + offset <= extent.dot(max - min) + body.largestExcess();
     };
     const auto test = [&](std::size_t i) {
-      const btScalar distance = across.dot(centre(body.shape().packing().spheres[i])) + offset;
+      const btScalar distance = across.dot(centre(body.sphere(i))) + offset;
       if (!(distance < body.searchRadius(i))) return;
       near_spheres.push_back({static_cast<std::uint32_t>(i), distance, world.getBasis() * normal});
     };

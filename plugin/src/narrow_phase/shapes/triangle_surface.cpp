@@ -65,7 +65,7 @@ class Collector : public btTriangleCallback {
 
  private:
   void test(std::size_t i, const std::array<btVector3, 3>& v, const btVector3& normal) {
-    const btVector3 c = centre(body_.shape().packing().spheres[i]);
+    const btVector3 c = centre(body_.sphere(i));
     btSubSimplexClosestResult result;
     result.reset();
     solver_.closestPtPointTriangle(c, v[0], v[1], v[2], result);
@@ -269,13 +269,15 @@ class TriangleSurface : public ShapeSurface {
   }
 
   /// Whether the triangles that share the nearest point of `c` have nothing further out than it, up to
-  /// `tolerance`.
+  /// `tolerance`; of small ones, whose corners are never that far out, none that rises.
   static bool isOutermost(const TrianglePoint* c, const TrianglePoint* first, const TrianglePoint* last,
                           btScalar same, const btVector3& direction, btScalar tolerance) {
     bool outermost = true;
     forEachSharing(c, first, last, same, [&](const TrianglePoint& sharing) {
-      for (const btVector3& v : sharing.corners)
-        outermost = outermost && (v - c->point).dot(direction) < tolerance;
+      for (const btVector3& v : sharing.corners) {
+        const btVector3 way = v - c->point;
+        outermost = outermost && way.dot(direction) < btMin(tolerance, kFallingSine * way.length() + same);
+      }
     });
     return outermost;
   }

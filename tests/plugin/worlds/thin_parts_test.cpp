@@ -1,0 +1,158 @@
+// Walls and spikes that few spheres leave out lie on what they lie on.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "innersphere/mesh.hpp"
+#include "innersphere/packer.hpp"
+#include "test_packings.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+/// A body of revolution about z: (distance from the axis, z) from one place on the axis to another,
+/// counter-clockwise around the cross section.
+Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile) {
+  constexpr std::uint32_t kAround = 48;
+  const auto rings = static_cast<std::uint32_t>(profile.size() - 2);
+  Mesh mesh;
+  for (std::uint32_t k = 1; k <= rings; ++k) {
+    for (std::uint32_t i = 0; i < kAround; ++i) {
+      const double angle = 2 * M_PI * i / kAround;
+      mesh.vertices.push_back(
+          {profile[k][0] * std::cos(angle), profile[k][0] * std::sin(angle), profile[k][1]});
+    }
+  }
+  mesh.vertices.push_back({0, 0, profile.front()[1]});
+  mesh.vertices.push_back({0, 0, profile.back()[1]});
+  const std::uint32_t first = rings * kAround, last = first - kAround;
+  for (std::uint32_t i = 0; i < kAround; ++i) {
+    const std::uint32_t next = (i + 1) % kAround;
+    mesh.triangles.push_back({first, next, i});
+    mesh.triangles.push_back({last + i, last + next, first + 1});
+    for (std::uint32_t low = 0; low < last; low += kAround) {
+      mesh.triangles.push_back({low + i, low + next, low + kAround + next});
+      mesh.triangles.push_back({low + i, low + kAround + next, low + kAround + i});
+    }
+  }
+  return mesh;
+}
+
+/// A cup of 0.1 m with walls of 1 mm.
+Mesh cup() {
+  constexpr double kRadius = 0.05, kHeight = 0.1, kWall = 0.001;
+  std::vector<std::array<double, 2>> profile{{0, 0}, {kRadius, 0}};
+  for (int i = 1; i <= 10; ++i) profile.push_back({kRadius, kHeight * i / 10});
+  for (int i = 10; i >= 1; --i) profile.push_back({kRadius - kWall, kWall + (kHeight - kWall) * i / 10});
+  profile.push_back({kRadius - kWall, kWall});
+  profile.push_back({0, kWall});
+  return turnedMesh(profile);
+}
+
+/// A ball of 0.1 m with a horn of 0.2 m that ends in a point.
+Mesh horn() {
+  constexpr double kRadius = 0.05, kRoot = 0.012, kLength = 0.2;
+  std::vector<std::array<double, 2>> profile;
+  const double top = std::acos(kRoot / kRadius);
+  for (int i = 0; i <= 24; ++i) {
+    const double angle = -M_PI / 2 + (M_PI / 2 + top) * i / 24;
+    profile.push_back({i == 0 ? 0 : kRadius * std::cos(angle), kRadius * std::sin(angle)});
+  }
+  const double root = profile.back()[1];
+  for (int i = 1; i <= 12; ++i) profile.push_back({kRoot * (12 - i) / 12, root + kLength * i / 12});
+  profile.back()[0] = 0;
+  return turnedMesh(profile);
+}
+
+/// Packed with 256 spheres, once.
+std::shared_ptr<PackingShape> shapeOf(const std::string& solid) {
+  static std::map<std::string, std::shared_ptr<PackingShape>> shapes;
+  std::shared_ptr<PackingShape>& shape = shapes[solid];
+  if (!shape) {
+    PackOptions options;
+    options.spheres = 256;
+    options.overlap_errors = false;
+    shape = makeShape(pack(*makeSolid(solid == "cup" ? cup() : horn(), solid), options));
+  }
+  return shape;
+}
+
+struct Case {
+  std::string solid, ground;
+  double tilt;  ///< from standing, about x [rad]
+  int rate;     ///< [steps/s]
+};
+
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.solid << " on " << c.ground;
+}
+
+class ThinParts : public testing::TestWithParam<Case> {};
+
+TEST_P(ThinParts, LieOnTheGround) {
+  const Case& c = GetParam();
+  const std::shared_ptr<PackingShape> shape = shapeOf(c.solid);
+  TestWorld world;
+  PackingCollisionAlgorithm::prepareWorld(world.world);
+  btTriangleMesh triangles;
+  if (c.ground == "plane") world.addFloor();
+  if (c.ground == "box") world.add(std::make_shared<btBoxShape>(btVector3(1, 1, 1)), 0, btVector3(0, 0, -1));
+  if (c.ground == "mesh") {
+    for (const btScalar s : {btScalar(1), btScalar(-1)})
+      triangles.addTriangle(btVector3(-s, -s, 0), btVector3(s, -s, 0), btVector3(s, s, 0));
+    world.add(std::make_shared<btBvhTriangleMeshShape>(&triangles, true), 0, btVector3(0, 0, 0));
+  }
+  std::vector<btVector3> vertices;
+  btVector3 min(1, 1, 1), max(-1, -1, -1);
+  for (const auto& v : shape->model().packing().surface.vertices) {
+    vertices.push_back(shape->principalTransform() * btVector3(v[0], v[1], v[2]));
+    min.setMin(vertices.back());
+    max.setMax(vertices.back());
+  }
+  const auto lowest = [&](const btTransform& body) {
+    btScalar z = BT_LARGE_FLOAT;
+    for (const btVector3& v : vertices) z = btMin(z, (body * v).z());
+    return double(z);
+  };
+  btTransform place =
+      btTransform(btQuaternion(btVector3(1, 0, 0), btScalar(c.tilt))) * shape->principalTransform().inverse();
+  place.setOrigin(btVector3(btScalar(0.013), btScalar(0.027), 0));
+  place.getOrigin().setZ(btScalar(0.01 - lowest(place)));
+  btRigidBody& body = world.add(shape, 0.2, place.getOrigin(), place.getRotation());
+  body.setActivationState(DISABLE_DEACTIVATION);
+  body.setRollingFriction(btScalar(0.01));
+  world.run(2, 1.0 / c.rate);
+  const double size = (max - min).length();
+  EXPECT_GT(lowest(body.getWorldTransform()), -0.005 * size);
+  EXPECT_LT(lowest(body.getWorldTransform()), 0.005 * size);
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const char* ground : {"plane", "box", "mesh"}) {
+    for (const int rate : {240, 60}) {
+      // The cup on its bottom, its rim and its side; the horn on its side.
+      for (const double tilt : {0.0, M_PI, M_PI / 2 + 0.1}) all.push_back({"cup", ground, tilt, rate});
+      all.push_back({"horn", ground, M_PI / 2, rate});
+    }
+  }
+  return all;
+}
+
+std::string nameOf(const testing::TestParamInfo<Case>& info) {
+  const Case& c = info.param;
+  const std::string posture = c.tilt == 0 ? "_stands" : c.tilt > 3 ? "_on_its_rim" : "_lies";
+  return c.solid + posture + "_on_" + c.ground + "_at_" + std::to_string(c.rate);
+}
+
+INSTANTIATE_TEST_SUITE_P(With256Spheres, ThinParts, testing::ValuesIn(cases()), nameOf);
+
+}  // namespace
+}  // namespace innersphere::test
