@@ -222,7 +222,8 @@ class PatchContactPoints {
   void addFace(const ProbedSample& sample, const btVector3& normal) {
     const OpposedPoints& points = sample.points;
     const bool faces = !points.areFlat() || points.normal_a.dot(points.normal_b) > kAlignedOnFacesCosine;
-    if (!add(points, normal, sample.id, faces ? Kind::faces : Kind::edge)) return;
+    const Kind kind = faces ? Kind::faces : probe_.isOnFaceOfB(points) ? Kind::edge : Kind::line;
+    if (!add(points, normal, sample.id, kind)) return;
     found_.back().point.curvature_a = points.curvature_a;
     found_.back().point.curvature_b = points.curvature_b;
     if (!fitTogether(points.curvature_a, points.curvature_b))

@@ -19,6 +19,7 @@ struct WeightedPoint {
     edge,      ///< and a face, somewhere along it
     corner,    ///< of the one, over a face of the other, where the one reaches furthest
     crossing,  ///< of two edges
+    line,      ///< a face and an edge seen askew: the normal is only the line that was probed
   };
   ContactPoint point;
   Kind kind;

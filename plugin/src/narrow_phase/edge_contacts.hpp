@@ -34,6 +34,8 @@ class EdgeProbe {
   /// `direction` is about that in which the solids are in contact, from A to B.
   virtual bool crossing(const OpposedPoints& points, const btVector3& direction,
                         EdgeContact& crossing) const = 0;
+  /// Returns false if the point on B is known to lie on an edge, seen along no normal of its faces.
+  virtual bool isOnFaceOfB(const OpposedPoints&) const { return true; }
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -11,13 +11,15 @@ bool isFreedBy(const WeightedPoint& other, const WeightedPoint& point, btScalar 
   using Kind = WeightedPoint::Kind;
   const bool crossing = point.kind == Kind::crossing;
   if (!crossing && (other.kind != Kind::crossing || point.kind == Kind::faces)) return false;
-  if (other.kind == Kind::edge || point.point.normal.dot(other.point.normal) > kSameManifoldCosine)
+  if (other.kind == Kind::edge || other.kind == Kind::line) return false;
+  // What was seen askew is near the way that the crossing knows.
+  if (point.kind != Kind::line && point.point.normal.dot(other.point.normal) > kSameManifoldCosine)
     return false;
   const auto middle = [](const ContactPoint& p) { return p.on_b + p.normal * (p.depth / 2); };
   const btScalar depth = crossing ? point.point.depth : other.point.depth;
   const btScalar around = kSunkAround * btMax(depth, btScalar(0)) + spacing;
   if (middle(point.point).distance2(middle(other.point)) > around * around) return false;
-  return point.kind == Kind::edge || point.point.depth > other.point.depth;
+  return point.kind == Kind::edge || point.kind == Kind::line || point.point.depth > other.point.depth;
 }
 
 /// Chooses up to four of the points with one normal.

@@ -112,11 +112,21 @@ bool ShapeProbe::crossing(const OpposedPoints& points, const btVector3& directio
                           EdgeContact& crossing) const {
   SharpEdges b;
   OpposedPoints start = points;
-  // Seen from outside.
-  const btVector3 place = points.on_b - points.normal_b * a_.search_margin;
-  if (!other_.facets(a_, world_, b) || !b.nearestTriangle(place, start.triangle_b)) return false;
+  if (!faceOfB(points, b, start.triangle_b)) return false;
   crossing.is_alone = btFabs(b.face(start.triangle_b).dot(points.normal_b)) < kSameFaceCosine;
   return crossEdges({a_, {0, 0, 0}}, b, start, direction, crossing);
+}
+
+bool ShapeProbe::faceOfB(const OpposedPoints& points, SharpEdges& b, std::size_t& triangle) const {
+  // Seen from outside.
+  const btVector3 place = points.on_b - points.normal_b * a_.search_margin;
+  return other_.facets(a_, world_, b) && b.nearestTriangle(place, triangle);
+}
+
+bool ShapeProbe::isOnFaceOfB(const OpposedPoints& points) const {
+  SharpEdges b;
+  std::size_t triangle;
+  return !faceOfB(points, b, triangle) || btFabs(b.face(triangle).dot(points.normal_b)) > kSameFaceCosine;
 }
 
 ContactSpheres::Protrusion ShapeProbe::protrusion(std::size_t index, const btVector3&) const {

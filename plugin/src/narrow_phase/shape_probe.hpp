@@ -33,6 +33,7 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
+  bool isOnFaceOfB(const OpposedPoints& points) const override;
   std::uint64_t id(std::size_t index) const override { return near_spheres_[index].sphere; }
   Protrusion protrusion(std::size_t index, const btVector3& normal) const override;
   bool isOfPacking(std::size_t index) const override { return !a_.isFeeler(near_spheres_[index].sphere); }
@@ -50,6 +51,8 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   btScalar surfaceDistance(const NearSphere& near_sphere) const {
     return a_.ownRadius(near_sphere.sphere) + a_.search_margin;
   }
+  /// Finds the face of B that is nearest to a point of it. Returns false if its faces are not known.
+  bool faceOfB(const OpposedPoints& points, SharpEdges& b, std::size_t& triangle) const;
   /// Returns true if the plane that a sphere is nearest to is still the surface of B at `place` of it.
   bool goesOn(const NearSphere& near_sphere, const btVector3& place) const;
   /// Returns the sphere nearest to a corner that knows the face under it, or null if there is none.

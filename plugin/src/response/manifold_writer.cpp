@@ -115,8 +115,9 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     point.m_combinedContactDamping1 = law.damping;
     return;
   }
-  bool spring = law.spring && (point.m_contactPointFlags & kUsersOwn) == 0;
-  btScalar depth = spring ? law.depth : from.depth;
+  const bool users_own = (point.m_contactPointFlags & kUsersOwn) != 0;
+  bool spring = law.spring && !users_own;
+  btScalar depth = users_own ? from.depth : law.depth;
   // A bounce starts from the surface: the depth that was reached within the step must not add to it, nor the
   // distance that is left, or the give of the spring, take from it.
   const btScalar approach = motion.approachAt(from.on_b, from.normal);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <LinearMath/btMinMax.h>
 
 #include "innersphere/bullet_precision.hpp"
 
@@ -14,15 +15,20 @@ struct SolverSettings {
   explicit SolverSettings(const btContactSolverInfo& info)
       : warm_starting((info.m_solverMode & SOLVER_USE_WARMSTARTING) != 0 ? info.m_warmstartingFactor
                                                                          : btScalar(0)),
+        erp(btMax(btMax(info.m_erp, info.m_erp2), btScalar(1e-3))),
         friction_erp(info.m_frictionERP),
-        deepest_spring(info.m_splitImpulse ? kSpringShare * -info.m_splitImpulsePenetrationThreshold
-                                           : BT_LARGE_FLOAT),
+        deepest_push(info.m_splitImpulse ? -info.m_splitImpulsePenetrationThreshold : BT_LARGE_FLOAT),
+        deepest_spring(info.m_splitImpulse ? kSpringShare * deepest_push : BT_LARGE_FLOAT),
         one_friction_row((info.m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS) == 0) {}
 
   /// The part of its last impulse that a contact starts with.
   btScalar warm_starting = btScalar(0.85);
+  /// The part of its depth that a contact without a spring loses in a step.
+  btScalar erp = btScalar(0.2);
   /// The part of a slip that friction anchors undo in a step.
   btScalar friction_erp = btScalar(0.2);
+  /// Deeper contacts are pushed apart without giving the bodies a speed: the threshold of split impulses [m].
+  btScalar deepest_push = btScalar(0.04);
   /// Contacts deeper than the threshold of split impulses lose their spring: none is told to be deeper than
   /// this, three quarters of it [m].
   btScalar deepest_spring = btScalar(0.03);

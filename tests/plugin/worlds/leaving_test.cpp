@@ -1,0 +1,137 @@
+// What is inside comes out: bodies that start in another, or are thrown into it, have left it after a second,
+// and are not thrown.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "innersphere/mesh.hpp"
+#include "innersphere/packer.hpp"
+#include "named_packings.hpp"
+#include "test_packings.hpp"
+#include "test_world.hpp"
+#include "turned_meshes.hpp"
+
+namespace innersphere::test {
+namespace {
+
+struct Case {
+  std::string body, ground;
+  double sunk;   ///< of its height, below the ground
+  double speed;  ///< downwards [m/s]
+  Response response;
+  int rate;  ///< [steps/s]
+};
+
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.body << " in " << c.ground;
+}
+
+std::shared_ptr<PackingShape> shapeOf(const std::string& name) {
+  static std::map<std::string, std::shared_ptr<PackingShape>> shapes;
+  std::shared_ptr<PackingShape>& shape = shapes[name];
+  if (shape) return shape;
+  if (name == "horn") {
+    PackOptions options;
+    options.spheres = 256;
+    options.overlap_errors = false;
+    shape = makeShape(pack(*makeSolid(hornMesh(), name), options));
+  } else {
+    shape = makeNamedShape(name, 256, 0.2);
+  }
+  return shape;
+}
+
+/// A shape's corners, in the frame of the body.
+std::vector<btVector3> cornersOf(const PackingShape& shape) {
+  std::vector<btVector3> corners;
+  for (const auto& v : shape.model().packing().surface.vertices)
+    corners.push_back(shape.getLocalScaling() * (shape.principalTransform() * btVector3(v[0], v[1], v[2])));
+  return corners;
+}
+
+class Leaving : public testing::TestWithParam<Case> {};
+
+TEST_P(Leaving, TakesLessThanASecond) {
+  const Case& c = GetParam();
+  ContactOptions options;
+  options.response = c.response;
+  TestWorld world;
+  PackingCollisionAlgorithm::prepareWorld(world.world, options);
+  btTriangleMesh triangles;
+  if (c.ground == "plane") world.addFloor();
+  if (c.ground == "box") world.add(std::make_shared<btBoxShape>(btVector3(3, 3, 1)), 0, btVector3(0, 0, -1));
+  if (c.ground == "sheet") {
+    for (const btScalar s : {btScalar(3), btScalar(-3)})
+      triangles.addTriangle(btVector3(-s, -s, 0), btVector3(s, -s, 0), btVector3(s, s, 0));
+    world.add(std::make_shared<btBvhTriangleMeshShape>(&triangles, true), 0, btVector3(0, 0, 0));
+  }
+  const std::shared_ptr<PackingShape> shape = shapeOf(c.body);
+  const std::vector<btVector3> corners = cornersOf(*shape);
+  // The lowest and the highest place of the body.
+  const auto range = [&](const btTransform& body) {
+    std::pair<double, double> z{1e9, -1e9};
+    for (const btVector3& v : corners) {
+      z.first = std::min(z.first, double((body * v).z()));
+      z.second = std::max(z.second, double((body * v).z()));
+    }
+    return z;
+  };
+  const btTransform upside = btTransform(btQuaternion(btVector3(1, 0, 0), c.body == "horn" ? SIMD_PI : 0));
+  btTransform place = upside * shape->principalTransform().inverse();
+  place.setOrigin(btVector3(0, 0, 0));
+  const auto [low, high] = range(place);
+  place.getOrigin().setZ(btScalar(c.speed > 0 ? 0.3 - low : -low - c.sunk * (high - low)));
+  btRigidBody& body = world.add(shape, 1, place.getOrigin(), place.getRotation());
+  body.setActivationState(DISABLE_DEACTIVATION);
+  body.setRollingFriction(btScalar(0.01));
+  body.setLinearVelocity(btVector3(0, 0, btScalar(-c.speed)));
+  double fastest = 0;
+  double deepest = c.sunk * (high - low);
+  const double wait = c.speed > 0 ? 0.3 / c.speed : 0;
+  for (double t = 0; t < 1 + wait; t += 1.0 / c.rate) {
+    world.run(1.0 / c.rate, 1.0 / c.rate);
+    fastest = std::max(fastest, double(body.getLinearVelocity().z()));
+    deepest = std::max(deepest, -range(body.getWorldTransform()).first);
+  }
+  const double size = 0.4;
+  EXPECT_LT(-range(body.getWorldTransform()).first, 0.005 * size) << "deepest " << deepest;
+  // By the law: half of its size in a second, or three times its depth.
+  EXPECT_LT(fastest, 1.1 * std::max(0.5 * size, 3 * deepest));
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const Response response : {Response::compliant, Response::rigid}) {
+    for (const int rate : {240, 60}) {
+      for (const char* ground : {"box", "plane", "sheet"}) {
+        const bool sheet = std::string(ground) == "sheet";
+        for (const char* body : {"gear", "torus", "lbracket", "horn"}) {
+          if (sheet && std::string(body) == "horn") continue;  // a limit: it is only felt where it crosses
+          for (const double sunk : {0.3, 1.0}) {
+            if (sheet && sunk == 1) continue;  // it is on the other side
+            all.push_back({body, ground, sunk, 0, response, rate});
+          }
+          if (!sheet) all.push_back({body, ground, 0, 20, response, rate});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+std::string nameOf(const testing::TestParamInfo<Case>& info) {
+  const Case& c = info.param;
+  const std::string how = c.speed > 0 ? "_thrown_at_" : c.sunk == 1 ? "_deep_in_" : "_in_";
+  return c.body + how + c.ground + (c.response == Response::rigid ? "_rigid_at_" : "_compliant_at_") +
+         std::to_string(c.rate);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Leaving, testing::ValuesIn(cases()), nameOf);
+
+}  // namespace
+}  // namespace innersphere::test
