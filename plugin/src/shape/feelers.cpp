@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include "common/bullet_vectors.hpp"
-#include "common/parallel.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -20,15 +21,16 @@ constexpr btScalar kSmallest = btScalar(1e-3);
 /// A ball shrinks at most so often, until no more than this part of it is outside.
 constexpr int kShrinkings = 30;
 constexpr btScalar kShrinks = btScalar(1e-3);
-/// Places that one thread looks at, one after the other.
-constexpr std::size_t kBlock = 1024;
+/// In sizes of the solid: places this near to each other are looked at together.
+constexpr btScalar kCell = btScalar(0.05);
 
 /// This is a place of the surface.
 struct Place {
   btVector3 at;
   btVector3 normal;  ///< unit, out of the solid
   std::uint32_t triangle;
-  btScalar gap;  ///< to the nearest sphere or ball [m]
+  btScalar gap = BT_LARGE_FLOAT;  ///< to the nearest sphere or ball [m]
+  std::array<int, 3> cell{};      ///< of a grid
 };
 
 btScalar sizeOf(const Surface& surface) {
@@ -43,7 +45,7 @@ btScalar sizeOf(const Surface& surface) {
 /// The middles of the parts of each triangle, none longer than `apart`, and the vertices.
 std::vector<Place> placesOn(const Surface& surface, btScalar apart) {
   std::vector<Place> places;
-  std::vector<Place> corners(surface.vertices.size(), Place{{0, 0, 0}, {0, 0, 0}, 0, BT_LARGE_FLOAT});
+  std::vector<Place> corners(surface.vertices.size(), Place{{0, 0, 0}, {0, 0, 0}, 0});
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     btVector3 v[3];
     for (int k = 0; k < 3; ++k) v[k] = toBullet(surface.vertices[surface.triangles[t][k]]);
@@ -59,7 +61,7 @@ std::vector<Place> placesOn(const Surface& surface, btScalar apart) {
     const int parts = static_cast<int>(std::ceil(longest / apart));
     const auto add = [&](btScalar i, btScalar j) {
       const btVector3 at = v[0] + ((v[1] - v[0]) * i + (v[2] - v[0]) * j) / btScalar(parts);
-      places.push_back({at, across.normalized(), t, BT_LARGE_FLOAT});
+      places.push_back({at, across.normalized(), t});
     };
     for (int i = 0; i < parts; ++i) {
       for (int j = 0; i + j < parts; ++j) {
@@ -76,17 +78,58 @@ std::vector<Place> placesOn(const Surface& surface, btScalar apart) {
   return places;
 }
 
-template <typename Job>
-void forEachBlock(std::vector<Place>& places, const Job& job) {
-  inParallel((places.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t end = std::min(places.size(), (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < end; ++i) job(places[i]);
-  });
-}
+/// Holds places, those near each other together, and finds the one furthest from all balls.
+class Gaps {
+ public:
+  Gaps(std::vector<Place> places, btScalar cell_size) : places_(std::move(places)) {
+    for (Place& place : places_) {
+      for (int k = 0; k < 3; ++k)
+        place.cell[std::size_t(k)] = static_cast<int>(std::floor(place.at[k] / cell_size));
+    }
+    std::stable_sort(places_.begin(), places_.end(),
+                     [](const Place& a, const Place& b) { return a.cell < b.cell; });
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const btVector3& at = places_[i].at;
+      if (i == 0 || places_[i].cell != places_[i - 1].cell) cells_.push_back({i, i, at, at, BT_LARGE_FLOAT});
+      Cell& cell = cells_.back();
+      cell.end = i + 1;
+      cell.min.setMin(at);
+      cell.max.setMax(at);
+    }
+  }
 
-void closeGaps(const Sphere& ball, Place& place) {
-  place.gap = btMin(place.gap, place.at.distance(centre(ball)) - btScalar(ball.radius));
-}
+  void add(const Sphere& ball) {
+    const btVector3 middle = centre(ball);
+    for (Cell& cell : cells_) {
+      btVector3 beyond = cell.min - middle;
+      beyond.setMax(middle - cell.max);
+      beyond.setMax(btVector3(0, 0, 0));
+      if (!(beyond.length() - btScalar(ball.radius) < cell.gap)) continue;
+      cell.gap = -BT_LARGE_FLOAT;
+      for (std::size_t i = cell.begin; i < cell.end; ++i) {
+        Place& place = places_[i];
+        place.gap = btMin(place.gap, place.at.distance(middle) - btScalar(ball.radius));
+        cell.gap = btMax(cell.gap, place.gap);
+      }
+    }
+  }
+
+  const Place& furthest() const {
+    const auto smaller = [](const auto& a, const auto& b) { return a.gap < b.gap; };
+    const Cell& cell = *std::max_element(cells_.begin(), cells_.end(), smaller);
+    return *std::max_element(places_.begin() + std::ptrdiff_t(cell.begin),
+                             places_.begin() + std::ptrdiff_t(cell.end), smaller);
+  }
+
+ private:
+  struct Cell {
+    std::size_t begin, end;  ///< of places
+    btVector3 min, max;
+    btScalar gap;  ///< the largest [m]
+  };
+  std::vector<Place> places_;
+  std::vector<Cell> cells_;
+};
 
 /// The largest ball inside that touches a place.
 Sphere ballAt(const Place& place, btScalar size, const SurfaceQueries& surface) {
@@ -94,7 +137,8 @@ Sphere ballAt(const Place& place, btScalar size, const SurfaceQueries& surface) 
   for (int i = 0; i < kShrinkings && radius > kSmallest * size; ++i) {
     const btVector3 middle = place.at - place.normal * radius;
     SurfaceQueries::Nearest nearest;
-    surface.nearest(middle, BT_LARGE_FLOAT, nearest);
+    // The place itself is that near, but for rounding.
+    if (!surface.nearest(middle, radius * (1 + kShrinks), nearest)) break;
     if (nearest.distance < -radius * (1 - kShrinks)) break;  // it is inside
     // The ball through the place and this point, with its middle below the place.
     const btVector3 to_place = place.at - (middle - nearest.normal * nearest.distance);
@@ -115,22 +159,14 @@ Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
   feelers.inset = inset;
   const btScalar size = sizeOf(packing.surface);
   if (!(inset > kNear * size)) return feelers;
-  std::vector<Place> places = placesOn(packing.surface, kApart * size);
-  forEachBlock(places, [&](Place& place) {
-    for (std::size_t i = 0; i < count; ++i) closeGaps(packing.spheres[i], place);
-  });
-  const auto smaller = [](const Place& a, const Place& b) { return a.gap < b.gap; };
-  auto furthest = std::max_element(places.begin(), places.end(), smaller);
-  while (furthest->gap > kNear * size) {
-    const Sphere ball = ballAt(*furthest, size, surface);
-    feelers.balls.push_back(ball);
-    feelers.triangles.push_back(furthest->triangle);
-    // Rounding must not have it chosen again.
-    furthest->gap = 0;
-    forEachBlock(places, [&](Place& place) { closeGaps(ball, place); });
-    furthest = std::max_element(places.begin(), places.end(), smaller);
+  Gaps gaps(placesOn(packing.surface, kApart * size), kCell * size);
+  for (std::size_t i = 0; i < count; ++i) gaps.add(packing.spheres[i]);
+  for (Place place = gaps.furthest(); place.gap > kNear * size; place = gaps.furthest()) {
+    feelers.balls.push_back(ballAt(place, size, surface));
+    feelers.triangles.push_back(place.triangle);
+    gaps.add(feelers.balls.back());
   }
-  feelers.inset = furthest->gap;
+  feelers.inset = gaps.furthest().gap;
   return feelers;
 }
 
