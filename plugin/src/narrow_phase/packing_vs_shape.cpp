@@ -91,6 +91,7 @@ void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, 
   if (measure.on_surfaces) a.addFeelers();
   near_spheres_.clear();
   surface_->findNearSpheres(a, now.b, near_spheres_);
+  if (measure.on_surfaces) dropFeelersThrough(a);
   releaseIfEmpty(near_spheres_);
   on_surfaces = measure.on_surfaces;
   if (measure.on_surfaces) {
@@ -110,6 +111,25 @@ void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, 
   memory.noteSearch(now);
   memory.noteDepths(now, measure.separation);
   settings = measure;
+}
+
+void PackingVsShape::dropFeelersThrough(const PlacedPacking& a) {
+  static thread_local std::vector<const NearSphere*> nearest;
+  const auto isInside = [&](const NearSphere& n) { return a.isFeeler(n.sphere) && n.distance < 0; };
+  if (std::none_of(near_spheres_.begin(), near_spheres_.end(), isInside)) return;
+  nearest.assign(a.count(), nullptr);
+  for (const NearSphere& n : near_spheres_) {
+    if (a.isFeeler(n.sphere)) continue;
+    const NearSphere*& of_sphere = nearest[n.sphere];
+    if (of_sphere == nullptr || n.distance < of_sphere->distance) of_sphere = &n;
+  }
+  std::vector<NearSphere> kept;
+  kept.reserve(near_spheres_.size());
+  for (const NearSphere& n : near_spheres_) {
+    const NearSphere* const beside = isInside(n) ? nearest[a.sphereBeside(n.sphere)] : nullptr;
+    if (beside == nullptr || beside->normal.dot(n.normal) > 0) kept.push_back(n);
+  }
+  near_spheres_ = std::move(kept);
 }
 
 void PackingVsShape::searchCapsOf(const PlacedPacking& a, std::vector<SphereContact>& caps) const {

@@ -33,6 +33,9 @@ class PackingVsShape : public FoundContact {
  private:
   /// Searches where the bodies are at `now`, or will be then.
   void searchAt(const Placed& now, const ContactOptions& options, const StepAhead& step);
+  /// Drops feelers that are through the middle of something thin: they see its other side, and the sphere
+  /// next to them knows the way out.
+  void dropFeelersThrough(const PlacedPacking& a);
   /// Lists what B cuts from the near spheres and feelers, as far as they search: one for each.
   void searchCapsOf(const PlacedPacking& a, std::vector<SphereContact>& caps) const;
   /// Lists what B cuts from the spheres themselves.

@@ -151,6 +151,14 @@ Sphere ballAt(const Place& place, btScalar size, const SurfaceQueries& surface) 
   return {middle[0], middle[1], middle[2], static_cast<float>(radius)};
 }
 
+std::uint32_t nearestSphere(const Sphere& ball, const Packing& packing, std::size_t count) {
+  const auto gap = [&](const Sphere& s) { return centre(s).distance(centre(ball)) - btScalar(s.radius); };
+  const auto end = packing.spheres.begin() + std::ptrdiff_t(count);
+  const auto nearest = std::min_element(packing.spheres.begin(), end,
+                                        [&](const Sphere& a, const Sphere& b) { return gap(a) < gap(b); });
+  return static_cast<std::uint32_t>(nearest - packing.spheres.begin());
+}
+
 }  // namespace
 
 Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
@@ -164,6 +172,7 @@ Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
   for (Place place = gaps.furthest(); place.gap > kNear * size; place = gaps.furthest()) {
     feelers.balls.push_back(ballAt(place, size, surface));
     feelers.triangles.push_back(place.triangle);
+    feelers.spheres.push_back(nearestSphere(feelers.balls.back(), packing, count));
     gaps.add(feelers.balls.back());
   }
   feelers.inset = gaps.furthest().gap;

@@ -16,6 +16,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 struct Feelers {
   std::vector<Sphere> balls;
   std::vector<std::uint32_t> triangles;  ///< that they touch
+  std::vector<std::uint32_t> spheres;    ///< that they are nearest to
   btScalar inset = 0;  ///< how far spheres and balls together may end inside of the surface [m]
 };
 

@@ -30,6 +30,8 @@ struct PlacedPacking {
   const Sphere& sphere(std::size_t i) const {
     return isFeeler(i) ? feelers->balls[i - count()] : impl->packing().spheres[i];
   }
+  /// Returns the sphere that a feeler is nearest to.
+  std::size_t sphereBeside(std::size_t feeler) const { return feelers->spheres[feeler - count()]; }
   /// Returns a triangle near sphere i. Call it only if the packing has a surface.
   std::size_t triangleNear(std::size_t i) const {
     return isFeeler(i) ? feelers->triangles[i - count()] : impl->solid->triangleNear(i);
