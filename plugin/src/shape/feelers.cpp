@@ -33,7 +33,8 @@ struct Place {
   std::array<int, 3> cell{};      ///< of a grid
 };
 
-btScalar sizeOf(const Surface& surface) {
+/// Of its box.
+btScalar diagonalOf(const Surface& surface) {
   btVector3 min = toBullet(surface.vertices[0]), max = min;
   for (const auto& vertex : surface.vertices) {
     min.setMin(toBullet(vertex));
@@ -165,9 +166,11 @@ Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
                      const SurfaceQueries& surface) {
   Feelers feelers;
   feelers.inset = inset;
-  const btScalar size = sizeOf(packing.surface);
+  const btScalar size = diagonalOf(packing.surface);
   if (!(inset > kNear * size)) return feelers;
-  Gaps gaps(placesOn(packing.surface, kApart * size), kCell * size);
+  std::vector<Place> places = placesOn(packing.surface, kApart * size);
+  if (places.empty()) return feelers;  // no triangle has an area
+  Gaps gaps(std::move(places), kCell * size);
   for (std::size_t i = 0; i < count; ++i) gaps.add(packing.spheres[i]);
   for (Place place = gaps.furthest(); place.gap > kNear * size; place = gaps.furthest()) {
     feelers.balls.push_back(ballAt(place, size, surface));
