@@ -7,7 +7,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// Edges that rise less are level [rad].
-constexpr btScalar kLevel = btScalar(5e-3);
+constexpr btScalar kLevelEdge = btScalar(5e-3);
 
 }  // namespace
 
@@ -49,7 +49,7 @@ bool VertexHillClimb::from(std::size_t triangle, const btVector3& direction, con
   bool is_peak = true;
   for (std::uint32_t i = first_[top]; i < first_[top + 1]; ++i) {
     const btVector3 edge = at(neighbours_[i]) - at(top);
-    const btScalar rise = edge.dot(direction), level = kLevel * edge.length();
+    const btScalar rise = edge.dot(direction), level = kLevelEdge * edge.length();
     if (btFabs(rise) < level) vertices.push_back(neighbours_[i]);
     is_peak = is_peak && !(rise > level);
   }
