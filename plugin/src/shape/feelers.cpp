@@ -173,10 +173,13 @@ Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
   Gaps gaps(std::move(places), kCell * size);
   for (std::size_t i = 0; i < count; ++i) gaps.add(packing.spheres[i]);
   for (Place place = gaps.furthest(); place.gap > kNear * size; place = gaps.furthest()) {
-    feelers.balls.push_back(ballAt(place, size, surface));
+    const Sphere ball = ballAt(place, size, surface);
+    // Where numbers are too large to be told apart, it would be chosen again and again.
+    if (!(place.at.distance(centre(ball)) - btScalar(ball.radius) < place.gap)) break;
+    feelers.balls.push_back(ball);
     feelers.triangles.push_back(place.triangle);
-    feelers.spheres.push_back(nearestSphere(feelers.balls.back(), packing, count));
-    gaps.add(feelers.balls.back());
+    feelers.spheres.push_back(nearestSphere(ball, packing, count));
+    gaps.add(ball);
   }
   feelers.inset = gaps.furthest().gap;
   return feelers;
