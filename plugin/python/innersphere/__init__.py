@@ -26,11 +26,14 @@ from ._errors import (
     NoSphereFitsError,
     NotASolidError,
     NotFiniteError,
+    SweepError,
     UnsupportedVersionError,
     WriteError,
 )
 from ._pack import pack, read
+from ._poses import random_poses
 from ._progress import ProgressBar
+from ._sweep import sweep
 
 __all__ = [
     "CancelledError",
@@ -49,6 +52,7 @@ __all__ = [
     "Packing",
     "ProgressBar",
     "Query",
+    "SweepError",
     "UnsupportedVersionError",
     "WriteError",
     "__version__",
@@ -56,5 +60,7 @@ __all__ = [
     "overlap_dtype",
     "pack",
     "pair_dtype",
+    "random_poses",
     "read",
+    "sweep",
 ]
