@@ -44,6 +44,7 @@ def test_the_guide(tmp_path, monkeypatch):
     assert names["shared"]["volume"] == pytest.approx(0.5, rel=0.05)
     # Volume-true spheres are right in the mean: half of the way half is shared.
     assert names["volume"].mean() == pytest.approx(0.5, rel=0.1)
+    assert names["round_packing"].volume == pytest.approx(4 / 3 * np.pi / 8, rel=0.02)
     assert names["force"].shape == (1000, 3)
     assert len(names["of_second_pose"]) > 0
     assert names["place"][0] == pytest.approx([3, 0, 0], abs=2e-3)

@@ -11,7 +11,16 @@ share, and which force drives them apart. Lengths are in metres.
     print(shared["volume"], shared["force"])
 """
 
-from ._core import Packing, Query, __version__, cuda_available, overlap_dtype, pair_dtype
+from ._core import (
+    Packing,
+    Query,
+    __version__,
+    cuda_available,
+    overlap_dtype,
+    pair_dtype,
+    sphere_contact_dtype,
+)
+from ._distances import surface_of
 from ._errors import (
     CancelledError,
     DeviceError,
@@ -62,5 +71,7 @@ __all__ = [
     "pair_dtype",
     "random_poses",
     "read",
+    "sphere_contact_dtype",
+    "surface_of",
     "sweep",
 ]
