@@ -50,6 +50,8 @@ def test_the_guide(tmp_path, monkeypatch):
     assert names["place"][0] == pytest.approx([3, 0, 0], abs=2e-3)
     assert names["touching"]["force"][:, 2].sum() == pytest.approx(-2 * 9.81, rel=0.05)  # both lie
     names["p"].disconnect()
+    assert (tmp_path / "spheres.urdf").read_text().count("<sphere") == 32
+    assert 0 < names["links"]["base"].overhang < 0.2
     # Over all places, two unit cubes share 1 m^3 times 1 m^3; these poses are spread over 5 x 5 x 5 m.
     assert np.load(tmp_path / "volumes.npy").mean() == pytest.approx(1 / 125, rel=0.05)
     assert names["message"].startswith("query 17: the placement of B")
