@@ -11,6 +11,7 @@ Command checkCommand();
 Command convertCommand();
 Command viewCommand();
 Command overlapCommand();
+Command mergeCommand();
 Command sceneCommand();
 Command solidsCommand();
 

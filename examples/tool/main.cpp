@@ -41,9 +41,9 @@ Tool::Tool() {
   };
   root.flag("--version", version, "Print the version");
   root.flag("--help-all", help_all, "Print the help of all commands");
-  root.commands = {packCommand(), infoCommand(),       checkCommand(), convertCommand(),
-                   viewCommand(), overlapCommand(),    sceneCommand(), solidsCommand(),
-                   helpCommand(), completionCommand(), manCommand()};
+  root.commands = {packCommand(),   infoCommand(),    checkCommand(),      convertCommand(),
+                   viewCommand(),   overlapCommand(), mergeCommand(),      sceneCommand(),
+                   solidsCommand(), helpCommand(),    completionCommand(), manCommand()};
   root.notes = "innersphere COMMAND --help tells more. Results go to stdout, notes and progress to stderr.";
   root.exit_status = kExitCodeHelp;
   root.examples = {"innersphere pack bunny.obj --spheres 4000 -o bunny.cbor",

@@ -2,18 +2,20 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <optional>
+#include <string_view>
 
 #include "commands.hpp"
 #include "contact_arguments.hpp"
 #include "exit_codes.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/packer.hpp"
+#include "innersphere/packing_file.hpp"
 #include "innersphere/query.hpp"
 #include "innersphere/solids.hpp"
 #include "inputs.hpp"
 #include "outputs.hpp"
 #include "pose_table.hpp"
+#include "shard.hpp"
 #include "terminal.hpp"
 
 namespace innersphere::tool {
@@ -37,6 +39,7 @@ struct Arguments {
   QueryOptions query;
   QueryContextOptions context;
   Force force_law = Force::by_estimator;
+  Shard shard;
   bool force = false;
 };
 
@@ -127,9 +130,25 @@ std::shared_ptr<const CollisionModel> modelOf(const std::string& source, std::si
   return std::make_shared<CollisionModel>(std::make_shared<Packing>(loadOrPack(source, to_pack)));
 }
 
+// All that the numbers of the table depend on, as 16 hexadecimal digits.
+std::string jobOf(const PairQuery& query, const QueryOptions& options, const std::vector<NamedPose>& poses) {
+  std::string all = encodePacking(query.a->packing()) + encodePacking(query.b->packing());
+  for (const std::uint64_t word : {std::uint64_t{query.prefix_a}, std::uint64_t{query.prefix_b},
+                                   std::uint64_t(options.want), std::uint64_t(options.estimator)}) {
+    all += std::to_string(word) + ' ';
+  }
+  for (const NamedPose& pose : poses) {
+    all += pose.name;
+    all.append(reinterpret_cast<const char*>(&pose.placement), sizeof pose.placement);
+  }
+  char text[20];
+  std::snprintf(text, sizeof text, "%016zx", std::hash<std::string_view>()(all));
+  return text;
+}
+
 void run(Arguments& arguments) {
   checkOutput(arguments.output, arguments.force);
-  const std::vector<NamedPose> poses = readPoses(arguments.poses);
+  std::vector<NamedPose> poses = readPoses(arguments.poses);
   QueryContext context(arguments.context);
   const auto a = modelOf(arguments.a, arguments.spheres);
   const auto b = arguments.b == arguments.a ? a : modelOf(arguments.b, arguments.spheres);
@@ -146,7 +165,13 @@ void run(Arguments& arguments) {
   query.prefix_a = prefixOf(arguments, a->packing(), arguments.a);
   query.prefix_b = prefixOf(arguments, b->packing(), arguments.b);
 
-  std::string table = "pose,volume,cx,cy,cz,fx,fy,fz,tx,ty,tz,stiffness,pairs\n";
+  std::string table;
+  if (!arguments.shard.whole()) {
+    table = toText({arguments.shard, poses.size(), jobOf(query, arguments.query, poses)});
+    poses = {poses.begin() + static_cast<std::ptrdiff_t>(arguments.shard.firstRow(poses.size())),
+             poses.begin() + static_cast<std::ptrdiff_t>(arguments.shard.endRow(poses.size()))};
+  }
+  table += "pose,volume,cx,cy,cz,fx,fy,fz,tx,ty,tz,stiffness,pairs\n";
   QueryResult result;
   const Progress progress = progressBar();
   for (std::size_t first = 0; first < poses.size(); first += kBatch) {
@@ -194,6 +219,7 @@ Command overlapCommand() {
   command.count("--spheres", arguments->spheres, kNotNegative, "Use the largest ones only; 0: all");
   addEstimatorOption(command, arguments->query.estimator);
   addBackendOption(command, arguments->context.backend);
+  addShardOption(command, arguments->shard);
   command.choice<Force>(
       "--force-law", arguments->force_law,
       {{"by-estimator", Force::by_estimator}, {"gradient", Force::gradient}, {"volume", Force::volume}},
@@ -206,8 +232,8 @@ Command overlapCommand() {
       "of B's bounding box, stiffness (sum pi a^2) [m^2], overlapping sphere pairs. Forces are per unit of "
       "pressure (gradient,\n"
       "[m^2]) or of force density (volume, [m^3]). Everything is in A's coordinates.";
-  command.examples = {
-      "innersphere overlap cow.cbor cow.cbor --poses poses.csv --spheres 4000 -o overlap.csv"};
+  command.examples = {"innersphere overlap cow.cbor cow.cbor --poses poses.csv --spheres 4000 -o overlap.csv",
+                      "innersphere overlap cow.cbor cow.cbor --poses poses.csv --shard 3/8 -o part-3.csv"};
   command.run = [arguments] {
     run(*arguments);
     return kOk;

@@ -275,6 +275,66 @@ def test_pairs_are_those_that_overlap(box):
     assert found > 100
 
 
+def test_contacts_sum_to_the_overlap(box):
+    rng = np.random.default_rng(8)
+    poses, matrices = random_poses(rng, 5, 1.0)
+    query = Query()
+    for far in (np.zeros(3), np.array([1000.0, -2000.0, 500.0])):
+        solid = innersphere.pack((BOX_VERTICES + far, BOX_FACES), spheres=100, overlap_errors=False)
+        shift = moved(*-far)  # back to where the box is
+        pose_b = matrices @ shift
+        whole = query.overlap(solid, solid, shift, pose_b)
+        (of_a, first_a), (of_b, first_b) = query.contacts(solid, solid, shift, pose_b)
+        assert of_a.dtype == innersphere.sphere_contact_dtype and len(first_a) == len(first_b) == 6
+        for i in range(5):
+            for rows in (of_a[first_a[i] : first_a[i + 1]], of_b[first_b[i] : first_b[i + 1]]):
+                assert rows["volume"].sum() == pytest.approx(whole[i]["volume"], rel=1e-4, abs=1e-6)
+                np.testing.assert_allclose(rows["area"].sum(0), whole[i]["area"], atol=1e-4)
+                assert (np.diff(rows["sphere"].astype(int)) > 0).all()
+                mean = (rows["volume"][:, None] * rows["centroid"]).sum(0)
+                np.testing.assert_allclose(mean, whole[i]["volume"] * whole[i]["centroid"], atol=1e-3 * (1 + np.abs(far).max()))
+            # Each sphere of A has the lenses with all of B.
+            (a, r), (b, s) = placed(solid.spheres, matrix(solid.origin - far, NO_TURN)), placed(solid.spheres, pose_b[i] @ moved(*solid.origin))
+            shares = lens(np.linalg.norm(a[:, None] - b[None], axis=2), r[:, None], s[None]).sum(1)
+            raw, first = query.contacts(solid, solid, shift, pose_b[i], estimator="raw")[0]
+            expected = np.zeros(100)
+            expected[raw["sphere"]] = raw["volume"]
+            np.testing.assert_allclose(expected, shares, atol=2e-4)
+
+
+class OnlyDLPack:
+    """An array of another library, which knows of no numpy."""
+
+    def __init__(self, array, device=(1, 0)):
+        self._array, self._device = array, device
+
+    def __dlpack__(self, **options):
+        return self._array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self._device
+
+
+class OnDevice(OnlyDLPack):
+    """As torch and cupy hand out what lies on a device: not at all, until it is asked to come."""
+
+    def __dlpack__(self, **options):
+        raise BufferError("on a device")
+
+    def cpu(self):
+        return OnlyDLPack(self._array)
+
+
+def test_arrays_of_other_libraries(box):
+    query = Query()
+    poses = np.array([moved(0.1), moved(0.2, 0.3)])
+    expected = query.overlap(box, box, pose_b=poses)
+    for other in (OnlyDLPack(poses), OnDevice(poses, (2, 0))):
+        np.testing.assert_array_equal(query.overlap(box, box, pose_b=other), expected)
+    single = query.overlap(box, box, pose_b=OnlyDLPack(poses.astype(np.float32)))
+    np.testing.assert_allclose(single["volume"], expected["volume"], rtol=1e-5)
+
+
 def test_results_outlive_the_query_and_can_be_written(ball):
     got = Query().overlap(ball, ball, pose_b=np.tile(moved(1), (3, 1, 1)))
     again = got.copy()

@@ -72,6 +72,17 @@ def test_slices_are_the_largest_spheres(box):
         box[0]
 
 
+def test_errors_of_overlaps_are_told(box):
+    assert box.overlap_errors == ()
+    packing = innersphere.pack((BOX_VERTICES, BOX_FACES), spheres=300)
+    counts = [count for count, _, _ in packing.overlap_errors]
+    assert counts == [64, 128, 256, 300]
+    for _, raw, volume_true in packing.overlap_errors:
+        assert len(raw) == len(volume_true) == 4
+        assert all(0 < v < r < 1 for v, r in zip(volume_true[1:], raw[1:]))
+    assert [count for count, _, _ in packing[:200].overlap_errors] == [64, 128]
+
+
 def test_paths_arrays_and_objects_give_the_same_packing(box, tmp_path):
     path = write_obj(tmp_path / "box.obj")
     as_object = SimpleNamespace(vertices=BOX_VERTICES, faces=BOX_FACES)

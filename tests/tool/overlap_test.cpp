@@ -215,5 +215,68 @@ TEST_F(Overlap, FewerSpheresAreThePrefix) {
   EXPECT_EQ(readFile(path("more.csv")), readFile(path("all.csv")));
 }
 
+// The shards of a table of 700 rows (more than one batch), for some splits; more shards than rows, too.
+TEST_F(Overlap, ShardsMergeToTheSameBytes) {
+  succeed("pack torus --spheres 100 -o torus.cbor");
+  std::string poses = kHeader;
+  for (int i = 0; i < 700; ++i) {
+    poses +=
+        "p" + std::to_string(i) + ",0.6,-0.8,0," + std::to_string(1e-3 * i) + ",0.8,0.6,0,0.1,0,0,1,0.05\n";
+  }
+  writeFile(path("poses.csv"), poses);
+  const std::string command = "overlap torus.cbor torus.cbor --poses poses.csv -o ";
+  succeed(command + "whole.csv");
+  const std::string whole = readFile(path("whole.csv"));
+  for (const int count : {2, 3, 701}) {
+    // As a Slurm array would, but one after the other; the last of three only some.
+    std::string parts;
+    for (int i = count; i >= 1; --i) {
+      const std::string part = "part-" + std::to_string(i) + ".csv";
+      if (count < 700 || i % 100 == 1) {
+        succeed(command + part + " --force --shard " + std::to_string(i) + "/" + std::to_string(count));
+        parts += part + " ";
+      }
+    }
+    if (count > 700) {
+      refuse("merge " + parts + "-o many.csv", 3, {"missing", " 2 ", " 700"});
+      continue;
+    }
+    succeed("merge " + parts + "--force -o merged.csv");
+    EXPECT_EQ(readFile(path("merged.csv")), whole);
+  }
+}
+
+TEST_F(Overlap, ShardsThatDoNotFitTogetherAreNamed) {
+  writeFile(path("ball.xyzr"), "0 0 0 1\n");
+  const std::string row = "1,0,0,0.5,0,1,0,0,0,0,1,0\n";
+  writeFile(path("poses.csv"), kHeader + "a," + row + "b," + row + "c," + row);
+  writeFile(path("others.csv"), kHeader + "a," + row + "b," + row + "d," + row);
+  const auto part = [&](const char* poses, const char* shard, const char* name, const char* options = "") {
+    succeed(std::string("overlap ball.xyzr ball.xyzr --poses ") + poses + " --shard " + shard + " -o " +
+            name + options);
+  };
+  part("poses.csv", "1/2", "one.csv");
+  part("poses.csv", "2/2", "two.csv");
+  part("others.csv", "2/2", "other.csv");
+  part("poses.csv", "2/2", "raw.csv", " --estimator raw");
+  part("poses.csv", "2/3", "third.csv");
+  succeed("overlap ball.xyzr ball.xyzr --poses poses.csv -o whole.csv");
+  for (const char* wrong : {"other.csv", "raw.csv", "third.csv"})
+    refuse(std::string("merge one.csv ") + wrong + " -o out.csv", 3, {wrong, "different tables"});
+  refuse("merge one.csv -o out.csv", 3, {"missing: 2"});
+  refuse("merge two.csv -o out.csv", 3, {"missing: 1"});
+  refuse("merge one.csv two.csv one.csv -o out.csv", 3, {"one.csv", "twice"});
+  refuse("merge one.csv whole.csv -o out.csv", 3, {"whole.csv", "not a shard"});
+  refuse("merge one.csv nothing.csv -o out.csv", 3, {"nothing.csv"});
+  refuse("merge one.csv two.csv -o whole.csv", 5, {"whole.csv", "--force"});
+  const std::string two = readFile(path("two.csv"));
+  for (const std::size_t lost : {std::size_t{1}, std::size_t{60}}) {
+    writeFile(path("two.csv"), two.substr(0, two.size() - lost));
+    refuse("merge one.csv two.csv -o out.csv", 3, {"two.csv", "damaged"});
+  }
+  writeFile(path("two.csv"), two + two.substr(two.rfind("c,")));
+  refuse("merge one.csv two.csv -o out.csv", 3, {"two.csv", "3 whole rows of 2"});
+}
+
 }  // namespace
 }  // namespace innersphere::test

@@ -12,8 +12,8 @@ class Usage : public ToolTest {};
 
 TEST_F(Usage, EveryCommandHasHelp) {
   for (const char* command :
-       {"", "pack", "info", "check", "convert", "view", "overlap", "scene", "scene list", "scene run",
-        "scene check", "scene gallery", "solids", "help", "completion", "man"}) {
+       {"", "pack", "info", "check", "convert", "view", "overlap", "merge", "scene", "scene list",
+        "scene run", "scene check", "scene gallery", "solids", "help", "completion", "man"}) {
     const Outcome outcome = succeed(std::string(command) + " --help");
     EXPECT_NE(outcome.out.find("Usage:"), std::string::npos) << command;
   }
@@ -43,6 +43,10 @@ TEST_F(Usage, WrongCommandLinesAreNamed) {
   refuse("pack", 2, {"SOLID", "innersphere pack --help"});
   refuse("pack box torus", 2, {"torus"});
   refuse("overlap a b", 2, {"--poses"});
+  for (const char* shard : {"0/3", "4/3", "3", "1/", "-1/3", "1/3x"})
+    refuse(std::string("overlap a b --poses p.csv -o out.csv --shard ") + shard, 2,
+           {"--shard", shard, "3/8"});
+  refuse("merge -o out.csv", 2, {"SHARD"});
   refuse("help nonsense", 2, {"nonsense"});
   refuse("pack box --spheres", 2, {"--spheres"});
   refuse("pack box --spheres -3 -o box.json", 2, {"--spheres"});

@@ -11,7 +11,16 @@ share, and which force drives them apart. Lengths are in metres.
     print(shared["volume"], shared["force"])
 """
 
-from ._core import Packing, Query, __version__, cuda_available, overlap_dtype, pair_dtype
+from ._core import (
+    Packing,
+    Query,
+    __version__,
+    cuda_available,
+    overlap_dtype,
+    pair_dtype,
+    sphere_contact_dtype,
+)
+from ._distances import surface_of
 from ._errors import (
     CancelledError,
     DeviceError,
@@ -26,11 +35,14 @@ from ._errors import (
     NoSphereFitsError,
     NotASolidError,
     NotFiniteError,
+    SweepError,
     UnsupportedVersionError,
     WriteError,
 )
 from ._pack import pack, read
+from ._poses import random_poses
 from ._progress import ProgressBar
+from ._sweep import sweep
 
 __all__ = [
     "CancelledError",
@@ -49,6 +61,7 @@ __all__ = [
     "Packing",
     "ProgressBar",
     "Query",
+    "SweepError",
     "UnsupportedVersionError",
     "WriteError",
     "__version__",
@@ -56,5 +69,9 @@ __all__ = [
     "overlap_dtype",
     "pack",
     "pair_dtype",
+    "random_poses",
     "read",
+    "sphere_contact_dtype",
+    "surface_of",
+    "sweep",
 ]

@@ -9,14 +9,27 @@ from numpy.typing import NDArray
 
 
 def as_float64(values: Any, name: str) -> NDArray[np.float64]:
-    """Makes an array of doubles. Raises TypeError for anything but real numbers."""
+    """Makes an array of doubles, also of what lies on a device. Raises TypeError for anything but real numbers."""
     try:
-        array = np.asarray(values)
+        array = np.asarray(_on_host(values))
     except ValueError as error:  # rows of different lengths
         raise ValueError(f"{name}: {error}") from None
     if array.dtype.kind not in "fiu" and array.size > 0:
         raise TypeError(f"{name} has the dtype {array.dtype}; it must be of real numbers")
     return array.astype(np.float64, copy=False)
+
+
+def _on_host(values: Any) -> Any:
+    """Copies tensors of torch, cupy and others with DLPack from their device, without what is kept for gradients."""
+    if hasattr(values, "detach"):
+        values = values.detach()
+    cpu, pinned = 1, 3  # of DLPack
+    if not hasattr(values, "__dlpack_device__") or values.__dlpack_device__()[0] in (cpu, pinned):
+        return np.from_dlpack(values) if hasattr(values, "__dlpack__") and not hasattr(values, "__array__") else values
+    for copy in ("cpu", "get"):  # of torch and jax, of cupy
+        if hasattr(values, copy):
+            return _on_host(getattr(values, copy)())
+    return np.from_dlpack(values, device="cpu")  # numpy 2.1
 
 
 def as_indices(values: Any, name: str) -> NDArray[np.int64]:

@@ -92,6 +92,12 @@ class DeviceMemoryError(DeviceError, MemoryError):
     code = "device_out_of_memory"
 
 
+class SweepError(Error, RuntimeError):
+    """A block of a sweep failed; the message names its rows, and the cause is what its function raised."""
+
+    code = "sweep_failed"
+
+
 def _all(base: type[Error]) -> list[type[Error]]:
     return [base] + [c for sub in base.__subclasses__() for c in _all(sub)]
 

@@ -26,6 +26,7 @@ constexpr std::pair<const char*, Want> kWants[] = {
 struct Types {
   PyObject* overlap = nullptr;
   PyObject* pair = nullptr;
+  PyObject* contact = nullptr;
 };
 Types types;
 
@@ -57,6 +58,16 @@ nb::object structuredArray(std::vector<T>&& items, nb::handle type) {
   return bytes.attr("view")(type);
 }
 
+/// Items of all queries, and where those of each begin.
+template <typename T>
+nb::tuple ranges(QueryResult::Ranges<T>&& found, nb::handle type) {
+  auto* first = new std::vector<std::size_t>(std::move(found.first));
+  const nb::capsule owner(first, [](void* p) noexcept { delete static_cast<std::vector<std::size_t>*>(p); });
+  return nb::make_tuple(structuredArray(std::move(found.items), type),
+                        nb::ndarray<nb::numpy, std::int64_t>(reinterpret_cast<std::int64_t*>(first->data()),
+                                                             {first->size()}, owner));
+}
+
 /// Runs queries for Python. One at a time: a second thread waits for the first.
 class Query {
  public:
@@ -81,12 +92,15 @@ class Query {
                   const std::string& estimator, double margin) {
     const Batch batch(a, b, pose_a, pose_b, margin);
     QueryResult result = run(batch, {Want::pairs, parseWord("estimator", estimator, kEstimators)});
-    auto* first = new std::vector<std::size_t>(std::move(result.pairs.first));
-    const nb::capsule owner(first,
-                            [](void* p) noexcept { delete static_cast<std::vector<std::size_t>*>(p); });
-    return nb::make_tuple(structuredArray(std::move(result.pairs.items), types.pair),
-                          nb::ndarray<nb::numpy, std::int64_t>(reinterpret_cast<std::int64_t*>(first->data()),
-                                                               {first->size()}, owner));
+    return ranges(std::move(result.pairs), types.pair);
+  }
+
+  nb::tuple contacts(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b,
+                     const std::string& estimator, double margin) {
+    const Batch batch(a, b, pose_a, pose_b, margin);
+    QueryResult result = run(batch, {Want::contacts, parseWord("estimator", estimator, kEstimators)});
+    return nb::make_tuple(ranges(std::move(result.contacts_a), types.contact),
+                          ranges(std::move(result.contacts_b), types.contact));
   }
 
   const char* lastBackend() {
@@ -134,22 +148,29 @@ class Query {
     });
     QueryResult result;
     context_.run(queries_.data(), queries_.size(), options, result);
-    toFramesOfSolids(a, b, result.overlaps);
+    toFramesOfSolids(a, b, result);
     return result;
   }
 
   /// The query's points are relative to the packings' frames, which differ from those of the solids for
   /// solids that are far from their own origin.
-  void toFramesOfSolids(const Packing& a, const Packing& b, std::vector<Overlap>& overlaps) const {
+  void toFramesOfSolids(const Packing& a, const Packing& b, QueryResult& result) const {
     const auto turned = [](const Placement& place, const Vec3d& v) {
       const Mat3d& r = place.rotation;
       return Vec3d{r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
                    r[6] * v.x + r[7] * v.y + r[8] * v.z};
     };
+    std::vector<Overlap>& overlaps = result.overlaps;
     if (a.origin != Vec3d{}) {
       for (std::size_t i = 0; i < overlaps.size(); ++i) {
-        if (overlaps[i].volume > 0)
-          overlaps[i].centroid = overlaps[i].centroid + turned(queries_[i].placement_a, a.origin);
+        const Vec3d origin = turned(queries_[i].placement_a, a.origin);
+        if (overlaps[i].volume > 0) overlaps[i].centroid = overlaps[i].centroid + origin;
+        for (auto* contacts : {&result.contacts_a, &result.contacts_b}) {
+          if (contacts->items.empty()) continue;
+          for (std::size_t k = contacts->first[i]; k < contacts->first[i + 1]; ++k)
+            for (int axis = 0; axis < 3; ++axis)
+              contacts->items[k].centroid[axis] += static_cast<float>(origin[axis]);
+        }
       }
     }
     if (b.origin != Vec3d{}) {
@@ -188,7 +209,13 @@ void bindOverlaps(nb::module_& module) {
       sizeof(SpherePair), {{"a", "<u4", offsetof(SpherePair, a)}, {"b", "<u4", offsetof(SpherePair, b)}});
   module.attr("overlap_dtype") = overlap;
   module.attr("pair_dtype") = pair;
-  types = {overlap.release().ptr(), pair.release().ptr()};
+  nb::object contact =
+      structuredType(sizeof(SphereContact), {{"sphere", "<u4", offsetof(SphereContact, sphere)},
+                                             {"volume", "<f4", offsetof(SphereContact, volume)},
+                                             {"centroid", "(3,)<f4", offsetof(SphereContact, centroid)},
+                                             {"area", "(3,)<f4", offsetof(SphereContact, area)}});
+  module.attr("sphere_contact_dtype") = contact;
+  types = {overlap.release().ptr(), pair.release().ptr(), contact.release().ptr()};
 
   nb::class_<Query>(module, "Query",
                     R"(Finds the volume that two packings share, and the force that drives them apart.
@@ -246,6 +273,24 @@ the number of the query in C's order, for poses that are none; DeviceError.)")
 
 Returns (pairs, first): a structured array with the fields a and b, uint32, rows of a.spheres and b.spheres; and where
 the pairs of each query begin: those of query i are pairs[first[i]:first[i + 1]], sorted. Queries are in C's order.)")
+      .def("contacts", &Query::contacts, "a"_a, "b"_a, "pose_a"_a.none() = nb::none(),
+           "pose_b"_a.none() = nb::none(), nb::kw_only(), "estimator"_a = "volume_true", "margin"_a = 0.0,
+           nb::sig("def contacts(self, a: Packing, b: Packing, pose_a: numpy.typing.ArrayLike | "
+                   "tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None, pose_b: "
+                   "numpy.typing.ArrayLike | tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = "
+                   "None, *, estimator: typing.Literal['volume_true', 'raw'] = 'volume_true', margin: float "
+                   "= 0.0) -> tuple[tuple[numpy.typing.NDArray[typing.Any], "
+                   "numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[typing.Any], "
+                   "numpy.typing.NDArray[numpy.int64]]]"),
+           R"(What each sphere contributes to the overlap. Arguments and errors are those of overlap().
+
+Returns ((contacts, first) of A, (contacts, first) of B): structured arrays with a row for each sphere that touches,
+and where the rows of each query begin, as pairs() returns it. Their fields, float32 but the first:
+
+sphere      row of a.spheres or b.spheres, uint32
+volume      of its lenses with all spheres of the other [m^3]
+centroid    of these, relative to the translation of pose_a [m]
+area        sum of the areas of their rims, along the lines from A's centres to B's [m^2])")
       .def_prop_ro("last_backend", &Query::lastBackend,
                    nb::sig("def last_backend(self) -> typing.Literal['cpu', 'cuda']"),
                    "Where the last query ran: cpu or cuda; cpu before the first.");

@@ -1,0 +1,34 @@
+"""Poses for sweeps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._errors import InvalidArgumentError
+
+_STEPS = 2  # of Philox's counter for a pose; each gives four numbers
+
+
+def random_poses(
+    count: int, low: Any, high: Any, *, seed: int = 0, first: int = 0
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Makes random poses: places evenly between two corners, all turns alike.
+
+    low, high: the corners of the box of places [m]: three numbers, or one for all axes.
+    first: the number of the first pose. Pose n of a seed is the same, in whichever block it is made.
+
+    Returns positions (count, 3) and unit quaternions (count, 4), x y z w, as Query.overlap() takes them. Raises
+    InvalidArgumentError for a negative count or first.
+    """
+    if count < 0 or first < 0:
+        raise InvalidArgumentError(f"count is {count} and first is {first}; both must be 0 or more")
+    low, high = np.broadcast_to(low, 3).astype(float), np.broadcast_to(high, 3).astype(float)
+    source = np.random.Philox(key=seed)
+    source.advance(_STEPS * first)
+    u = np.random.Generator(source).random((count, 4 * _STEPS))
+    # K. Shoemake, Uniform random rotations, Graphics Gems III, 1992
+    r1, r2, a, b = np.sqrt(1 - u[:, 3]), np.sqrt(u[:, 3]), 2 * np.pi * u[:, 4], 2 * np.pi * u[:, 5]
+    return low + (high - low) * u[:, :3], np.stack([r1 * np.sin(a), r1 * np.cos(a), r2 * np.sin(b), r2 * np.cos(b)], 1)
