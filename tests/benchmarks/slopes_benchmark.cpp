@@ -1,6 +1,6 @@
-// What Bullet's own GImpact demo costs at 60 Hz, as packings and as its triangle meshes: a chain of tori hangs from a
-// kinematic one over two sloping planes, uneven lumps are thrown at it, and boxes slide down. Kinds of bodies, their
-// number and size are the demo's; the solids are ours. Bodies may sleep.
+// What Bullet's own GImpact demo costs at 60 Hz, as packings and as its triangle meshes: a chain of tori
+// hangs from a kinematic one over two sloping planes, uneven lumps are thrown at it, and boxes slide down.
+// Kinds of bodies, their number and size are the demo's; the solids are ours. Bodies may sleep.
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletDynamicsCommon.h>
@@ -11,8 +11,6 @@
 #include <cstdio>
 #include <ctime>
 #include <memory>
-#include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -84,20 +82,20 @@ Mesh torus() {
 
 /// 4 m across, uneven, of 512 triangles.
 Mesh lump() {
-  Mesh mesh = demo::lump(
-      [](const Vec3d& n) { return 1.7 + 0.35 * std::sin(3 * n[0] + 1) + 0.3 * std::cos(4 * n[1]) * n[2]; }, 3);
-  return mesh;
+  return demo::lump(
+      [](const Vec3d& n) { return 1.7 + 0.35 * std::sin(3 * n[0] + 1) + 0.3 * std::cos(4 * n[1]) * n[2]; },
+      3);
 }
 
 class World {
  public:
-  World(Model& torus, Model& lump, bool gimpact)
-      : gimpact_(gimpact), lump_(lump) {
+  World(Model& torus, Model& lump, bool gimpact) : gimpact_(gimpact), lump_(lump) {
     if (gimpact) {
       btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
     } else {
       PackingCollisionAlgorithm::registerAlgorithm(&dispatcher_);
     }
+    // The solver is as Bullet has it: the demo sets nothing.
     world_.setGravity(btVector3(0, 0, -10));
     add(std::make_unique<btBoxShape>(btVector3(100, 100, 1)), 0, at(0, 0, -12));
     add(std::make_unique<btStaticPlaneShape>(btVector3(-1, 0, 1).normalized(), 0), 0, at(0, 0, -9));
@@ -137,9 +135,12 @@ class World {
     return count;
   }
   int pairs() { return world_.getPairCache()->getNumOverlappingPairs(); }
-  int asleep() const { return count([](const btRigidBody& b) { return !b.isActive(); }); }
-  int lost() const { return count([](const btRigidBody& b) { return b.getWorldTransform().getOrigin().z() < -14; }); }
-  int moving() const { return count([](const btRigidBody&) { return true; }); }
+  int asleep() const {
+    return count([](const btRigidBody& b) { return !b.isActive(); });
+  }
+  int lost() const {
+    return count([](const btRigidBody& b) { return b.getWorldTransform().getOrigin().z() < -14; });
+  }
 
  private:
   static btTransform at(btScalar x, btScalar y, btScalar z) {
@@ -174,7 +175,7 @@ class World {
 };
 
 struct Row {
-  std::vector<double> steps;  // [us]
+  std::vector<double> steps;   // [us]
   std::vector<double> totals;  // [s]
   double contacts = 0, pairs = 0;
   int asleep = 0, lost = 0;
@@ -201,7 +202,9 @@ void run(const Settings& settings) {
       row.lost = world.lost();
     }
   }
-  std::printf("| shape | processor time of all steps [s] | first row = 1 | a step, median [ms] | 99 %% [ms] | contact points | pairs of boxes | asleep | lost |\n");
+  std::printf(
+      "| shape | processor time of all steps [s] | first row = 1 | a step, median [ms] | 99 %% [ms] | "
+      "contact points | pairs of boxes | asleep | lost |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
   for (int k = 0; k < (settings.alone ? 1 : 2); ++k) {
     const Row& row = rows[k];
@@ -221,11 +224,14 @@ int main(int argc, char** argv) try {
       ->capture_default_str()
       ->check(CLI::Range(64, 1000000));
   app.add_option("--steps", settings.steps, "of a run")->capture_default_str()->check(CLI::PositiveNumber);
-  app.add_option("--runs", settings.runs, "of each shape, in turn")->capture_default_str()->check(CLI::PositiveNumber);
+  app.add_option("--runs", settings.runs, "of each shape, in turn")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
   app.add_flag("--alone", settings.alone, "only packings, nothing to compare them with");
   CLI11_PARSE(app, argc, argv);
   std::printf("%s", heading("Cost of a step: solids on slopes", argc, argv).c_str());
-  std::printf("\n%d runs in turn of %d steps of 1/60 s; bodies may sleep.\n\n", settings.runs, settings.steps);
+  std::printf("\n%d runs in turn of %d steps of 1/60 s; bodies may sleep.\n\n", settings.runs,
+              settings.steps);
   run(settings);
   return 0;
 } catch (const innersphere::Error& error) {

@@ -1,5 +1,6 @@
 #include "shape/search_spheres.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "common/bullet_vectors.hpp"
@@ -13,6 +14,10 @@ namespace {
 /// In sizes of the solid: a piece of the surface is cut until the sphere it goes to is not further away than
 /// the nearest by more than this, anywhere on it.
 constexpr btScalar kSlack = btScalar(2e-3);
+
+/// In radii: spheres of a packing are enlarged by one in the median. Where it is more than this, they are
+/// small balls with wide gaps.
+constexpr btScalar kWideGaps = 2;
 
 /// This is a place of the surface.
 struct Place {
@@ -31,6 +36,9 @@ class Cover {
   Place placeAt(const btVector3& at);
   /// Enlarges a sphere until it holds the piece, or does that with both halves of the piece.
   void add(const Piece& piece);
+  /// Enlarges all spheres alike, if there are wide gaps between them: balls much larger than the spheres that
+  /// they come from point aside, where they meet others, unless those behind them do so, too.
+  void closeWideGaps();
   /// Returns by how much a sphere is enlarged [m].
   btScalar excess(std::size_t sphere) const { return excess_[sphere]; }
 
@@ -99,6 +107,18 @@ bool Cover::addHalves(const Piece& piece) {
   return true;
 }
 
+void Cover::closeWideGaps() {
+  std::vector<btScalar> in_radii;
+  for (std::size_t i = 0; i < excess_.size(); ++i) {
+    if (excess_[i] > 0) in_radii.push_back(excess_[i] / btScalar(spheres_[i].radius));
+  }
+  if (in_radii.empty()) return;
+  const auto median = in_radii.begin() + std::ptrdiff_t(in_radii.size() / 2);
+  std::nth_element(in_radii.begin(), median, in_radii.end());
+  if (*median > kWideGaps)
+    std::fill(excess_.begin(), excess_.end(), *std::max_element(excess_.begin(), excess_.end()));
+}
+
 }  // namespace
 
 std::vector<Sphere> searchSpheres(const Packing& packing, std::size_t count) {
@@ -108,6 +128,7 @@ std::vector<Sphere> searchSpheres(const Packing& packing, std::size_t count) {
   corners.reserve(surface.vertices.size());
   for (const auto& vertex : surface.vertices) corners.push_back(cover.placeAt(toBullet(vertex)));
   for (const auto& t : surface.triangles) cover.add({corners[t[0]], corners[t[1]], corners[t[2]]});
+  cover.closeWideGaps();
   std::vector<Sphere> enlarged(packing.spheres.begin(), packing.spheres.begin() + std::ptrdiff_t(count));
   for (std::size_t i = 0; i < count; ++i) enlarged[i].radius += static_cast<float>(cover.excess(i));
   return enlarged;

@@ -13,9 +13,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// Returns the first `count` spheres of a packing that has a surface, each enlarged as far as the part of the
 /// surface that it stands for. Each point of the surface is in one of them. So wherever two surfaces are
 /// no further apart than some distance, two enlarged spheres are that near to each other, and a search by
-/// that distance finds them. A sphere is enlarged by no more than 0.2 % of the solid's size (the diagonal of
-/// its box) beyond what the points that it is nearest to ask for; inner spheres, which are nearest to none,
-/// stay as they are.
+/// that distance finds them. A sphere stands for points that it is nearest to, or further from than the
+/// nearest by 0.2 % of the solid's size (the diagonal of its box) at most. Inner spheres, which stand for
+/// none, stay as they are. Small balls with wide gaps are no packing, and all enlarged by the same.
 std::vector<Sphere> searchSpheres(const Packing& packing, std::size_t count);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

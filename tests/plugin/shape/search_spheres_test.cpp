@@ -1,4 +1,5 @@
-// Enlarged spheres hold all of the surface, so that a search with them misses no place where two surfaces are near.
+// Enlarged spheres hold all of the surface, so that a search with them misses no place where two surfaces are
+// near.
 #include "shape/search_spheres.hpp"
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include "innersphere/packer.hpp"
 #include "innersphere/query.hpp"
 #include "innersphere/solids.hpp"
+#include "test_packings.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -99,24 +101,6 @@ TEST_P(SearchSpheres, HoldAllOfTheSurface) {
     EXPECT_LT(leastGap(p, e.spheres, e.count), 1e-6 * e.size);
 }
 
-TEST_P(SearchSpheres, AreNoLargerThanThatAsksFor) {
-  const Enlarged e(std::get<0>(GetParam()), std::get<1>(GetParam()));
-  // To the places that each is nearest to; between those looked at there may be some a little further away.
-  std::vector<double> widest(e.count, 0);
-  for (const Point& p : placesOn(e.packing.surface, 50000, 2)) {
-    std::size_t nearest = 0;
-    for (std::size_t i = 0; i < e.count; ++i) {
-      if (gapOf(p, e.packing.spheres[i]) < gapOf(p, e.packing.spheres[nearest])) nearest = i;
-    }
-    widest[nearest] = std::max(widest[nearest], gapOf(p, e.packing.spheres[nearest]));
-  }
-  for (std::size_t i = 0; i < e.count; ++i) {
-    const double excess = double(e.spheres[i].radius) - double(e.packing.spheres[i].radius);
-    EXPECT_GE(excess, 0) << i;
-    EXPECT_LT(excess, widest[i] + 0.015 * e.size) << i;
-  }
-}
-
 double distanceToEdge(const Point& p, const Point& a, const Point& b) {
   double along = 0, length2 = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -132,7 +116,8 @@ double distanceToTriangle(const Point& p, const std::array<Point, 3>& v) {
   for (std::size_t k = 0; k < 3; ++k) least = std::min(least, distanceToEdge(p, v[k], v[(k + 1) % 3]));
   Point u, w, n;
   for (std::size_t k = 0; k < 3; ++k) u[k] = v[1][k] - v[0][k], w[k] = v[2][k] - v[0][k];
-  for (std::size_t k = 0; k < 3; ++k) n[k] = u[(k + 1) % 3] * w[(k + 2) % 3] - u[(k + 2) % 3] * w[(k + 1) % 3];
+  for (std::size_t k = 0; k < 3; ++k)
+    n[k] = u[(k + 1) % 3] * w[(k + 2) % 3] - u[(k + 2) % 3] * w[(k + 1) % 3];
   const double n2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
   if (!(n2 > 0)) return least;
   for (std::size_t k = 0; k < 3; ++k) {  // over the triangle: on the inner side of all edges
@@ -149,11 +134,13 @@ double distanceToTriangle(const Point& p, const std::array<Point, 3>& v) {
   return std::fabs(height) / std::sqrt(n2);
 }
 
-/// Where a place of the one surface is near the other, as all triangles tell, a sphere that holds it is found.
+/// Where a place of the one surface is near the other, as all triangles tell, a sphere that holds it is
+/// found.
 TEST_P(SearchSpheres, FindAllContact) {
   const Enlarged e(std::get<0>(GetParam()), std::get<1>(GetParam()));
   auto only_spheres = std::make_shared<Packing>();
-  only_spheres->spheres.assign(e.packing.spheres.begin(), e.packing.spheres.begin() + std::ptrdiff_t(e.count));
+  only_spheres->spheres.assign(e.packing.spheres.begin(),
+                               e.packing.spheres.begin() + std::ptrdiff_t(e.count));
   CollisionModel model(only_spheres);
   model.update(e.spheres.data(), e.spheres.size());
   const std::vector<Point> places = placesOn(e.packing.surface, 400, 3);
@@ -170,9 +157,9 @@ TEST_P(SearchSpheres, FindAllContact) {
     double q[4], length2 = 0;
     for (double& x : q) x = normal(engine), length2 += x * x;
     const double w = q[0], x = q[1], y = q[2], z = q[3], s = 2 / length2;
-    query.placement_b.rotation = {1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w),
-                                  s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w),
-                                  s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)};
+    query.placement_b.rotation = {1 - s * (y * y + z * z), s * (x * y - z * w),     s * (x * z + y * w),
+                                  s * (x * y + z * w),     1 - s * (x * x + z * z), s * (y * z - x * w),
+                                  s * (x * z - y * w),     s * (y * z + x * w),     1 - s * (x * x + y * y)};
     for (double& t : query.placement_b.translation) t = 0.15 * e.size * normal(engine);
     context.run(&query, 1, {Want::contacts, Estimator::raw}, result);
     std::vector<bool> found(e.count, false);
@@ -213,6 +200,35 @@ INSTANTIATE_TEST_SUITE_P(Of, SearchSpheres,
                                          Case{"box", 8}, Case{"gear", 500}, Case{"lbracket", 1}),
                          nameOf);
 
+/// A cube about (x, 0, 0).
+void addCube(double x, double half, Surface& surface) {
+  const Surface cube = latticeBox({2 * half, 2 * half, 2 * half}, 1).surface;
+  const auto first = static_cast<std::uint32_t>(surface.vertices.size());
+  for (const auto& v : cube.vertices) surface.vertices.push_back({v[0] + float(x), v[1], v[2]});
+  for (const auto& t : cube.triangles)
+    surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+TEST(SearchSpheresOfTwoCubes, AreEnlargedEachToItsOwnCorners) {
+  Packing packing;
+  packing.spheres = {{0, 0, 0, 0.5f}, {2, 0, 0, 0.1f}, {0, 0, 0, 0.05f}};
+  addCube(0, 0.5, packing.surface);
+  addCube(2, 0.1, packing.surface);
+  const std::vector<Sphere> enlarged = searchSpheres(packing, 3);
+  EXPECT_NEAR(enlarged[0].radius, 0.5 * std::sqrt(3), 1e-5);
+  EXPECT_NEAR(enlarged[1].radius, 0.1 * std::sqrt(3), 1e-5);
+  EXPECT_EQ(enlarged[2].radius, 0.05f);  // nearest to none
+}
+
+TEST(SearchSpheresWithWideGaps, AreAllEnlargedAlike) {
+  const Packing packing = latticeBox({4, 4, 1}, 8);
+  const std::vector<Sphere> enlarged = searchSpheres(packing, packing.spheres.size());
+  const double r = packing.spheres[0].radius;
+  // The corner is as far from the sphere next to it as that is from its cell's: (1/4, 1/4, 1/16).
+  for (const Sphere& s : enlarged) EXPECT_NEAR(s.radius, std::hypot(0.25, 0.25, 0.0625), 1e-5);
+  EXPECT_GT(std::hypot(0.25, 0.25, 0.0625), 3 * r);
+}
+
 /// Far from the origin single precision leaves a surface in steps that are no smaller than a piece.
 TEST(SearchSpheresFarAway, EndWhereNumbersAreTooLarge) {
   Packing packing;
@@ -220,8 +236,7 @@ TEST(SearchSpheresFarAway, EndWhereNumbersAreTooLarge) {
   packing.surface.vertices = {{1e7f, 1e7f, 1e7f + 2}, {1e7f + 8, 1e7f, 1e7f + 2}, {1e7f, 1e7f + 1, 1e7f}};
   packing.surface.triangles = {{0, 1, 2}};
   const std::vector<Sphere> enlarged = searchSpheres(packing, 2);
-  for (const auto& v : packing.surface.vertices)
-    EXPECT_LT(leastGap({v[0], v[1], v[2]}, enlarged, 2), 1);
+  for (const auto& v : packing.surface.vertices) EXPECT_LT(leastGap({v[0], v[1], v[2]}, enlarged, 2), 1);
 }
 
 }  // namespace
