@@ -15,7 +15,9 @@ bool PackingProbe::probe(const btVector3& patch_normal, ProbedSample& sample) co
     return probeLine(sample.index, direction, btVector3(0, 0, 0), sample.points);
   };
   btVector3 to_nearest;
-  bool found = nearest(sample.index, to_nearest, start) && probeAlong(to_nearest);
+  // No line is longer than the way to the nearest point may be.
+  if (!nearest(sample.index, to_nearest, start)) return false;
+  bool found = probeAlong(to_nearest);
   const bool fits = found && opposed(sample.points) && to_nearest.dot(patch_normal) > kPatchCosine;
   if (!fits) found = probeAlong(patch_normal);
   if (found) align(sample);

@@ -91,7 +91,11 @@ PairQuery PackingVsPacking::makeQuery(SearchPass pass, const ContactSettings& me
   query.margin = a_->getMargin() + b_->getMargin();
   query.prefix_a = static_cast<std::uint32_t>(measure.prefix_a->count);
   query.prefix_b = static_cast<std::uint32_t>(measure.prefix_b->count);
-  if (pass == SearchPass::surfaces) query.margin += measure.search_margin();
+  if (pass == SearchPass::surfaces) {
+    query.a = &measure.prefix_a->searchModel();
+    query.b = &measure.prefix_b->searchModel();
+    query.margin += measure.separation;
+  }
   if (pass == SearchPass::deep)
     query.margin += gapsOf(*a_, *measure.prefix_a) + gapsOf(*b_, *measure.prefix_b);
   return query;

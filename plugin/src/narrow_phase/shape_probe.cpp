@@ -77,9 +77,12 @@ bool ShapeProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints&
 const NearSphere* ShapeProbe::sphereOver(const btVector3& corner, const btVector3& normal) const {
   const NearSphere* over = nullptr;
   btScalar least = BT_LARGE_FLOAT;
+  // In the packing's frame: there are many spheres, and the corner is turned once.
+  const btVector3 place = corner * a_.world.getBasis() / a_.scale();
+  const btScalar scale2 = a_.scale() * a_.scale();
   for (const NearSphere& near_sphere : near_spheres_) {
     const btScalar size = surfaceDistance(near_sphere);
-    const btScalar distance2 = a_.centreOf(near_sphere.sphere).distance2(corner);
+    const btScalar distance2 = centre(a_.sphere(near_sphere.sphere)).distance2(place) * scale2;
     if (near_sphere.isOnEdge() || !(distance2 < size * size)) continue;
     if (!(near_sphere.normal.dot(-normal) > kSameFaceCosine)) continue;
     if (!(distance2 < least)) continue;

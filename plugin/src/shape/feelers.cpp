@@ -33,16 +33,6 @@ struct Place {
   std::array<int, 3> cell{};      ///< of a grid
 };
 
-/// Of its box.
-btScalar diagonalOf(const Surface& surface) {
-  btVector3 min = toBullet(surface.vertices[0]), max = min;
-  for (const auto& vertex : surface.vertices) {
-    min.setMin(toBullet(vertex));
-    max.setMax(toBullet(vertex));
-  }
-  return (max - min).length();
-}
-
 /// The middles of the parts of each triangle, none longer than `apart`, and the vertices.
 std::vector<Place> placesOn(const Surface& surface, btScalar apart) {
   std::vector<Place> places;

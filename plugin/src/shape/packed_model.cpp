@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/bullet_vectors.hpp"
+#include "shape/search_spheres.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -72,6 +73,18 @@ const SphereBvh& Prefix::feelingTree() const {
   if (more.balls.empty()) return tree();
   return feeling_tree_.get(
       [&] { return std::make_unique<SphereBvh>(model_.packing().spheres, count, more.balls); });
+}
+
+const CollisionModel& Prefix::searchModel() const {
+  return search_model_.get([this] {
+    const std::vector<Sphere>& all = model_.packing().spheres;
+    auto first = std::make_shared<Packing>();
+    first->spheres.assign(all.begin(), all.begin() + std::ptrdiff_t(count));
+    auto model = std::make_unique<CollisionModel>(std::move(first));
+    const std::vector<Sphere> enlarged = searchSpheres(model_.packing(), count);
+    model->update(enlarged.data(), enlarged.size());
+    return model;
+  });
 }
 
 PackedModel::PackedModel(std::shared_ptr<const CollisionModel> collision_model)

@@ -37,6 +37,10 @@ class Prefix {
   /// Returns the tree of the spheres and, counted on from there, the feelers.
   const SphereBvh& feelingTree() const;
 
+  /// Returns the model of the spheres enlarged, see searchSpheres(), in their order. Call it only if the
+  /// packing has a surface.
+  const CollisionModel& searchModel() const;
+
   const std::size_t count;
   const VolumeTrueRadii* const volume_true;  ///< the longest list that is not longer, or null
   const btScalar largest_overshoot;          ///< largest of them minus the sphere's own radius; 0 if none
@@ -48,6 +52,7 @@ class Prefix {
   Lazy<btScalar> inset_;
   Lazy<Feelers> feelers_;
   Lazy<SphereBvh> feeling_tree_;
+  Lazy<CollisionModel> search_model_;
 };
 
 /// Holds what a model's shapes share. Trees are built when they are first asked for. Const members are safe

@@ -117,6 +117,8 @@ btScalar NearestTriangle::test(std::size_t t) {
   const btVector3& face = triangles_.face(t);
   if (face.isZero()) return farthest2();
   const btVector3* const corners = triangles_.corners(t);
+  const btScalar over_plane = face.dot(point_ - corners[0]);
+  if (over_plane * over_plane > farthest2() * (1 + kSame)) return farthest2();
   btSubSimplexClosestResult closest;
   closest.reset();
   solver_.closestPtPointTriangle(point_, corners[0], corners[1], corners[2], closest);
@@ -154,6 +156,15 @@ bool NearestTriangle::beside() const {
 }
 
 }  // namespace
+
+btScalar diagonalOf(const Surface& surface) {
+  btVector3 min = toBullet(surface.vertices[0]), max = min;
+  for (const auto& vertex : surface.vertices) {
+    min.setMin(toBullet(vertex));
+    max.setMax(toBullet(vertex));
+  }
+  return (max - min).length();
+}
 
 SurfaceQueries::SurfaceQueries(const Surface& surface) : surface_(surface), tree_(surface) {}
 

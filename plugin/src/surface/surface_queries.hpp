@@ -14,6 +14,9 @@ class btTriangleCallback;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Returns the diagonal of the box around a surface that has vertices [m].
+btScalar diagonalOf(const Surface& surface);
+
 /// Answers in the surface's frame and its lengths. The surface must outlive it. Const members are safe to
 /// call from several threads at once.
 class SurfaceQueries {

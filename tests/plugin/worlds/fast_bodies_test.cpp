@@ -153,8 +153,12 @@ TEST(FastBodies, MeetEachOther) {
       const btVector3 before = momentum();
       for (int s = 0; s < std::lround((start / speed + 0.2) / kStep); ++s) {
         world.world.stepSimulation(btScalar(kStep), 0);
-        ASSERT_GT(upper.getWorldTransform().getOrigin().z(), lower.getWorldTransform().getOrigin().z())
-            << speed << " m/s, start " << i;
+        // Once they have met they turn about each other, at a hundredth of their speed, until either may be
+        // the upper one. What goes through is fast.
+        const btScalar apart =
+            upper.getWorldTransform().getOrigin().z() - lower.getWorldTransform().getOrigin().z();
+        const btScalar approach = lower.getLinearVelocity().z() - upper.getLinearVelocity().z();
+        ASSERT_TRUE(apart > 0 || approach < btScalar(0.1 * speed)) << speed << " m/s, start " << i;
       }
       EXPECT_LT((momentum() - before).length(), 1e-4 * 3 * speed);
     }
