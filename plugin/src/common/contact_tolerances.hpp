@@ -77,6 +77,8 @@ constexpr btScalar kShorter = 3;
 constexpr btScalar kClimbs = btScalar(0.25);
 /// [rad]: where the slope is less, the top is reached: the normals are that close.
 constexpr btScalar kLevel = btScalar(1e-5);
+/// [rad]: an ascent that ends where the slope is less has reached its top.
+constexpr btScalar kReached = btScalar(1e-3);
 /// [rad]: other samples ascend where the slope is less. These are the places that a rolling body meets next.
 constexpr btScalar kSlopeBeside = btScalar(0.1);
 /// [rad]: a slope that is steeper says little about the top.
@@ -130,6 +132,10 @@ constexpr btScalar kKeepDepth = btScalar(1e-3);
 constexpr btScalar kPreferRim = btScalar(0.5);
 /// In spacings: a point that is less deep than the deepest by this much is worth 1/e of it.
 constexpr btScalar kWorthFalls = btScalar(0.1);
+/// In sizes of the smaller body: where curved bodies are deeper in each other, the sides of their hill bear,
+/// too. That is twice the depth at which springs have become twice as stiff: under such loads the top alone,
+/// which a step takes as fixed while bodies turn under it, lets chains swing up.
+constexpr btScalar kSunkIn = btScalar(0.004);
 /// Cosine, 15 degrees: points whose normals are closer to that of the deepest share its manifold.
 constexpr btScalar kSameManifoldCosine = btScalar(0.966);
 /// More manifolds of one pair than this are merged.

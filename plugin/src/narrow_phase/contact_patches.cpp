@@ -176,6 +176,7 @@ bool refine(Samples& samples, const Probe& probe, const ContactSettings& setting
     findContactPoints(probe, p, settings.separation, samples, scratch.sampling, found);
   if (first_time) dropUnprobed(samples);
   keepLeastWaysOut(settings.spacing, scratch.reduction, found);
+  keepTops(settings.separation, step, found);
   reduceToManifolds(found, scratch.old_ids, settings.spacing, step, scratch.reduction, patches);
   return std::any_of(found.begin(), found.end(),
                      [&](const WeightedPoint& p) { return p.point.depth > -settings.spacing; });

@@ -7,6 +7,7 @@
 #include <LinearMath/btVector3.h>
 
 #include "innersphere/bullet_precision.hpp"
+#include "narrow_phase/hill.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -21,12 +22,11 @@ constexpr std::uint64_t kDeepestId = ~std::uint64_t(0);
 /// This is a point of contact. It has the axes of the world, and positions are relative to the origin of A's
 /// packing.
 struct ContactPoint {
-  btVector3 on_b{0, 0, 0};    ///< on the surface of B [m]
-  btVector3 normal{0, 0, 0};  ///< unit, from A to B
-  btScalar depth = 0;         ///< [m], negative where the bodies do not touch yet
-  std::uint64_t id = 0;       ///< of the sphere that it was found at, the same from step to step
-  btScalar curvature_a = 0;   ///< of the surfaces there [1/m], positive where convex, 0 where flat
-  btScalar curvature_b = 0;
+  btVector3 on_b{0, 0, 0};          ///< on the surface of B [m]
+  btVector3 normal{0, 0, 0};        ///< unit, from A to B
+  btScalar depth = 0;               ///< [m], negative where the bodies do not touch yet
+  std::uint64_t id = 0;             ///< of the sphere that it was found at, the same from step to step
+  Bend bend_a, bend_b;              ///< of the surfaces there, in the axes across the normal
   btScalar turn_a = btScalar(0.5);  ///< how much of A's turning the normal takes part in, the rest of B's
   /// How much deeper the surfaces are at the top of the hill that the point is on, by their slope and
   /// curvature [m]. 0 at a top, at a corner, and where faces are flat or fit together.

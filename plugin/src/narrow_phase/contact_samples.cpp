@@ -121,9 +121,10 @@ btScalar shareOfA(const OpposedPoints& points, const btVector3& normal) {
 /// Turns what was probed in one patch into points of contact.
 class PatchContactPoints {
  public:
-  PatchContactPoints(const EdgeProbe& probe, const Samples::OfPatch& patch, btScalar separation,
-                     SampleScratch& scratch, std::vector<WeightedPoint>& found)
+  PatchContactPoints(const EdgeProbe& probe, const SurfaceProbe& surfaces, const Samples::OfPatch& patch,
+                     btScalar separation, SampleScratch& scratch, std::vector<WeightedPoint>& found)
       : probe_(probe),
+        surfaces_(surfaces),
         patch_(patch),
         separation_(separation),
         scratch_(scratch),
@@ -188,10 +189,15 @@ class PatchContactPoints {
   bool add(const OpposedPoints& points, const btVector3& normal, std::uint64_t id, Kind kind) {
     const btScalar depth = points.depthAlong(normal);
     const bool near = depth > -separation_;
-    if (near)
-      found_.push_back(
-          {{points.on_b, normal, depth, id, 0, 0, shareOfA(points, normal)}, kind, 0, {0, 0, 0}, 0});
-    return near;
+    if (!near) return false;
+    WeightedPoint& point = found_.emplace_back();
+    point.point.on_b = points.on_b;
+    point.point.normal = normal;
+    point.point.depth = depth;
+    point.point.id = id;
+    point.point.turn_a = shareOfA(points, normal);
+    point.kind = kind;
+    return true;
   }
 
   /// Along the normal of the face that the corner is over.
@@ -224,14 +230,18 @@ class PatchContactPoints {
     const bool faces = !points.areFlat() || points.normal_a.dot(points.normal_b) > kAlignedOnFacesCosine;
     const Kind kind = faces ? Kind::faces : probe_.isOnFaceOfB(points) ? Kind::edge : Kind::line;
     if (!add(points, normal, sample.id, kind)) return;
-    found_.back().point.curvature_a = points.curvature_a;
-    found_.back().point.curvature_b = points.curvature_b;
-    if (!fitTogether(points.curvature_a, points.curvature_b))
-      found_.back().point.below_top =
-          points.normal_a.distance2(points.normal_b) / (2 * (points.curvature_a + points.curvature_b));
+    WeightedPoint& point = found_.back();
+    const SurfaceProbe::Bends bends = surfaces_.bends(points, Across(normal));
+    point.point.bend_a = bends.a;
+    point.point.bend_b = bends.b;
+    point.point.below_top = sample.below_top;
+    point.bends = !points.areFlat();
+    point.slope = points.normal_b - points.normal_a;
+    point.is_top = sample.is_top;
   }
 
   const EdgeProbe& probe_;
+  const SurfaceProbe& surfaces_;
   const Samples::OfPatch& patch_;
   const btScalar separation_;
   SampleScratch& scratch_;
@@ -256,7 +266,7 @@ void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separa
   appendDeepestPoints(probe, separation, scratch.probed);
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, &probe);
-  PatchContactPoints points(probe, of.patch, separation, scratch, found);
+  PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
   for (const ProbedSample& sample : scratch.probed) points.addSample(sample, normals.at(sample));
   points.shareOutArea();
 }
@@ -272,7 +282,7 @@ void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separati
   ascendBeside(probe, count, scratch.probed);
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, nullptr);
-  PatchContactPoints points(probe, of.patch, separation, scratch, found);
+  PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
   for (const ProbedSample& sample : scratch.probed) points.addSample(sample, normals.at(sample));
   for (const ProbedSample& sample : scratch.sideways) points.addBeside(sample);
   points.shareOutArea();

@@ -22,10 +22,13 @@ struct WeightedPoint {
     line,      ///< a face and an edge seen askew: the normal is only the line that was probed
   };
   ContactPoint point;
-  Kind kind;
-  btScalar area;     ///< its share [m^2]
-  btVector3 centre;  ///< of the patch
-  btScalar radius;   ///< mean distance of the patch's area from there [m]
+  Kind kind = Kind::faces;
+  btScalar area = 0;          ///< its share [m^2]
+  btVector3 centre{0, 0, 0};  ///< of the patch
+  btScalar radius = 0;        ///< mean distance of the patch's area from there [m]
+  bool is_top = false;        ///< see ProbedSample
+  bool bends = false;         ///< between curved surfaces
+  btVector3 slope{0, 0, 0};   ///< B's normal less A's
 };
 
 /// Keeps room to work in from one patch to the next.

@@ -1,7 +1,7 @@
 #include "narrow_phase/contact_transport.hpp"
 
 #include "common/motion_bound.hpp"
-#include "narrow_phase/deepest_points.hpp"
+#include "narrow_phase/hill.hpp"
 #include "shape/packing_shape_impl.hpp"
 
 namespace innersphere {
@@ -19,24 +19,35 @@ btScalar motionIn(const btTransform& frame_before, const btTransform& before, co
 
 /// From where `point` and its normal have gone with each body to where the surfaces are deepest in each other
 /// now: a contact of curved surfaces moves over both as they roll and slide, to where their normals agree,
-/// but where they are so flat that this is further away than `farthest` [m].
-void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector3& on_a, btScalar farthest,
-            ContactPoint& point) {
-  const btScalar a = point.curvature_a, b = point.curvature_b;
+/// but along axes in which they are so flat that this is further away than `farthest` [m]. `axes` are those
+/// of its bends, which have gone with B.
+void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector3& on_a, const Across& axes,
+            btScalar farthest, ContactPoint& point) {
   const btVector3 apart = on_a - point.on_b;
-  // A's normal at on_b: convex surfaces turn towards the way that one goes on them.
-  const btVector3 aside = apart - normal_b * apart.dot(normal_b);
-  const btVector3 slope = normal_b - (normal_a - aside * a);
-  const btScalar fall = a + b;
-  if (!fitTogether(a, b) && slope.length() < farthest * fall) {
-    const btVector3 shift = slope / fall;
-    point.normal = (normal_b - shift * b).normalized();
-    point.depth = apart.dot(point.normal) + slope.dot(shift) / 2;
-    point.on_b += shift - point.normal * shift.dot(point.normal);
-  } else {
-    point.normal = (normal_a * point.turn_a + normal_b * (1 - point.turn_a)).normalized();
-    point.depth = apart.dot(point.normal);
+  const btScalar depth = apart.dot(normal_b);
+  const btVector3 aside = apart - normal_b * depth;
+  const btVector3 lean = normal_a - normal_b;
+  const btVector3 slope = point.bend_a.turn(aside, axes) - lean;
+  const Hill hill(point.bend_a, point.bend_b, depth, axes);
+  btVector3 on_b(0, 0, 0), stays = lean;
+  bool rolls[2];
+  for (int i = 0; i < 2; ++i) {
+    const btScalar rise = slope.dot(hill.axis(i));
+    rolls[i] = hill.hasTop(i) && btFabs(rise) < farthest * hill.fall(i);
+    if (!rolls[i]) continue;
+    on_b += hill.axis(i) * (rise / hill.fall(i));
+    stays -= hill.axis(i) * lean.dot(hill.axis(i));
   }
+  const btVector3 turn_b = point.bend_b.turn(on_b, axes);
+  point.normal = (normal_b - turn_b + stays * point.turn_a).normalized();
+  btVector3 on_a_too = on_b - turn_b * depth - aside;
+  for (int i = 0; i < 2; ++i) {
+    if (!rolls[i]) on_a_too -= hill.axis(i) * on_a_too.dot(hill.axis(i));
+  }
+  const btScalar bulge_a = point.bend_a.turn(on_a_too, axes).dot(on_a_too) / 2,
+                 bulge_b = turn_b.dot(on_b) / 2;
+  point.depth = apart.dot(point.normal) + bulge_a + bulge_b;
+  point.on_b += on_b + point.normal * bulge_b;
 }
 
 }  // namespace
@@ -88,8 +99,11 @@ void ContactTransport::carryTo(const Placed& now, const PackingShape& a, btScala
     for (int i = 0; i < patch.count; ++i) {
       ContactPoint& point = patch.points[i];
       const btVector3 on_a = turn_a * (point.on_b + point.normal * point.depth);
+      Across axes(point.normal);
+      axes.x = turn_b * axes.x;
+      axes.y = turn_b * axes.y;
       point.on_b = turn_b * (point.on_b - to_b_then) + to_b_now;
-      rollOn(turn_a * point.normal, turn_b * point.normal, on_a, kRefineAgain * spacing, point);
+      rollOn(turn_a * point.normal, turn_b * point.normal, on_a, axes, kRefineAgain * spacing, point);
     }
   }
 }

@@ -27,23 +27,24 @@ bool isUsable(const OpposedPoints& points, const btVector3& direction) {
   return points.normal_a.dot(direction) > kUsableCosine && points.normal_b.dot(direction) > kUsableCosine;
 }
 
+Hill hillAt(const SurfaceProbe& probe, const ProbedSample& sample) {
+  const Across axes(sample.direction);
+  const SurfaceProbe::Bends bends = probe.bends(sample.points, axes);
+  return Hill(bends.a, bends.b, sample.points.depthAlong(sample.direction), axes);
+}
+
 bool isUsable(const ProbedSample& sample) {
   return isUsable(sample.points, sample.direction);
 }
 
-/// Where the depth is greatest around a sample, going by its slope and curvature: a guess, worth nothing
+/// Guesses how much deeper it is at the top by the slope and by how the surfaces bend. That is worth nothing
 /// where it is steep.
-struct Top {
-  btScalar depth;
-  btVector3 shift;  ///< from the sample
-};
-
-Top guessedTop(const ProbedSample& sample) {
+void guessTop(const SurfaceProbe& probe, ProbedSample& sample) {
   const Hillside here = hillsideAt(sample.points, sample.direction);
+  sample.below_top = 0;
   if (fitTogether(sample.points.curvature_a, sample.points.curvature_b) || here.slope.length() > kSteepSlope)
-    return {here.depth, btVector3(0, 0, 0)};
-  const btVector3 shift = here.slope / (sample.points.curvature_a + sample.points.curvature_b);
-  return {here.depth + here.slope.dot(shift) / 2, shift};
+    return;
+  sample.below_top = here.slope.dot(hillAt(probe, sample).toTop(here.slope)) / 2;
 }
 
 /// How fast the slope falls in each direction across the line, as far as the steps have shown: a quasi-Newton
@@ -86,13 +87,15 @@ class Falls {
   btScalar xx_, xy_ = 0, yy_;
 };
 
-/// Moves a sample uphill; not where slopes above `steepest` say that the top is far.
+/// Moves a sample uphill; not where slopes above `steepest` say that the top is far. Notes whether it got
+/// there.
 void ascend(const SurfaceProbe& probe, btScalar steepest, int steps, ProbedSample& sample) {
   Hillside here = hillsideAt(sample.points, sample.direction);
   // There is no top where faces are flat, or fit together.
   if (fitTogether(sample.points.curvature_a, sample.points.curvature_b) || here.slope.length() > steepest)
     return;
-  Falls falls(sample.direction, sample.points.curvature_a + sample.points.curvature_b);
+  const btScalar fall = hillAt(probe, sample).fall(0);
+  Falls falls(sample.direction, fall > 0 ? fall : sample.points.curvature_a + sample.points.curvature_b);
   btVector3 shift(0, 0, 0);
   for (int i = 0; i < steps && here.slope.length2() > kLevel * kLevel; ++i) {
     OpposedPoints points;
@@ -113,6 +116,7 @@ void ascend(const SurfaceProbe& probe, btScalar steepest, int steps, ProbedSampl
     sample.points = points;
     here = next;
   }
+  sample.is_top = here.slope.length2() < kReached * kReached;
 }
 
 /// The tops that were reached.
@@ -122,11 +126,14 @@ class Tops {
   bool areNone() const { return count_ == 0; }
 
   /// Whether a top that is guessed from a place is one of those that were reached.
-  bool include(const Top& top, const btVector3& from, btScalar separation) const {
-    return std::any_of(tops_.begin(), tops_.begin() + count_, [&](const ProbedSample& reached) {
-      const btVector3 way = reached.points.on_b - from;
-      return (way - top.shift).length() < btMax(kSameHill * way.length(), kSameTop * separation);
-    });
+  bool include(const ProbedSample& sample, btScalar separation) const {
+    for (int i = 0; i < count_; ++i) {
+      const OpposedPoints& top = tops_[i].points;
+      if (isOnHill(sample.points.on_b - top.on_b, sample.points.normal_b - sample.points.normal_a, hills_[i],
+                   separation))
+        return true;
+    }
+    return false;
   }
 
   void ascendFrom(const ProbedSample& start, const SurfaceProbe& probe) {
@@ -134,6 +141,8 @@ class Tops {
     top = start;
     top.id = kDeepestId - static_cast<std::uint64_t>(count_++);
     ascend(probe, BT_LARGE_FLOAT, kAscentSteps, top);
+    guessTop(probe, top);
+    hills_[count_ - 1] = hillAt(probe, top);
   }
 
   /// Only those of convex hills: elsewhere the sample itself is as deep.
@@ -144,6 +153,7 @@ class Tops {
 
  private:
   std::array<ProbedSample, kPatchPoints> tops_;
+  std::array<Hill, kPatchPoints> hills_;
   int count_ = 0;
 };
 
@@ -153,10 +163,10 @@ ProbedSample* bestStart(const Tops& tops, btScalar separation, std::vector<Probe
   btScalar most = tops.areNone() ? -BT_LARGE_FLOAT : -separation;
   for (ProbedSample& sample : samples) {
     if (sample.starts_ascent || !isUsable(sample)) continue;
-    const Top top = guessedTop(sample);
     // The first is sure to be there.
-    const btScalar depth = tops.areNone() ? sample.points.depthAlong(sample.direction) : top.depth;
-    if (depth > most && !tops.include(top, sample.points.on_b, separation)) {
+    const btScalar rise = tops.areNone() ? btScalar(0) : sample.below_top;
+    const btScalar depth = sample.points.depthAlong(sample.direction) + rise;
+    if (depth > most && !tops.include(sample, separation)) {
       most = depth;
       best = &sample;
     }
@@ -166,11 +176,16 @@ ProbedSample* bestStart(const Tops& tops, btScalar separation, std::vector<Probe
 
 }  // namespace
 
-bool fitTogether(btScalar curvature_a, btScalar curvature_b) {
-  return !(curvature_a + curvature_b > kConforming * (btFabs(curvature_a) + btFabs(curvature_b)));
+bool isOnHill(const btVector3& from_top, const btVector3& slope, const Hill& hill, btScalar separation) {
+  btVector3 way(0, 0, 0);
+  for (int i = 0; i < 2; ++i) way -= hill.axis(i) * from_top.dot(hill.axis(i));
+  return (way - hill.toTop(slope)).length() < btMax(kSameHill * way.length(), kSameTop * separation);
 }
 
 void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::vector<ProbedSample>& samples) {
+  for (ProbedSample& sample : samples) {
+    if (isUsable(sample)) guessTop(probe, sample);
+  }
   Tops tops;
   while (!tops.areAll()) {
     ProbedSample* start = bestStart(tops, separation, samples);
@@ -183,7 +198,9 @@ void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::ve
 
 void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples) {
   for (std::size_t i = 0; i < count; ++i) {
-    if (isUsable(samples[i])) ascend(probe, kSlopeBeside, kAscentStepsBeside, samples[i]);
+    if (!isUsable(samples[i])) continue;
+    ascend(probe, kSlopeBeside, kAscentStepsBeside, samples[i]);
+    guessTop(probe, samples[i]);
   }
 }
 

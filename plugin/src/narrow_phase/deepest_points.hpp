@@ -14,12 +14,12 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// they come within `separation` [m]. Marks the samples from which an ascent to one of them began.
 void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::vector<ProbedSample>& samples);
 
+/// Returns true if a place at `from_top` [m] from the top of a hill lies on that hill: if the slope there
+/// leads to this top, or it is nearer to it than a part of `separation` [m].
+bool isOnHill(const btVector3& from_top, const btVector3& slope, const Hill& hill, btScalar separation);
+
 /// Moves the first `count` samples a little uphill where they are near a top.
 void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples);
-
-/// Returns true if surfaces that touch are flat, or curved so that one lies in the other: their curvatures
-/// add up to nothing, or to a small part of themselves. Then there is no deepest point to speak of.
-bool fitTogether(btScalar curvature_a, btScalar curvature_b);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "narrow_phase/deepest_points.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -20,6 +22,10 @@ bool isFreedBy(const WeightedPoint& other, const WeightedPoint& point, btScalar 
   const btScalar around = kSunkAround * btMax(depth, btScalar(0)) + spacing;
   if (middle(point.point).distance2(middle(other.point)) > around * around) return false;
   return point.kind == Kind::edge || point.kind == Kind::line || point.point.depth > other.point.depth;
+}
+
+bool isDeeper(const WeightedPoint& a, const WeightedPoint& b) {
+  return a.point.depth != b.point.depth ? a.point.depth > b.point.depth : a.point.id < b.point.id;
 }
 
 /// Chooses up to four of the points with one normal.
@@ -166,15 +172,30 @@ void keepLeastWaysOut(btScalar spacing, ReductionScratch& scratch, std::vector<W
   found.erase(std::remove_if(found.begin(), found.end(), isFreed), found.end());
 }
 
+void keepTops(btScalar separation, const StepAhead& step, std::vector<WeightedPoint>& found) {
+  if (step.motion.isSwept()) return;
+  // Deeper tops come first: each drops what is on its hill, other tops too.
+  std::sort(found.begin(), found.end(), [](const WeightedPoint& a, const WeightedPoint& b) {
+    return a.is_top != b.is_top ? a.is_top : isDeeper(a, b);
+  });
+  for (std::size_t i = 0; i < found.size() && found[i].is_top; ++i) {
+    const ContactPoint top = found[i].point;
+    if (top.depth > kSunkIn * step.size) continue;
+    const Hill hill(top.bend_a, top.bend_b, top.depth, Across(top.normal));
+    const auto isBeside = [&](const WeightedPoint& p) {
+      return p.bends && isOnHill(p.point.on_b - top.on_b, p.slope, hill, separation);
+    };
+    found.erase(std::remove_if(found.begin() + std::ptrdiff_t(i) + 1, found.end(), isBeside), found.end());
+  }
+}
+
 void reduceToManifolds(std::vector<WeightedPoint>& found, const std::vector<std::uint64_t>& old_ids,
                        btScalar spacing, const StepAhead& step, ReductionScratch& scratch,
                        std::vector<ContactPatch>& patches) {
   std::array<Spread, kMaxManifolds> spreads;
   for (std::vector<ContactPoint>& group : scratch.groups) group.clear();
   patches.clear();
-  std::sort(found.begin(), found.end(), [](const WeightedPoint& a, const WeightedPoint& b) {
-    return a.point.depth != b.point.depth ? a.point.depth > b.point.depth : a.point.id < b.point.id;
-  });
+  std::sort(found.begin(), found.end(), isDeeper);
   for (const WeightedPoint& p : found) {
     const std::size_t g = groupFor(p.point, scratch, patches.size());
     if (g == patches.size()) patches.emplace_back();

@@ -24,6 +24,11 @@ struct ReductionScratch {
 /// those that are longer, and pushes along other ways, from where they have sunk in; faces stay.
 void keepLeastWaysOut(btScalar spacing, ReductionScratch& scratch, std::vector<WeightedPoint>& found);
 
+/// Where curved surfaces touch, the top of a hill bears, and nothing beside it does: spheres of several
+/// patches find the same hill, and see it from places of their own. Drops what lies on the hill of a top that
+/// was reached, and all but one of the tops of a hill. Of swept bodies it stays, as all of it might sink in.
+void keepTops(btScalar separation, const StepAhead& step, std::vector<WeightedPoint>& found);
+
 /// Groups points by their normals, wherever they are: rigid bodies feel only the wrench, and four points
 /// spread over everything that faces one way carry any load that all of them could. Each group becomes a
 /// patch with up to four points: the deepest, then those that span the largest area with it. Points with ids

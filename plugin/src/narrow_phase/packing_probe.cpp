@@ -92,6 +92,10 @@ bool PackingProbe::nearest(std::size_t index, btVector3& direction, OpposedPoint
   return true;
 }
 
+SurfaceProbe::Bends PackingProbe::bends(const OpposedPoints& points, const Across& axes) const {
+  return {bendAt(a_, points.triangle_a, axes), bendAt(b_, points.triangle_b, axes)};
+}
+
 void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                            std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const {
   const btScalar size = surfaceDistance(index);

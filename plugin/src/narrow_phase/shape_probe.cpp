@@ -46,6 +46,7 @@ bool ShapeProbe::probeLine(std::size_t index, const btVector3&, const btVector3&
   points.triangle_a = on_a.triangle;
   points.normal_b = towards_b;
   points.curvature_b = near_place.curvature;
+  points.straight_b = near_place.straight;
   return leaves;
 }
 
@@ -72,6 +73,11 @@ bool ShapeProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints&
   points.triangle_a = a_.triangleNear(near_spheres_[index].sphere);
   direction = -near_spheres_[index].normal;
   return true;
+}
+
+SurfaceProbe::Bends ShapeProbe::bends(const OpposedPoints& points, const Across& axes) const {
+  const btScalar x = points.straight_b.dot(axes.x), y = points.straight_b.dot(axes.y), c = points.curvature_b;
+  return {bendAt(a_, points.triangle_a, axes), {c * (1 - x * x), -c * x * y, c * (1 - y * y)}};
 }
 
 const NearSphere* ShapeProbe::sphereOver(const btVector3& corner, const btVector3& normal) const {

@@ -10,6 +10,7 @@
 #include <LinearMath/btVector3.h>
 
 #include "innersphere/bullet_precision.hpp"
+#include "narrow_phase/hill.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -23,6 +24,8 @@ struct OpposedPoints {
   btVector3 normal_b{0, 0, 0};  ///< unit, into B: equal to normal_a where flat faces meet
   btScalar curvature_a = 0;     ///< [1/m], positive where A is convex, 0 where it is flat
   btScalar curvature_b = 0;
+  /// Unit, along which B is not curved: of a cylinder. 0 if it is round, or a packing.
+  btVector3 straight_b{0, 0, 0};
   std::size_t triangle_a = kNone;  ///< of A's surface
   std::size_t triangle_b = kNone;  ///< of B's, if B is a packing
 
@@ -41,6 +44,10 @@ struct ProbedSample {
   std::size_t index = 0;         ///< of the contact
   std::uint64_t id = 0;          ///< of the sphere
   bool starts_ascent = false;    ///< an ascent to a deepest point began here
+  bool is_top = false;           ///< an ascent ended here, at the top of its hill
+  /// How much deeper the surfaces are at the top of the hill that it is on, by their slope and bend [m]. 0
+  /// where that is not known: where faces are flat or fit together, or far away.
+  btScalar below_top = 0;
 };
 
 /// Finds opposed points along lines through the spheres in contact. `index` is that of a contact in the list
@@ -58,6 +65,13 @@ class SurfaceProbe {
   /// Finds the direction from A to B in which the sphere is nearest to the other solid's surface. Returns
   /// false if it is too far away to tell. Leaves the triangles near the sphere in `points`.
   virtual bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const = 0;
+  struct Bends {
+    Bend a, b;
+  };
+  /// Returns how both surfaces bend at opposed points. By default they are round.
+  virtual Bends bends(const OpposedPoints& points, const Across&) const {
+    return {Bend::round(points.curvature_a), Bend::round(points.curvature_b)};
+  }
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

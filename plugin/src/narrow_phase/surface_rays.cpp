@@ -102,6 +102,16 @@ bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVect
                                              distance / body.scale(), vertices);
 }
 
+Bend bendAt(const PlacedPacking& body, std::size_t triangle, const Across& axes) {
+  const SmoothNormals& normals = body.shape().surfaceQueries().normals();
+  if (normals.curvature(triangle) == 0) return {};
+  const btMatrix3x3& world = body.world.getBasis();
+  const btVector3 x = axes.x * world, y = axes.y * world;
+  const btVector3 along_x = normals.turn(triangle, x) / body.scale();
+  const btVector3 along_y = normals.turn(triangle, y) / body.scale();
+  return {along_x.dot(x), (along_x.dot(y) + along_y.dot(x)) / 2, along_y.dot(y)};
+}
+
 btVector3 cornerAt(const PlacedPacking& body, std::uint32_t vertex, const btVector3& direction) {
   const btVector3 in_packing = toBullet(body.shape().packing().surface.vertices[vertex]) * body.scale();
   return body.world.getBasis() * in_packing + direction * body.margin;

@@ -45,5 +45,8 @@ bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVect
 /// Returns where a vertex is, moved out along `direction` by the shape's margin.
 btVector3 cornerAt(const PlacedPacking& body, std::uint32_t vertex, const btVector3& direction);
 
+/// Returns how the curved surface of a solid bends at a triangle.
+Bend bendAt(const PlacedPacking& body, std::size_t triangle, const Across& axes);
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -21,7 +21,7 @@ struct PointLaw {
   btScalar damping = 0;    ///< [N s/m]
   btScalar push = 0;       ///< speed at which the spring alone would drive the bodies apart [m/s]
   btScalar rolling = 0;    ///< how far ahead the load of bodies that roll lies [m]
-  btScalar bears = 0;      ///< impulse of the spring in a step at rest; 0 if it is held back [N s]
+  btScalar bears = 0;      ///< impulse of the spring in a step at rest [N s]
   btScalar time_step = 0;  ///< [s]
 };
 
@@ -30,9 +30,9 @@ struct PointLaw {
 ///
 /// With m the reduced mass of the pair, dt the step, and T = sum A max(0, n n') the area that pushes along n:
 ///   stiffness along n   K = options.stiffness T;
-///                       default: K = 24 m / dt^2 (1 + d / (0.002 s)) at the depth d, s the size of the
+///                       default: K = 16 m / dt^2 (1 + d / (0.002 s)) at the depth d, s the size of the
 ///                       smaller body, for which a body that lies on a fixed one under gravity g sinks by
-///                       g dt^2 / 24 (0.1 mm at 1/60 s), whatever its size and mass;
+///                       g dt^2 / 16 (0.17 mm at 1/60 s), whatever its size and mass;
 ///   damping along n     C = options.damping 2 sqrt(K m), four times that by default.
 /// Each patch takes the share A / T of both and divides it among its points. The default law drives bodies
 /// that are inside each other apart no faster than half the size of the smaller one, or three times the depth

@@ -172,7 +172,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
     point.law = law.at(point.depth);
     if (-point.depth > manifold.getContactBreakingThreshold()) continue;
     point.normal = patch.points[i].normal;
-    point.curvature = patch.points[i].curvature_a + patch.points[i].curvature_b;
+    point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
     point.on_b = origin + patch.points[i].on_b;
     point.aside = patch.points[i].aside;
     point.local_a = a.getWorldTransform().invXform(point.on_b + point.normal * point.depth);

@@ -158,6 +158,13 @@ SmoothNormals::Place SmoothNormals::at(std::size_t t, const Crossing& crossing) 
   return {unit(sum), bulge};
 }
 
+btVector3 SmoothNormals::turn(std::size_t t, const btVector3& way) const {
+  const Facet& facet = facets_[t];
+  btVector3 sum(0, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) sum += facet.normals[k] * facet.inwards[next(k)].dot(way);
+  return sum;
+}
+
 bool SmoothNormals::isPastSharpEdge(std::size_t t, const btVector3& point) const {
   for (std::uint32_t i = 0; i + facets_[t].to_sharp <= kCrossed; ++i) {
     const Facet& facet = facets_[t];

@@ -42,6 +42,8 @@ class SmoothNormals {
   };
   /// Returns the curved surface at a crossing.
   Place at(std::size_t triangle, const Crossing& crossing) const;
+  /// Returns by how much the normal turns along a way of the length 1 on a triangle [1/m].
+  btVector3 turn(std::size_t triangle, const btVector3& way) const;
   const btVector3* corners(std::size_t triangle) const { return facets_[triangle].corners; }
   /// Returns the normal of the triangle itself: unit, out of the solid; zero if it has no area.
   const btVector3& face(std::size_t triangle) const { return facets_[triangle].face; }

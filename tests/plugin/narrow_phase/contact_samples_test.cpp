@@ -138,8 +138,8 @@ TEST(ContactPoints, OfTwoBallsHaveTheirDeepestBetweenTheCentres) {
   const WeightedPoint deepest = deepestOf(pair.find());
   EXPECT_NEAR(deepest.point.depth, kDepth, 6e-4);  // the balls are cut into triangles
   EXPECT_NEAR(deepest.point.normal.distance(direction), 0, 0.01);
-  EXPECT_NEAR(deepest.point.curvature_a, 1, 0.02);
-  EXPECT_NEAR(deepest.point.curvature_b, 2, 0.04);
+  EXPECT_NEAR(deepest.point.bend_a.mean(), 1, 0.02);
+  EXPECT_NEAR(deepest.point.bend_b.mean(), 2, 0.04);
 }
 
 TEST(ContactPoints, AreNoneFurtherApartThanTheSeparation) {

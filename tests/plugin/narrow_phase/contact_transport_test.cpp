@@ -16,16 +16,30 @@ btTransform at(const btVector3& place, const btQuaternion& turn = btQuaternion::
   return btTransform(turn, place);
 }
 
-/// The contact of two balls, or of a ball and a plane.
-ContactPoint contactOf(const btVector3& on_b, const btVector3& normal, double depth, double curvature_a,
-                       double curvature_b) {
+ContactPoint contactOf(const btVector3& on_b, const btVector3& normal, double depth, const Bend& bend_a,
+                       const Bend& bend_b) {
   ContactPoint point;
   point.on_b = on_b;
   point.normal = normal;
   point.depth = btScalar(depth);
-  point.curvature_a = btScalar(curvature_a);
-  point.curvature_b = btScalar(curvature_b);
+  point.bend_a = bend_a;
+  point.bend_b = bend_b;
   return point;
+}
+
+/// The contact of two balls, or of a ball and a plane.
+ContactPoint contactOf(const btVector3& on_b, const btVector3& normal, double depth, double curvature_a,
+                       double curvature_b) {
+  return contactOf(on_b, normal, depth, Bend::round(btScalar(curvature_a)),
+                   Bend::round(btScalar(curvature_b)));
+}
+
+/// A surface with this normal that bends by `along` in one direction, and by `across` in the other.
+Bend bendOf(const btVector3& normal, const btVector3& direction, double along, double across) {
+  const Across axes(normal);
+  const double x = double(direction.dot(axes.x)), y = double(direction.dot(axes.y));
+  return {btScalar(along * x * x + across * y * y), btScalar((along - across) * x * y),
+          btScalar(along * y * y + across * x * x)};
 }
 
 /// Carries points of one patch from one place of the bodies to another.
@@ -111,16 +125,100 @@ TEST_F(TwoBalls, TurnTogetherWithTheWorld) {
   EXPECT_NEAR(found.depth, kDepth, 1e-5);
 }
 
+TEST_F(TwoBalls, AreAsDeepAsBeforeWhereOneSlidesAroundTheOther) {
+  // B's middle goes on the circle around A's, and neither turns.
+  constexpr double kDepth = 0.01;
+  const btVector3 up(0, 0, 1);
+  const double apart = kA + kB - kDepth;
+  const auto depthAt = [&](double angle) {
+    const Placed then{at({0, 0, 0}), at(up * btScalar(apart))};
+    const Placed now{at({0, 0, 0}),
+                     at({btScalar(apart * std::sin(angle)), 0, btScalar(apart * std::cos(angle))})};
+    return double(
+        carried(*shape_, {contactOf(up * btScalar(kA - kDepth), up, kDepth, 1 / kA, 1 / kB)}, then, now)[0]
+            .depth);
+  };
+  EXPECT_NEAR(depthAt(0.1), kDepth, 1e-4);  // of fourth order
+  EXPECT_NEAR(depthAt(0.05), kDepth, 1e-5);
+}
+
+/// Two rings, each through the other, that touch where their tubes cross. Their surfaces are saddles there.
+class LinkedRings : public testing::Test {
+ protected:
+  static constexpr double kRing = 1, kTube = 0.25;
+
+  struct Circle {
+    explicit Circle(const btTransform& frame) : frame(frame) {}
+    btVector3 at(double t) const { return frame * (across(t) * btScalar(kRing)); }
+    btVector3 speed(double t) const { return frame.getBasis() * across(t + M_PI / 2) * btScalar(kRing); }
+    btVector3 bend(double t) const { return frame.getBasis() * across(t) * btScalar(-kRing); }
+    static btVector3 across(double t) { return {btScalar(std::cos(t)), btScalar(std::sin(t)), 0}; }
+    btTransform frame;
+  };
+  /// Newton's method to where the middles of the tubes are nearest, from s on A and t on B.
+  static ContactPoint exact(const Placed& placed, double s, double t) {
+    const Circle a(placed.a), b(placed.b);
+    for (int i = 0; i < 20; ++i) {
+      const btVector3 p = b.at(t) - a.at(s), u = a.speed(s), v = b.speed(t);
+      const double slope_s = double(-p.dot(u)), slope_t = double(p.dot(v));
+      const double ss = double(u.dot(u) - p.dot(a.bend(s))), tt = double(v.dot(v) + p.dot(b.bend(t)));
+      const double st = double(-u.dot(v)), det = ss * tt - st * st;
+      s -= (tt * slope_s - st * slope_t) / det;
+      t -= (ss * slope_t - st * slope_s) / det;
+    }
+    const btVector3 apart = b.at(t) - a.at(s), normal = apart.normalized();
+    return contactOf(b.at(t) - normal * btScalar(kTube) - placed.a.getOrigin(), normal,
+                     2 * kTube - double(apart.length()), Bend(), Bend());
+  }
+
+  /// B slides and turns, in proportion to `way` [m].
+  Errors errorsAt(double way, double depth) const {
+    // A stands in the plane of x and z, its lowest place at (0, 0, -1); B hangs above it, across.
+    const btTransform a(btQuaternion(btVector3(1, 0, 0), btScalar(M_PI / 2)), btVector3(3, 2, 1));
+    const btTransform b(btQuaternion(btVector3(0, 1, 0), btScalar(M_PI / 2)),
+                        a.getOrigin() + btVector3(0, 0, btScalar(-2 * kRing + 2 * kTube - depth)));
+    const Placed then{a, b};
+    const btTransform motion(btQuaternion(btVector3(2, 1, -1).normalized(), btScalar(0.7 * way)),
+                             btVector3(btScalar(way), btScalar(-0.5 * way), btScalar(0.1 * way)));
+    const Placed now{a * btTransform(btQuaternion(btVector3(0, 1, 2).normalized(), btScalar(-way))),
+                     b * motion};
+    const double s = -M_PI / 2, t = M_PI;
+    ContactPoint point = exact(then, s, t);
+    EXPECT_NEAR(point.depth, depth, 1e-6);
+    EXPECT_NEAR(point.normal.z(), 1, 1e-6);
+    const double inner = -1 / (kRing - kTube);
+    point.bend_a = bendOf(point.normal, btVector3(1, 0, 0), inner, 1 / kTube);
+    point.bend_b = bendOf(point.normal, btVector3(0, 1, 0), inner, 1 / kTube);
+    const ContactPoint expected = exact(now, s, t);
+    return errorsOf(carried(*shape_, {point}, then, now)[0], expected.on_b, expected.normal,
+                    double(expected.depth));
+  }
+
+  std::shared_ptr<PackingShape> shape_ = makeShape(singleBall(1));
+};
+
+TEST_F(LinkedRings, TouchWhereTheirTubesCross) {
+  for (const double depth : {0.0, 0.01, -0.01}) {
+    SCOPED_TRACE(depth);
+    const double way = 0.02;
+    expectSecondOrder(errorsAt(way, depth), errorsAt(way / 2, depth));
+    const Errors errors = errorsAt(way, depth);
+    EXPECT_LT(errors.place, 10 * way * way);
+    EXPECT_LT(errors.normal, 10 * way * way);
+    EXPECT_LT(errors.depth, way * way / 10);
+  }
+}
+
 class OnAPlane : public testing::Test {
  protected:
   static constexpr double kRadius = 0.4, kDepth = 0.002;
   const btVector3 down{0, 0, -1};
   const btVector3 below{0, 0, btScalar(-(kRadius - kDepth))};
 
-  /// Of a rolling body, in closed form: the two parabolas differ from the circle in the fourth order.
+  /// Of a rolling body, in closed form: the parabola differs from the circle in the fourth order.
   static double depthErrorAt(double angle) {
     const double drop = 1 - std::cos(angle);
-    return kRadius * (angle * angle / 2 - drop + drop * drop / 2);
+    return kRadius * drop * drop / 2;
   }
   Placed rolledBy(double angle, double slip = 0) const {
     return {at({btScalar(kRadius * angle + slip), 0, btScalar(kRadius - kDepth)},
@@ -147,7 +245,8 @@ TEST_F(OnAPlane, ARollingCylinderKeepsItsLineBelowIt) {
   const auto body = makeShape(latticeBox({0.5, 1, 0.5}, 2));
   std::vector<ContactPoint> points;
   for (const double y : {-0.5, 0.5})
-    points.push_back(contactOf(below + btVector3(0, btScalar(y), 0), down, kDepth, 1 / kRadius, 0));
+    points.push_back(contactOf(below + btVector3(0, btScalar(y), 0), down, kDepth,
+                               bendOf(down, btVector3(0, 1, 0), 0, 1 / kRadius), Bend()));
   const auto worst = [&](double angle) {
     const std::vector<ContactPoint> found = carried(*body, points, rolledBy(0), rolledBy(angle));
     Errors errors{0, 0, 0};

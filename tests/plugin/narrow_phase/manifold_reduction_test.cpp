@@ -187,5 +187,78 @@ TEST(KeepLeastWaysOut, LeavesAllWhereNothingCrosses) {
       (Ids{1, 2}));
 }
 
+/// A place of a solid that rises over a plane by the bends of its surface, `x` and `y` from the top.
+WeightedPoint onHill(double x, double y, double depth, double bend_x, double bend_y, std::uint64_t id) {
+  const Across axes(kUp);
+  const btVector3 way(btScalar(x), btScalar(y), 0);
+  const btVector3 slope(btScalar(-bend_x * x), btScalar(-bend_y * y), 0);
+  const double fall = -double(slope.dot(way)) / 2;
+  WeightedPoint p = pointAt(x, y, depth - fall, id, (kUp - slope / 2).normalized());
+  const double xx = bend_x * double(axes.x.x() * axes.x.x()) + bend_y * double(axes.x.y() * axes.x.y());
+  const double yy = bend_x * double(axes.y.x() * axes.y.x()) + bend_y * double(axes.y.y() * axes.y.y());
+  const double xy = bend_x * double(axes.x.x() * axes.y.x()) + bend_y * double(axes.x.y() * axes.y.y());
+  p.point.bend_a = {btScalar(xx), btScalar(xy), btScalar(yy)};
+  p.bends = true;
+  p.slope = slope;
+  p.is_top = fall == 0;
+  return p;
+}
+
+StepAhead stepOfSlowBodies() {
+  StepAhead step;
+  step.size = 10;
+  return step;
+}
+
+std::set<std::uint64_t> idsKept(std::vector<WeightedPoint> found,
+                                const StepAhead& step = stepOfSlowBodies()) {
+  constexpr double kSeparation = 0.01;
+  keepTops(btScalar(kSeparation), step, found);
+  std::set<std::uint64_t> ids;
+  for (const WeightedPoint& p : found) ids.insert(p.point.id);
+  return ids;
+}
+
+TEST(Tops, BearAloneOnTheirHill) {
+  // The same top twice, a hair apart, and places around it, up to 30 degrees beside.
+  std::vector<WeightedPoint> found{onHill(0, 0, 0.01, 4, 2, 1), onHill(0, 0, 0.0099, 4, 2, 2)};
+  found[1].point.on_b.setX(btScalar(1e-4));
+  for (std::uint64_t i = 0; i < 12; ++i)
+    found.push_back(onHill(0.12 * std::cos(i), 0.12 * std::sin(i), 0.01, 4, 2, 10 + i));
+  EXPECT_EQ(idsKept(found), std::set<std::uint64_t>{1});
+}
+
+TEST(Tops, LeaveOtherHillsFacesAndCornersAlone) {
+  WeightedPoint other = onHill(0, 0, 0.001, 4, 2, 2);
+  other.point.on_b.setX(btScalar(0.3));
+  WeightedPoint beside_other = onHill(0.05, 0, 0.001, 4, 2, 3);
+  beside_other.point.on_b.setX(btScalar(0.35));
+  other.is_top = false;  // its top is not known, so it may bear
+  const WeightedPoint corner = pointAt(0.05, 0, 0.005, 4, kUp, Kind::corner);
+  const std::vector<WeightedPoint> found{onHill(0, 0, 0.01, 4, 2, 1), other, beside_other, corner};
+  EXPECT_EQ(idsKept(found), (std::set<std::uint64_t>{1, 2, 3, 4}));
+}
+
+TEST(Tops, OfALineLeaveItsEndsAlone) {
+  // A cylinder along y on a plane: the top at its middle is as deep as its ends.
+  const std::vector<WeightedPoint> found{onHill(0, 0, 0.01, 4, 0, 1), onHill(0.002, 0.5, 0.01, 4, 0, 2),
+                                         onHill(0.05, 0.001, 0.01, 4, 0, 3)};
+  EXPECT_EQ(idsKept(found), (std::set<std::uint64_t>{1, 2}));
+}
+
+TEST(Tops, BearWithTheirSidesWhereBodiesHaveSunkIn) {
+  StepAhead step;
+  step.size = 2;  // the depth is 0.5 % of it
+  EXPECT_EQ(idsKept({onHill(0, 0, 0.01, 4, 2, 1), onHill(0.1, 0, 0.01, 4, 2, 2)}, step),
+            (std::set<std::uint64_t>{1, 2}));
+}
+
+TEST(Tops, AreNotAllOfWhatSweptBodiesMayMeet) {
+  StepAhead step = stepOfSlowBodies();
+  step.motion = PairMotion({0, 0, 0}, {}, {0, 0, 0}, {}, true);
+  EXPECT_EQ(idsKept({onHill(0, 0, 0.01, 4, 2, 1), onHill(0.1, 0, 0.01, 4, 2, 2)}, step),
+            (std::set<std::uint64_t>{1, 2}));
+}
+
 }  // namespace
 }  // namespace innersphere::test

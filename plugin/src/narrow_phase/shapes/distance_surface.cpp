@@ -42,6 +42,7 @@ bool DistanceSurface::updateNearSphere(const PlacedPacking& body, const btTransf
   near_sphere.distance = found.distance;
   near_sphere.normal = world.getBasis() * found.normal;
   near_sphere.curvature = found.curvature;
+  near_sphere.straight = world.getBasis() * found.straight;
   near_sphere.aside.setZero();
   if (found.edged != nullptr && found.distance > 0) {
     layFaceOn(body, near_sphere, [&](const btVector3& edge, const btVector3& out, btScalar tolerance) {
@@ -69,6 +70,7 @@ bool DistanceSurface::nearestTo(const PlacedPacking& body, const btTransform& wo
   near_sphere.distance = found.distance;
   near_sphere.normal = world.getBasis() * found.normal;
   near_sphere.curvature = found.curvature;
+  near_sphere.straight = world.getBasis() * found.straight;
   near_sphere.aside.setZero();
   return true;
 }

@@ -24,9 +24,10 @@ class DistanceSurface : public ShapeSurface {
 
  protected:
   struct Nearest {
-    btScalar distance;       ///< [m], negative inside
-    btVector3 normal;        ///< unit, outwards
-    btScalar curvature = 0;  ///< [1/m]
+    btScalar distance;            ///< [m], negative inside
+    btVector3 normal;             ///< unit, outwards
+    btScalar curvature = 0;       ///< [1/m]
+    btVector3 straight{0, 0, 0};  ///< see NearSphere
     /// The shape, if it may have an edge or a corner there.
     const btConvexShape* edged = nullptr;
   };

@@ -59,6 +59,7 @@ class CapsuleSurface : public PrimitiveSurface<btCapsuleShape> {
     offset[axis] -= btClamped(p[axis], -half, half);
     btVector3 sideways(0, 0, 0);
     sideways[(axis + 1) % 3] = 1;
+    if (offset[axis] == 0) nearest.straight[axis] = 1;
     nearest.distance = thickenedDistance(offset, shape_.getRadius(), sideways, nearest.normal);
     nearest.curvature = 1 / shape_.getRadius();
     return true;
@@ -137,6 +138,7 @@ class CylinderSurface : public PrimitiveSurface<btCylinderShape> {
       nearest.distance = out - margin;
       nearest.normal = at.outwards;
       nearest.curvature = 1 / radius;
+      nearest.straight[axis] = 1;
     } else {
       nearest.distance = up - margin;
       nearest.normal = at.direction(0, side, axis);
@@ -179,6 +181,7 @@ class ConeSurface : public PrimitiveSurface<btConeShape> {
     } else {
       nearest.distance = above - margin;
       nearest.normal = at.direction(slope_out, slope_up, axis);
+      nearest.straight = at.direction(-slope_up, slope_out, axis);
       // Across the slope, at the place where it is nearest.
       const btScalar nearest_radius = radius - along * slope_up + margin * slope_out;
       nearest.curvature = nearest_radius > 0 ? slope_out / nearest_radius : btScalar(0);

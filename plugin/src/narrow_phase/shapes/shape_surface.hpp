@@ -14,9 +14,10 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// This is a sphere near the other solid. A sphere in a concave corner has several.
 struct NearSphere {
   std::uint32_t sphere = 0;
-  btScalar distance = 0;      ///< of its centre from the other surface [m], negative inside the other solid
-  btVector3 normal{0, 0, 0};  ///< unit, out of the other solid at the nearest point; axes of the world
-  btScalar curvature = 0;     ///< of the other surface there [1/m]; 0 if flat, or not known
+  btScalar distance = 0;        ///< of its centre from the other surface [m], negative inside the other solid
+  btVector3 normal{0, 0, 0};    ///< unit, out of the other solid at the nearest point; axes of the world
+  btScalar curvature = 0;       ///< of the other surface there [1/m]; 0 if flat, or not known
+  btVector3 straight{0, 0, 0};  ///< unit, along which it is not curved: of a cylinder; 0 if it is round
   /// The way from the line through its centre along the normal to the nearest point: not zero where that lies
   /// on an edge of the other surface that a face of the solid lies on. Then the normal is that of the face
   /// [m].

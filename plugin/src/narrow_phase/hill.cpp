@@ -1,0 +1,38 @@
+#include "narrow_phase/hill.hpp"
+
+#include "common/contact_tolerances.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+Hill::Hill(const Bend& a, const Bend& b, btScalar depth, const Across& axes) {
+  const btScalar xx = a.xx + b.xx - depth * (a.xx * b.xx + a.xy * b.xy);
+  const btScalar yy = a.yy + b.yy - depth * (a.yy * b.yy + a.xy * b.xy);
+  const btScalar xy = a.xy + b.xy - depth / 2 * (a.xy * (b.xx + b.yy) + b.xy * (a.xx + a.yy));
+  const btScalar middle = (xx + yy) / 2, half = (xx - yy) / 2, spread = btSqrt(half * half + xy * xy);
+  // Both lead to the axis without cancellation.
+  btVector3 first =
+      half > 0 ? axes.x * (half + spread) + axes.y * xy : axes.x * xy + axes.y * (spread - half);
+  axis_[0] = first.length2() > 0 ? first.normalized() : axes.x;
+  axis_[1] = axes.x * -axis_[0].dot(axes.y) + axes.y * axis_[0].dot(axes.x);
+  fall_[0] = middle + spread;
+  fall_[1] = middle - spread;
+  for (int i = 0; i < 2; ++i)
+    has_top_[i] = fall_[i] > 0 &&
+                  !fitTogether(a.turn(axis_[i], axes).dot(axis_[i]), b.turn(axis_[i], axes).dot(axis_[i]));
+}
+
+btVector3 Hill::toTop(const btVector3& slope) const {
+  btVector3 way(0, 0, 0);
+  for (int i = 0; i < 2; ++i) {
+    if (has_top_[i]) way += axis_[i] * (slope.dot(axis_[i]) / fall_[i]);
+  }
+  return way;
+}
+
+bool fitTogether(btScalar curvature_a, btScalar curvature_b) {
+  return !(curvature_a + curvature_b > kConforming * (btFabs(curvature_a) + btFabs(curvature_b)));
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

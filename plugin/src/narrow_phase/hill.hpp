@@ -1,0 +1,59 @@
+// Describes the hill of the depth around a place where two curved surfaces meet.
+#pragma once
+
+#include <LinearMath/btVector3.h>
+
+#include "innersphere/bullet_precision.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Holds two axes across a direction, the same for the same direction.
+struct Across {
+  explicit Across(const btVector3& direction) { btPlaneSpace1(direction, x, y); }
+  btVector3 x, y;
+};
+
+/// Says how a surface bends: by how much its normal turns along a way on it [1/m], in two axes across the
+/// normal. It is positive where convex.
+struct Bend {
+  btScalar xx = 0, xy = 0, yy = 0;
+
+  static Bend round(btScalar curvature) { return {curvature, 0, curvature}; }
+  btScalar mean() const { return (xx + yy) / 2; }
+  /// Returns the turn of the normal along `way`.
+  btVector3 turn(const btVector3& way, const Across& axes) const {
+    const btScalar wx = way.dot(axes.x), wy = way.dot(axes.y);
+    return axes.x * (xx * wx + xy * wy) + axes.y * (xy * wx + yy * wy);
+  }
+};
+
+/// Knows how fast the slope of the depth between two surfaces falls, in the two directions across where it
+/// does so most and least. The slope is that of the depth over the place on B: of A's bend times the way
+/// from there to the place on A, less A's normal, in which B's is the direction of the depth.
+class Hill {
+ public:
+  Hill() = default;
+  /// `depth` [m] is that at the place: surfaces in each other bend less than the sum of both.
+  Hill(const Bend& a, const Bend& b, btScalar depth, const Across& axes);
+
+  const btVector3& axis(int i) const { return axis_[i]; }
+  /// Returns how fast the slope falls along an axis [1/m]. The first is the faster one.
+  btScalar fall(int i) const { return fall_[i]; }
+  /// Returns false if surfaces are flat along an axis, or one lies in the other, so that there is no top.
+  bool hasTop(int i) const { return has_top_[i]; }
+  /// Returns the way from where the slope is this to the top, as far as there is one [m].
+  btVector3 toTop(const btVector3& slope) const;
+
+ private:
+  btVector3 axis_[2];
+  btScalar fall_[2] = {0, 0};
+  bool has_top_[2] = {false, false};
+};
+
+/// Returns true if surfaces that touch are flat, or curved so that one lies in the other: their curvatures
+/// add up to nothing, or to a small part of themselves. Then there is no deepest point to speak of.
+bool fitTogether(btScalar curvature_a, btScalar curvature_b);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
