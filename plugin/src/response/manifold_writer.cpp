@@ -5,6 +5,7 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include "response/patch_friction.hpp"
+#include "solver/point_curvature.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -29,7 +30,7 @@ struct NewPoint {
   btVector3 slip{0, 0, 0};     ///< of A on B, that friction is to undo
   btVector3 aside{0, 0, 0};    ///< of the point on A from the one on B
   btScalar friction = 1;       ///< share of it
-  btScalar curvature = 0;      ///< of both surfaces [1/m]
+  Curvatures curved;
 };
 
 /// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.
@@ -109,7 +110,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     point.m_combinedRollingFriction = law.rolling;
   // Bullet reads the one only where there is the other.
   if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
-    point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curvature);
+    point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curved.a + from.curved.b);
   if (law.penalty) {
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
@@ -123,7 +124,9 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   const btScalar approach = motion.approachAt(from.on_b, from.normal);
   const bool meets = depth + approach * law.time_step > 0;
   const bool bounces = point.m_combinedRestitution * approach > law.push;
-  if (!solver.substeps) {
+  if (solver.substeps) {
+    setCurvatures(point, from.curved);
+  } else {
     // The solver would begin the bounce before they touch, and brake them on their way.
     if (!meets) point.m_combinedRestitution = 0;
     if (meets && bounces && (depth < 0 || spring)) {
@@ -173,8 +176,10 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
     point.depth = patch.points[i].depth;
     point.law = law.at(point.depth);
     if (-point.depth > manifold.getContactBreakingThreshold()) continue;
+    // The top of the hill goes along with the bodies, and reaches this place before the slope does.
+    if (solver.substeps && point.depth < 0 && patch.points[i].below_top > 0) continue;
     point.normal = patch.points[i].normal;
-    point.curvature = patch.points[i].curvature_a + patch.points[i].curvature_b;
+    point.curved = {patch.points[i].curvature_a, patch.points[i].curvature_b};
     point.on_b = origin + patch.points[i].on_b;
     point.aside = patch.points[i].aside;
     point.local_a = a.getWorldTransform().invXform(point.on_b + point.normal * point.depth);

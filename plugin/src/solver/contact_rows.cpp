@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "common/bullet_vectors.hpp"
+#include "solver/point_curvature.hpp"
 #include "solver/soft_step.hpp"
 
 namespace innersphere {
@@ -14,6 +15,8 @@ namespace {
 
 /// Fastest push, in sizes of the smaller body per second, and in depths per second for what is deeper.
 constexpr btScalar kFastest = btScalar(0.5), kLeaving = 3;
+/// Surfaces fit each other where their radii are the same but for this share.
+constexpr btScalar kFit = btScalar(0.02);
 
 bool isSound(const btManifoldPoint& point) {
   return isFinite(point.getPositionWorldOnA()) && isFinite(point.getPositionWorldOnB()) &&
@@ -101,7 +104,6 @@ struct ContactRows::Bodies {
     }
   }
   Lanes3 velocityAt(const Lanes3& arm) const { return velocity + cross(spin, arm); }
-  Lanes3 wayOf(const Lanes3& arm) const { return moved + swing(axis, w, arm); }
   void push(const Lanes3& impulse) { velocity = velocity + scaled(inverse_mass, impulse); }
   void turn(const Lanes3& l) {
     spin = spin + Lanes3{xx * l.x + xy * l.y + xz * l.z, xy * l.x + yy * l.y + yz * l.z,
@@ -179,7 +181,7 @@ void ContactRows::beginStep(const btContactSolverInfo& info, int substeps) {
 
 void ContactRows::prepare(int index, const SolverBodies& bodies) {
   Block& block = blocks_[static_cast<std::size_t>(index)];
-  block.bounces = block.rolls = false;
+  block.bounces = block.rolls = block.bends = false;
   for (int i = 0; i < block.count; ++i) points_[static_cast<std::size_t>(block.begin + i)] = PointLanes{};
   for (int lane = 0; lane < kLanes; ++lane) {
     block.a[lane] = block.b[lane] = bodies.movable();
@@ -193,6 +195,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       fillPlace(point, lane, source, pair, bodies);
       fillForces(point, lane, *source.point, pair, bodies);
       block.bounces = block.bounces || point.restitution[lane] > 0;
+      block.bends = block.bends || point.bend[lane] != 0;
       block.rolls = block.rolls || point.rolling[lane] > 0 || point.spinning[lane] > 0;
     }
   }
@@ -206,11 +209,14 @@ void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, c
   const btVector3& on_a = source.flipped ? point.getPositionWorldOnB() : point.getPositionWorldOnA();
   const btVector3& on_b = source.flipped ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
   const btVector3 normal = point.m_normalWorldOnB * sign;
-  lanes.normal.set(lane, normal);
-  lanes.arm_a.set(lane, on_a - bodies.origin(pair.a));
   // The fixed world does not turn.
-  if (pair.b != bodies.movable()) lanes.arm_b.set(lane, on_b - bodies.origin(pair.b));
+  const btVector3 arm_a = on_a - bodies.origin(pair.a),
+                  arm_b = pair.b == bodies.movable() ? btVector3(0, 0, 0) : on_b - bodies.origin(pair.b);
+  lanes.normal.set(lane, normal);
+  lanes.arm_a.set(lane, arm_a);
+  lanes.arm_b.set(lane, arm_b);
   lanes.gap[lane] = point.getDistance() + slop_;
+  fillCurves(lanes, lane, source, bodies.size(pair.a), bodies.size(pair.b));
   btVector3 side_1, side_2;
   if ((point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0) {
     side_1 = point.m_lateralFrictionDir1 * sign;
@@ -230,6 +236,55 @@ void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, c
   }
   lanes.side_1.set(lane, side_1);
   lanes.side_2.set(lane, side_2);
+}
+
+/// How the place goes along with them: the centre of curvature stays on its body, as if spheres touched. A
+/// place without one is a corner, which is its own centre, or lies on a face; there it stays on the body, as it
+/// does on what is nearly flat: that would roll off its end. Sizes of 0 are of what does not turn.
+void ContactRows::fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a,
+                             btScalar size_b) {
+  Curvatures curved = curvaturesOf(*source.point);
+  if (source.flipped) std::swap(curved.a, curved.b);
+  const auto radius = [](btScalar curvature, btScalar size) {
+    if (curvature == 0) return btScalar(0);
+    return size == 0 || std::fabs(curvature) * size > 1 ? 1 / curvature : btScalar(0);
+  };
+  const btVector3 normal = lanes.normal.get(lane);
+  const btScalar a = radius(curved.a, size_a), b = radius(curved.b, size_b), both = a + b;
+  lanes.radius_a[lane] = a;
+  lanes.radius_b[lane] = b;
+  lanes.normal_0.set(lane, normal);
+  lanes.gap_0[lane] = lanes.gap[lane];
+  lanes.pivot_a.set(lane, lanes.arm_a.get(lane) + normal * a);
+  lanes.pivot_b.set(lane, lanes.arm_b.get(lane) - normal * b);
+  // Where surfaces fit each other there is no one place.
+  const bool spheres = a != 0 && b != 0 && std::fabs(both) > kFit * (std::fabs(a) + std::fabs(b));
+  lanes.bend[lane] = spheres ? 1 / both : btScalar(0);
+  if (spheres) return;
+  lanes.share_a[lane] = a != 0 ? btScalar(0) : b != 0 ? btScalar(1) : btScalar(0.5);
+  lanes.share_b[lane] = 1 - lanes.share_a[lane];
+}
+
+/// Where the bodies touch now.
+void ContactRows::follow(const Block& block, PointLanes& point, const Bodies& a, const Bodies& b) {
+  const Lanes3 arm_a = point.pivot_a + swing(a.axis, a.w, point.pivot_a),
+               arm_b = point.pivot_b + swing(b.axis, b.w, point.pivot_b);
+  const Lanes3 way = (a.moved - b.moved) + (arm_a - point.pivot_a) - (arm_b - point.pivot_b);
+  const Lanes along = dot(way, point.normal_0);
+  const Lanes3 aside = way - point.normal_0 * along;
+  point.gap = point.gap_0 + along;
+  if (block.bends) {
+    const Lanes bent = dot(aside, aside) * point.bend;
+    point.gap += inAll(btScalar(0.5)) * bent;
+    const Lanes3 turned = point.normal_0 + aside * point.bend;
+    const Lanes length = root(dot(turned, turned));
+    point.normal = turned * (length > Lanes{} ? inAll(1) / length : Lanes{});
+    point.side_1 = point.side_1 - point.normal * dot(point.side_1, point.normal);
+    point.side_2 = point.side_2 - point.normal * dot(point.side_2, point.normal);
+  }
+  // Both feel the push at one place, so that it turns them as much as it would turn one body.
+  point.arm_a = arm_a - point.normal * point.radius_a - aside * point.share_a;
+  point.arm_b = arm_b + point.normal * point.radius_b + aside * point.share_b;
 }
 
 /// How they yield.
@@ -306,11 +361,9 @@ void ContactRows::startBounces(PointLanes& point, const Bodies& a, const Bodies&
   point.impulse = bounced ? none : point.impulse;
   point.impulse_1 = bounced ? none : point.impulse_1;
   point.impulse_2 = bounced ? none : point.impulse_2;
-  const Lanes gap = point.gap + dot(a.wayOf(point.arm_a) - b.wayOf(point.arm_b), point.normal);
   const Lanes speed = dot(a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b), point.normal);
-  const Lanes leaving = speed * point.restitution * inAll(-1);
-  const auto hits = gap + speed * inAll(substep_) <= none;
-  point.bounce = hits ? (point.impulse > none ? none : leaving) : none;
+  const auto hits = point.gap + speed * inAll(substep_) <= none;
+  point.bounce = hits ? speed * point.restitution * inAll(-1) : none;
   point.bounce = speed < inAll(-bounce_threshold_) ? point.bounce : none;
 }
 
@@ -344,7 +397,7 @@ void ContactRows::solveFriction(const Block& block, PointLanes& point, Bodies& a
 
 void ContactRows::solveNormal(PointLanes& point, Pass pass, Bodies& a, Bodies& b) const {
   const Lanes none{}, one = inAll(1);
-  const Lanes gap = point.gap + dot(a.wayOf(point.arm_a) - b.wayOf(point.arm_b), point.normal);
+  const Lanes gap = point.gap;
   const Lanes speed = dot(a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b), point.normal);
   const auto open = gap > none;
   const auto bounces = point.bounce > none;
@@ -374,8 +427,9 @@ void ContactRows::solve(int index, Pass pass, std::vector<BodyState>& states) {
   Bodies a(block.a, states), b(block.b, states);
   for (int i = block.begin; i < block.begin + block.count; ++i) {
     PointLanes& point = points_[static_cast<std::size_t>(i)];
-    solveFriction(block, point, a, b);
+    if (pass == Pass::relax) follow(block, point, a, b);
     solveNormal(point, pass, a, b);
+    solveFriction(block, point, a, b);
     if (pass == Pass::push) continue;
     point.sum += point.impulse;
     point.sum_1 += point.impulse_1;

@@ -60,8 +60,13 @@ class ContactRows {
   };
   /// A point of each pair of a block.
   struct PointLanes {
-    Lanes3 normal, side_1, side_2, arm_a, arm_b;
-    Lanes gap;                                ///< when the step begins [m]
+    Lanes3 normal_0, pivot_a, pivot_b;  ///< when the step begins; pivots are centres of curvature
+    Lanes gap_0;                        ///< [m]
+    Lanes radius_a, radius_b;           ///< of curvature; 0: the place stays on the body [m]
+    Lanes bend;                         ///< how far the normal turns for a metre that the bodies slide [1/m]
+    Lanes share_a, share_b;             ///< of what points slide apart, for one place of contact
+    Lanes3 normal, side_1, side_2, arm_a, arm_b;  ///< now
+    Lanes gap;
     Lanes mass, mass_1, mass_2;               ///< what each row moves [kg]
     Lanes rate, soft_mass, soft_impulse;      ///< of the spring that drives bodies apart
     Lanes spring;                             ///< 1: it is the user's, and acts in all passes
@@ -78,7 +83,7 @@ class ContactRows {
     int a[kLanes], b[kLanes];
     int pair[kLanes];  ///< -1: nothing is in this lane
     int begin, count;  ///< in points_
-    bool bounces, rolls;
+    bool bounces, rolls, bends;
   };
   struct Bodies;
   struct Entry {
@@ -89,8 +94,11 @@ class ContactRows {
 
   void fillPlace(PointLanes& lanes, int lane, const Source& source, const ContactPair& pair,
                  const SolverBodies& bodies) const;
+  static void fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a,
+                         btScalar size_b);
   void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
                   const SolverBodies& bodies) const;
+  static void follow(const Block& block, PointLanes& point, const Bodies& a, const Bodies& b);
   void startBounces(PointLanes& point, const Bodies& a, const Bodies& b) const;
   static void solveFriction(const Block& block, PointLanes& point, Bodies& a, Bodies& b);
   void solveNormal(PointLanes& point, Pass pass, Bodies& a, Bodies& b) const;
