@@ -35,6 +35,8 @@ struct Softness {
 /// What drives contacts apart swings through an eighth of a circle in a substep, at ten times critical damping:
 /// slow enough for one pass to follow. Against what stands still it is twice as fast.
 constexpr btScalar kContactPhase = SIMD_PI / 4, kContactDamping = 10;
+/// The same of joints; their damping follows from the error reduction of the world.
+constexpr btScalar kJointPhase = SIMD_PI / 2;
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere
