@@ -164,6 +164,17 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
 }
 
+/// A point above a slope whose hilltop is among the points. A SubstepSolver has the hill go along with the
+/// bodies, so that its top meets the other body before the slope does.
+bool leavesItToTop(const ContactPatch& patch, int index) {
+  const ContactPoint& point = patch.points[index];
+  if (point.depth >= 0 || !(point.below_top > 0)) return false;
+  for (int i = 0; i < patch.count; ++i) {
+    if (patch.points[i].depth > point.depth + point.below_top / 2) return true;
+  }
+  return false;
+}
+
 /// The points of one patch into the manifold that `result` holds.
 void writePatch(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
                 const btVector3& origin, const ContactPatch& patch, const ContactLaw::OfPatch& law,
@@ -176,8 +187,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
     point.depth = patch.points[i].depth;
     point.law = law.at(point.depth);
     if (-point.depth > manifold.getContactBreakingThreshold()) continue;
-    // The top of the hill goes along with the bodies, and reaches this place before the slope does.
-    if (solver.substeps && point.depth < 0 && patch.points[i].below_top > 0) continue;
+    if (solver.substeps && leavesItToTop(patch, i)) continue;
     point.normal = patch.points[i].normal;
     point.curved = {patch.points[i].curvature_a, patch.points[i].curvature_b};
     point.on_b = origin + patch.points[i].on_b;

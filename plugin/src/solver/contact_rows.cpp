@@ -15,6 +15,9 @@ namespace {
 
 /// Fastest push, in sizes of the smaller body per second, and in depths per second for what is deeper.
 constexpr btScalar kFastest = btScalar(0.5), kLeaving = 3;
+/// A face that lands flat is thrown back by all its corners in one substep: each of them goes on until the others
+/// have had their part.
+constexpr int kBounceRounds = 8;
 /// Surfaces fit each other where their radii are the same but for this share.
 constexpr btScalar kFit = btScalar(0.02);
 
@@ -335,10 +338,11 @@ void ContactRows::fillForces(PointLanes& lanes, int lane, const btManifoldPoint&
 
 void ContactRows::warmStart(int index, std::vector<BodyState>& states) {
   Block& block = blocks_[static_cast<std::size_t>(index)];
+  block.bouncing = false;
   Bodies a(block.a, states), b(block.b, states);
   for (int i = block.begin; i < block.begin + block.count; ++i) {
     PointLanes& point = points_[static_cast<std::size_t>(i)];
-    if (block.bounces) startBounces(point, a, b);
+    if (block.bounces) startBounces(block, point, a, b);
     const Lanes3 impulse =
         point.normal * point.impulse + point.side_1 * point.impulse_1 + point.side_2 * point.impulse_2;
     a.pushAt(point.arm_a, impulse);
@@ -355,7 +359,7 @@ void ContactRows::warmStart(int index, std::vector<BodyState>& states) {
 
 /// Points that the bodies reach in this substep leave as fast as restitution says. What threw them back is no
 /// load that goes on.
-void ContactRows::startBounces(PointLanes& point, const Bodies& a, const Bodies& b) const {
+void ContactRows::startBounces(Block& block, PointLanes& point, const Bodies& a, const Bodies& b) const {
   const Lanes none{};
   const auto bounced = point.bounce > none;
   point.impulse = bounced ? none : point.impulse;
@@ -365,6 +369,7 @@ void ContactRows::startBounces(PointLanes& point, const Bodies& a, const Bodies&
   const auto hits = point.gap + speed * inAll(substep_) <= none;
   point.bounce = hits ? speed * point.restitution * inAll(-1) : none;
   point.bounce = speed < inAll(-bounce_threshold_) ? point.bounce : none;
+  for (int lane = 0; lane < kLanes; ++lane) block.bouncing = block.bouncing || point.bounce[lane] > 0;
 }
 
 void ContactRows::solveFriction(const Block& block, PointLanes& point, Bodies& a, Bodies& b) {
@@ -409,7 +414,9 @@ void ContactRows::solveNormal(PointLanes& point, Pass pass, Bodies& a, Bodies& b
     impulse = open ? none : point.soft_impulse;
   } else {
     bias = open ? bias : none;
-    acts = open ? one : one - point.spring;  // a spring of the user's is no error to be given back
+    // What is to bounce goes on until its substep; a spring of the user's is no error to be given back.
+    const Lanes goes_on = speed * point.restitution < inAll(-bounce_threshold_) * point.restitution ? none : one;
+    acts = open ? goes_on : one - point.spring;
   }
   bias = bounces ? point.bounce * inAll(-1) : bias;
   mass = bounces ? one : mass;
@@ -425,12 +432,19 @@ void ContactRows::solveNormal(PointLanes& point, Pass pass, Bodies& a, Bodies& b
 void ContactRows::solve(int index, Pass pass, std::vector<BodyState>& states) {
   const Block& block = blocks_[static_cast<std::size_t>(index)];
   Bodies a(block.a, states), b(block.b, states);
-  for (int i = block.begin; i < block.begin + block.count; ++i) {
+  PointLanes* const begin = points_.data() + block.begin;
+  PointLanes* const end = begin + block.count;
+  if (pass == Pass::relax) {
+    for (PointLanes* point = begin; point != end; ++point) follow(block, *point, a, b);
+  }
+  for (int round = block.bouncing ? kBounceRounds : 1; round > 0; --round) {
+    for (PointLanes* point = begin; point != end; ++point) {
+      solveNormal(*point, pass, a, b);
+      solveFriction(block, *point, a, b);
+    }
+  }
+  for (int i = block.begin; pass == Pass::relax && i < block.begin + block.count; ++i) {
     PointLanes& point = points_[static_cast<std::size_t>(i)];
-    if (pass == Pass::relax) follow(block, point, a, b);
-    solveNormal(point, pass, a, b);
-    solveFriction(block, point, a, b);
-    if (pass == Pass::push) continue;
     point.sum += point.impulse;
     point.sum_1 += point.impulse_1;
     point.sum_2 += point.impulse_2;

@@ -83,7 +83,8 @@ class ContactRows {
     int a[kLanes], b[kLanes];
     int pair[kLanes];  ///< -1: nothing is in this lane
     int begin, count;  ///< in points_
-    bool bounces, rolls, bends;
+    bool bounces, rolls, bends;  ///< what some of its points do
+    bool bouncing;               ///< in this substep
   };
   struct Bodies;
   struct Entry {
@@ -99,7 +100,7 @@ class ContactRows {
   void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
                   const SolverBodies& bodies) const;
   static void follow(const Block& block, PointLanes& point, const Bodies& a, const Bodies& b);
-  void startBounces(PointLanes& point, const Bodies& a, const Bodies& b) const;
+  void startBounces(Block& block, PointLanes& point, const Bodies& a, const Bodies& b) const;
   static void solveFriction(const Block& block, PointLanes& point, Bodies& a, Bodies& b);
   void solveNormal(PointLanes& point, Pass pass, Bodies& a, Bodies& b) const;
 
