@@ -30,7 +30,7 @@ struct NewPoint {
   btVector3 slip{0, 0, 0};     ///< of A on B, that friction is to undo
   btVector3 aside{0, 0, 0};    ///< of the point on A from the one on B
   btScalar friction = 1;       ///< share of it
-  Curvatures curved;
+  Curvatures curved;           ///< of both surfaces
 };
 
 /// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "common/bullet_vectors.hpp"
+#include "common/contact_tolerances.hpp"
 #include "solver/point_curvature.hpp"
 #include "solver/soft_step.hpp"
 
@@ -18,8 +19,6 @@ constexpr btScalar kFastest = btScalar(0.5), kLeaving = 3;
 /// A face that lands flat is thrown back by all its corners in one substep: each of them goes on until the others
 /// have had their part.
 constexpr int kBounceRounds = 8;
-/// Surfaces fit each other where their radii are the same but for this share.
-constexpr btScalar kFit = btScalar(0.02);
 
 bool isSound(const btManifoldPoint& point) {
   return isFinite(point.getPositionWorldOnA()) && isFinite(point.getPositionWorldOnB()) &&
@@ -185,6 +184,7 @@ void ContactRows::beginStep(const btContactSolverInfo& info, int substeps) {
 void ContactRows::prepare(int index, const SolverBodies& bodies) {
   Block& block = blocks_[static_cast<std::size_t>(index)];
   block.bounces = block.rolls = block.bends = false;
+  block.share = Lanes{};
   for (int i = 0; i < block.count; ++i) points_[static_cast<std::size_t>(block.begin + i)] = PointLanes{};
   for (int lane = 0; lane < kLanes; ++lane) {
     block.a[lane] = block.b[lane] = bodies.movable();
@@ -192,6 +192,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
     const ContactPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
     block.a[lane] = pair.a;
     block.b[lane] = pair.b;
+    block.share[lane] = bodies.isMovable(pair.b) ? btScalar(0.5) : btScalar(0);
     for (int i = 0; i < pair.count; ++i) {
       PointLanes& point = points_[static_cast<std::size_t>(block.begin + i)];
       const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];
@@ -252,42 +253,39 @@ void ContactRows::fillCurves(PointLanes& lanes, int lane, const Source& source, 
     if (curvature == 0) return btScalar(0);
     return size == 0 || std::fabs(curvature) * size > 1 ? 1 / curvature : btScalar(0);
   };
+  btScalar a = radius(curved.a, size_a), b = radius(curved.b, size_b);
+  // Where surfaces fit each other there is no one place.
+  if (!(curved.a + curved.b > kConforming * (std::fabs(curved.a) + std::fabs(curved.b)))) a = b = 0;
   const btVector3 normal = lanes.normal.get(lane);
-  const btScalar a = radius(curved.a, size_a), b = radius(curved.b, size_b), both = a + b;
   lanes.radius_a[lane] = a;
   lanes.radius_b[lane] = b;
+  lanes.bend[lane] = a != 0 && b != 0 ? 1 / (a + b) : btScalar(0);
   lanes.normal_0.set(lane, normal);
   lanes.gap_0[lane] = lanes.gap[lane];
   lanes.pivot_a.set(lane, lanes.arm_a.get(lane) + normal * a);
   lanes.pivot_b.set(lane, lanes.arm_b.get(lane) - normal * b);
-  // Where surfaces fit each other there is no one place.
-  const bool spheres = a != 0 && b != 0 && std::fabs(both) > kFit * (std::fabs(a) + std::fabs(b));
-  lanes.bend[lane] = spheres ? 1 / both : btScalar(0);
-  if (spheres) return;
-  lanes.share_a[lane] = a != 0 ? btScalar(0) : b != 0 ? btScalar(1) : btScalar(0.5);
-  lanes.share_b[lane] = 1 - lanes.share_a[lane];
 }
 
 /// Where the bodies touch now.
 void ContactRows::follow(const Block& block, PointLanes& point, const Bodies& a, const Bodies& b) {
-  const Lanes3 arm_a = point.pivot_a + swing(a.axis, a.w, point.pivot_a),
-               arm_b = point.pivot_b + swing(b.axis, b.w, point.pivot_b);
-  const Lanes3 way = (a.moved - b.moved) + (arm_a - point.pivot_a) - (arm_b - point.pivot_b);
+  const Lanes3 moved = a.moved - b.moved;
+  const Lanes3 way = moved + swing(a.axis, a.w, point.pivot_a) - swing(b.axis, b.w, point.pivot_b);
   const Lanes along = dot(way, point.normal_0);
-  const Lanes3 aside = way - point.normal_0 * along;
   point.gap = point.gap_0 + along;
+  // Both feel the push at one place, in the middle, so that it turns them as much as it would turn one body.
+  Lanes3 apart = moved + point.normal_0 * point.gap_0;
   if (block.bends) {
-    const Lanes bent = dot(aside, aside) * point.bend;
-    point.gap += inAll(btScalar(0.5)) * bent;
+    const Lanes3 aside = way - point.normal_0 * along;
+    point.gap += inAll(btScalar(0.5)) * dot(aside, aside) * point.bend;
     const Lanes3 turned = point.normal_0 + aside * point.bend;
     const Lanes length = root(dot(turned, turned));
     point.normal = turned * (length > Lanes{} ? inAll(1) / length : Lanes{});
     point.side_1 = point.side_1 - point.normal * dot(point.side_1, point.normal);
     point.side_2 = point.side_2 - point.normal * dot(point.side_2, point.normal);
+    apart = apart - (point.normal - point.normal_0) * (point.radius_a + point.radius_b);
   }
-  // Both feel the push at one place, so that it turns them as much as it would turn one body.
-  point.arm_a = arm_a - point.normal * point.radius_a - aside * point.share_a;
-  point.arm_b = arm_b + point.normal * point.radius_b + aside * point.share_b;
+  point.arm_a = point.pivot_a - point.normal * point.radius_a - apart * block.share;
+  point.arm_b = point.pivot_b + point.normal * point.radius_b + apart * block.share;
 }
 
 /// How they yield.

@@ -64,7 +64,6 @@ class ContactRows {
     Lanes gap_0;                        ///< [m]
     Lanes radius_a, radius_b;           ///< of curvature; 0: the place stays on the body [m]
     Lanes bend;                         ///< how far the normal turns for a metre that the bodies slide [1/m]
-    Lanes share_a, share_b;             ///< of what points slide apart, for one place of contact
     Lanes3 normal, side_1, side_2, arm_a, arm_b;  ///< now
     Lanes gap;
     Lanes mass, mass_1, mass_2;               ///< what each row moves [kg]
@@ -83,6 +82,7 @@ class ContactRows {
     int a[kLanes], b[kLanes];
     int pair[kLanes];  ///< -1: nothing is in this lane
     int begin, count;  ///< in points_
+    Lanes share;       ///< of what they slide apart, to the place in the middle
     bool bounces, rolls, bends;  ///< what some of its points do
     bool bouncing;               ///< in this substep
   };

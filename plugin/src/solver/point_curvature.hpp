@@ -13,7 +13,8 @@ struct Curvatures {
   btScalar a = 0, b = 0;
 };
 
-/// A point has no place for them. Where no one has set directions of friction, no one reads the speeds along these.
+/// A manifold point has no place for them. Where no one has set directions of friction, no one reads the speeds along
+/// these.
 inline bool hasRoomForCurvatures(const btManifoldPoint& point) {
   return (point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) == 0;
 }
