@@ -25,6 +25,12 @@ btQuaternion rotationOf(const btVector3& spin, btScalar time) {
   return btQuaternion(axis.x(), axis.y(), axis.z(), std::cos(half));
 }
 
+/// How a rotation changes a vector.
+btVector3 changeBy(const btQuaternion& rotation, const btVector3& v) {
+  const btVector3 axis(rotation.x(), rotation.y(), rotation.z()), across = axis.cross(v);
+  return (across * rotation.w() + axis.cross(across)) * 2;
+}
+
 bool isUsable(const btRigidBody& body) {
   // Squares of velocities are formed: they have to be finite, too.
   return isFinite(body.getWorldTransform()) && std::isfinite(body.getLinearVelocity().length2()) &&
@@ -69,7 +75,7 @@ void SolverBodies::add(btRigidBody& rigid) {
   BodyState& state = states_.emplace_back();
   body.rigid = &rigid;
   body.origin = rigid.getWorldTransform().getOrigin();
-  body.rotation = rigid.getWorldTransform().getRotation();
+  body.rotation = rigid.getWorldTransform().getRotation().normalized();
   body.mass = rigid.getMass();
   body.force = rigid.getTotalForce() * rigid.getInvMass();
   body.torque = rigid.getTotalTorque();
@@ -155,15 +161,19 @@ void SolverBodies::turn(const Body& body, BodyState& state, btScalar substep) co
     updateInertia(body, state);
     return;
   }
-  const btQuaternion start = state.turned * body.rotation;
-  const btVector3 momentum = quatRotate(start, quatRotate(start.inverse(), state.spin) * body.inertia);
-  const auto spinAt = [&](const btQuaternion& turned) {
-    const btQuaternion rotation = turned * body.rotation;
-    return quatRotate(rotation, quatRotate(rotation.inverse(), momentum) * body.inverse_inertia);
+  const btQuaternion start = (state.turned * body.rotation).normalized();
+  const btVector3 momentum = quatRotate(start.inverse(), state.spin) * body.inertia;  // in its own frame
+  // Only changes are turned, and multiplied by the inertia and its inverse. None of that is so to the last bit, and
+  // thousands of substeps would add up what is missing.
+  const auto spinAfter = [&](const btQuaternion& turn) {
+    const btQuaternion rotation = (turn * start).normalized();
+    const btVector3 change = changeBy(rotation.inverse() * start, momentum) * body.inverse_inertia;
+    return state.spin + changeBy(turn, state.spin) + quatRotate(rotation, change);
   };
-  const btVector3 middle = spinAt((rotationOf(state.spin, substep / 2) * state.turned).normalized());
-  state.turned = (rotationOf(middle, substep) * state.turned).normalized();
-  state.spin = spinAt(state.turned);
+  const btVector3 middle = spinAfter(rotationOf(state.spin, substep / 2));
+  const btQuaternion turn = rotationOf(middle, substep);
+  state.spin = spinAfter(turn);
+  state.turned = (turn * state.turned).normalized();
   updateInertia(body, state);
 }
 

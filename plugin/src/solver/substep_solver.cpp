@@ -103,6 +103,7 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
                                 const btContactSolverInfo& info) {
   const btScalar time_step = info.m_timeStep;
   bodies_.begin(bodies, body_count);
+  if (bodies_.movable() == 0) return report(bodies_.finish(time_step));
   contacts_.collect(manifolds, manifold_count, bodies_);
   constraints_.collect(constraints, constraint_count, bodies_);
   const int substeps = substepsFor(options, time_step, bodies_, contacts_.pairs(), constraints_);

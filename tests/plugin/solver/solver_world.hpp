@@ -43,6 +43,10 @@ class SolverWorld {
   btRigidBody& addFloor() {
     return add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)), 0, btVector3(0, 0, 0));
   }
+  /// Between boxes Bullet finds all points at once, on its plane one more in each step.
+  btRigidBody& addSlab() {
+    return addBox(btVector3(50, 50, 1), 0, btVector3(0, 0, -1));
+  }
   template <class Constraint, typename... Arguments>
   Constraint& join(Arguments&&... arguments) {
     auto made = std::make_unique<Constraint>(std::forward<Arguments>(arguments)...);
