@@ -114,7 +114,9 @@ int SolverBodies::indexOf(const btCollisionObject& object) {
   Body& body = bodies_.emplace_back();
   BodyState& state = states_.emplace_back();
   body.rigid = const_cast<btRigidBody*>(rigid);
-  body.origin = rigid->getWorldTransform().getOrigin();
+  body.given = rigid->getWorldTransform();
+  body.origin = body.given.getOrigin();
+  body.rotation = body.given.getRotation();
   state.velocity = rigid->getLinearVelocity();
   state.spin = rigid->getAngularVelocity();
   return static_cast<int>(bodies_.size()) - 1;
@@ -198,6 +200,7 @@ void SolverBodies::moveDriven(btScalar substep) {
     if (!bodies_[i].rigid->isKinematicObject()) continue;
     state.moved += state.velocity * substep;
     state.turned = (rotationOf(state.spin, substep) * state.turned).normalized();
+    if (bodies_[i].followed) bodies_[i].rigid->setWorldTransform(poseOf(bodies_[i], state));
   }
 }
 
@@ -208,6 +211,9 @@ btTransform SolverBodies::poseOf(const Body& body, const BodyState& state) const
 int SolverBodies::finish(btScalar time_step) {
   int lost = 0;
   for (btRigidBody* body : broken_) body->setCompanionId(-1);
+  for (std::size_t i = static_cast<std::size_t>(movable_) + 1; i < bodies_.size(); ++i) {
+    if (bodies_[i].followed) bodies_[i].rigid->setWorldTransform(bodies_[i].given);
+  }
   for (int i = 0; i < movable_; ++i) {
     const Body& body = bodies_[static_cast<std::size_t>(i)];
     BodyState& state = states_[static_cast<std::size_t>(i)];

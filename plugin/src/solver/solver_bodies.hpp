@@ -58,7 +58,7 @@ class SolverBodies {
   void accelerate(int begin, int end, btScalar substep);
   /// Moves the bodies in [begin, end).
   void move(int begin, int end, btScalar substep);
-  /// What moves by itself goes on.
+  /// What moves by itself goes on, as far as contacts and constraints see it.
   void moveDriven(btScalar substep);
 
   /// Writes poses and velocities such that Bullet's own integration over the step [s] ends where the substeps
@@ -74,6 +74,7 @@ class SolverBodies {
     btRigidBody* rigid = nullptr;
     btVector3 force{0, 0, 0};   ///< as an acceleration [m/s^2]
     btVector3 torque{0, 0, 0};  ///< [N m]
+    btTransform given;          ///< of what moves by itself: where it is put again
     btVector3 origin{0, 0, 0};  ///< at the start
     btQuaternion rotation = btQuaternion::getIdentity();  ///< at the start
     btVector3 inverse_inertia{0, 0, 0};                   ///< about its own axes
