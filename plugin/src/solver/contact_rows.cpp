@@ -228,7 +228,10 @@ void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, c
     lanes.belt_1[lane] = point.m_contactMotion1;
     lanes.belt_2[lane] = point.m_contactMotion2;
   } else {
-    btPlaneSpace1(normal, side_1, side_2);
+    // As Bullet does for a new point, which takes over the impulses of an old one, but not its directions.
+    btPlaneSpace1(point.m_normalWorldOnB, side_1, side_2);
+    side_1 *= sign;
+    side_2 *= sign;
   }
   if (warm_starting_) {
     const btVector3 borne = (point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +

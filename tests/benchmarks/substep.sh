@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Scenes with Bullet's solver and with SubstepSolver, at three steps:
+#
+#   ./tests/benchmarks/run.sh substep [SCENES]     all of the list below if none is named
+#
+# prints a Markdown table: every truth, and what each solver shows of it at each step. Takes about a quarter of an hour on two cores.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+tool=${TOOL:-$here/../../build-benchmarks/bin/innersphere}
+[ -n "${TOOL:-}" ] || "$here/run.sh" innersphere --version >/dev/null  # builds it
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+scenes=${*:-stack mass-ratios card-house chain-hang chain-swing chain-heavy rest drop bounce slide roll flip torsion cradle collisions
+  tumble bowls soft nut nut-held gears peg maze chazelle pile arch arch-thin dominoes ring-peg half-pipe t-slot gripper gripper-motor
+  gear-box chain-rest mixed-pile scan-bin}
+declare -A arguments=([bullet_240]="--dt 0.00416666667" [bullet_120]="--dt 0.00833333333" [bullet_60]="--dt 0.0166666667")
+columns="bullet_240 bullet_120 bullet_60"
+for column in $columns; do
+  arguments[${column/bullet/substep}]="${arguments[$column]} --solver substep"
+  columns+=" ${column/bullet/substep}"
+done
+limit=${LIMIT:-60}
+. "$here/scene_table.sh"
+run_scenes
+
+cat <<EOF
+# Scenes with SubstepSolver
+
+$(print_machine)
+* command: \`tests/benchmarks/run.sh substep${*:+ $*}\`
+
+Steps a second, with Bullet's solver (two friction directions, ten iterations) and with SubstepSolver, which chose its substeps.
+Where a run takes more than $limit s of processor time there is a dash. Each scene's last row is the median time of a step [ms].
+
+EOF
+print_table
