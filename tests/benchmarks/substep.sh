@@ -12,12 +12,14 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 scenes=${*:-stack mass-ratios card-house chain-hang chain-swing chain-heavy rest drop bounce slide roll flip torsion cradle collisions
   tumble bowls soft nut nut-held gears peg maze chazelle pile arch arch-thin dominoes ring-peg half-pipe t-slot gripper gripper-motor
-  gear-box chain-rest mixed-pile scan-bin}
-declare -A arguments=([bullet_240]="--dt 0.00416666667" [bullet_120]="--dt 0.00833333333" [bullet_60]="--dt 0.0166666667")
-columns="bullet_240 bullet_120 bullet_60"
-for column in $columns; do
-  arguments[${column/bullet/substep}]="${arguments[$column]} --solver substep"
-  columns+=" ${column/bullet/substep}"
+  gear-box chain-rest}
+declare -A arguments=()
+columns=
+for rate in 60 120 240; do
+  for solver in substep bullet; do
+    columns+=" ${solver}_$rate"
+    arguments[${solver}_$rate]="--dt $(awk "BEGIN { printf \"%.9f\", 1 / $rate }") --solver $solver"
+  done
 done
 limit=${LIMIT:-60}
 . "$here/scene_table.sh"

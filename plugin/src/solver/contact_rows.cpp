@@ -25,22 +25,6 @@ bool isSound(const btManifoldPoint& point) {
          isFinite(point.m_normalWorldOnB) && std::isfinite(point.getDistance());
 }
 
-/// The mass that an impulse along `way` at these arms moves; 0 if it moves nothing.
-btScalar massAlong(const BodyState& a, const BodyState& b, const btVector3& arm_a, const btVector3& arm_b,
-                   const btVector3& way) {
-  const btVector3 turn_a = arm_a.cross(way), turn_b = arm_b.cross(way);
-  const btScalar yields = way.dot(way * a.inverse_mass) + way.dot(way * b.inverse_mass) +
-                          turn_a.dot(a.inverseInertiaTimes(turn_a)) + turn_b.dot(b.inverseInertiaTimes(turn_b));
-  const btScalar mass = 1 / yields;
-  return yields > 0 && std::isfinite(mass) ? mass : btScalar(0);
-}
-
-btScalar inertiaAbout(const BodyState& a, const BodyState& b, const btVector3& axis) {
-  const btScalar yields = axis.dot(a.inverseInertiaTimes(axis)) + axis.dot(b.inverseInertiaTimes(axis));
-  const btScalar inertia = 1 / yields;
-  return yields > 0 && std::isfinite(inertia) ? inertia : btScalar(0);
-}
-
 /// How far `turned` moves the end of an arm.
 Lanes3 swing(const Lanes3& axis, Lanes w, const Lanes3& arm) {
   const Lanes3 across = cross(axis, arm);
@@ -48,10 +32,15 @@ Lanes3 swing(const Lanes3& axis, Lanes w, const Lanes3& arm) {
 }
 
 /// Bullet's anisotropic friction: how far each axis of a body counts.
-void scaleByAnisotropy(const btCollisionObject& body, btVector3& way) {
-  if (!body.hasAnisotropicFriction(btCollisionObject::CF_ANISOTROPIC_FRICTION)) return;
+btVector3 scaledByAnisotropy(const btCollisionObject& body, const btVector3& way) {
   const btMatrix3x3& axes = body.getWorldTransform().getBasis();
-  way = axes * ((way * axes) * body.getAnisotropicFriction());
+  return axes * ((way * axes) * body.getAnisotropicFriction());
+}
+
+/// The mass that gets this speed from an impulse; 0 if it moves nothing.
+Lanes massOf(Lanes yields) {
+  const Lanes mass = inAll(1) / yields;
+  return yields > Lanes{} ? (mass < inAll(BT_LARGE_FLOAT) ? mass : Lanes{}) : Lanes{};
 }
 
 /// Both parts of an impulse across the normal, which together are no larger than `most`.
@@ -107,10 +96,10 @@ struct ContactRows::Bodies {
   }
   Lanes3 velocityAt(const Lanes3& arm) const { return velocity + cross(spin, arm); }
   void push(const Lanes3& impulse) { velocity = velocity + scaled(inverse_mass, impulse); }
-  void turn(const Lanes3& l) {
-    spin = spin + Lanes3{xx * l.x + xy * l.y + xz * l.z, xy * l.x + yy * l.y + yz * l.z,
-                         xz * l.x + yz * l.y + zz * l.z};
+  Lanes3 inverseInertiaTimes(const Lanes3& l) const {
+    return {xx * l.x + xy * l.y + xz * l.z, xy * l.x + yy * l.y + yz * l.z, xz * l.x + yz * l.y + zz * l.z};
   }
+  void turn(const Lanes3& l) { spin = spin + inverseInertiaTimes(l); }
   void pushAt(const Lanes3& arm, const Lanes3& impulse) {
     push(impulse);
     turn(cross(arm, impulse));
@@ -159,18 +148,19 @@ void ContactRows::collect(btPersistentManifold** manifolds, int count, SolverBod
 
 void ContactRows::clearBlocks() {
   blocks_.clear();
-  points_.clear();
+  point_count_ = 0;
 }
 
 void ContactRows::addBlock(const int* pairs, int count) {
   Block& block = blocks_.emplace_back();
-  block.begin = static_cast<int>(points_.size());
+  block.begin = point_count_;
   block.count = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
     block.pair[lane] = lane < count ? pairs[lane] : -1;
     if (lane < count) block.count = std::max(block.count, pairs_[static_cast<std::size_t>(pairs[lane])].count);
   }
-  points_.resize(points_.size() + static_cast<std::size_t>(block.count));
+  point_count_ += block.count;
+  if (points_.size() < static_cast<std::size_t>(point_count_)) points_.resize(static_cast<std::size_t>(point_count_));
 }
 
 void ContactRows::beginStep(const btContactSolverInfo& info, int substeps) {
@@ -178,6 +168,8 @@ void ContactRows::beginStep(const btContactSolverInfo& info, int substeps) {
   substep_ = info.m_timeStep / substeps_;
   slop_ = info.m_linearSlop;
   bounce_threshold_ = info.m_restitutionVelocityThreshold;
+  soft_ = Softness::ofPhase(kContactPhase, kContactDamping, substep_);
+  soft_on_fixed_ = Softness::ofPhase(2 * kContactPhase, kContactDamping / 2, substep_);
   warm_starting_ = (info.m_solverMode & SOLVER_USE_WARMSTARTING) != 0;
 }
 
@@ -201,6 +193,17 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       block.bounces = block.bounces || point.restitution[lane] > 0;
       block.bends = block.bends || point.bend[lane] != 0;
       block.rolls = block.rolls || point.rolling[lane] > 0 || point.spinning[lane] > 0;
+    }
+  }
+  const Bodies a(block.a, bodies.states()), b(block.b, bodies.states());
+  for (int i = block.begin; i < block.begin + block.count; ++i)
+    fillMasses(points_[static_cast<std::size_t>(i)], a, b, block.rolls);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (block.pair[lane] < 0) continue;
+    const ContactPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
+    for (int i = 0; i < pair.count; ++i) {
+      const btManifoldPoint& point = *sources_[static_cast<std::size_t>(pair.begin + i)].point;
+      fillSoftness(points_[static_cast<std::size_t>(block.begin + i)], lane, point, pair, bodies);
     }
   }
 }
@@ -291,46 +294,55 @@ void ContactRows::follow(const Block& block, PointLanes& point, const Bodies& a,
   point.arm_b = point.pivot_b + point.normal * point.radius_b + apart * block.share;
 }
 
-/// How they yield.
+/// What the point has been told of forces, and what it bore.
 void ContactRows::fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point,
-                             const ContactPair& pair, const SolverBodies& bodies) const {
-  const BodyState &a = bodies.state(pair.a), &b = bodies.state(pair.b);
-  const btVector3 normal = lanes.normal.get(lane), arm_a = lanes.arm_a.get(lane),
-                  arm_b = lanes.arm_b.get(lane);
-  btVector3 sides[2] = {lanes.side_1.get(lane), lanes.side_2.get(lane)};
-  for (btVector3& side : sides) {
-    for (int body : {pair.a, pair.b}) {
-      if (const btRigidBody* rigid = bodies.rigid(body)) scaleByAnisotropy(*rigid, side);
-    }
+                             const ContactPair& pair, const SolverBodies& bodies) {
+  for (int body : {pair.a, pair.b}) {
+    const btRigidBody* rigid = bodies.rigid(body);
+    if (rigid == nullptr || !rigid->hasAnisotropicFriction(btCollisionObject::CF_ANISOTROPIC_FRICTION)) continue;
+    for (Lanes3* side : {&lanes.side_1, &lanes.side_2}) side->set(lane, scaledByAnisotropy(*rigid, side->get(lane)));
   }
-  lanes.side_1.set(lane, sides[0]);
-  lanes.side_2.set(lane, sides[1]);
-  const btScalar mass = massAlong(a, b, arm_a, arm_b, normal);
-  lanes.mass[lane] = mass;
-  lanes.mass_1[lane] = massAlong(a, b, arm_a, arm_b, sides[0]);
-  lanes.mass_2[lane] = massAlong(a, b, arm_a, arm_b, sides[1]);
   lanes.friction[lane] = point.m_combinedFriction;
   lanes.restitution[lane] = point.m_combinedRestitution;
   lanes.rolling[lane] = point.m_combinedRollingFriction;
   lanes.spinning[lane] = point.m_combinedSpinningFriction;
-  lanes.mass_rolling[lane] = std::min(inertiaAbout(a, b, sides[0]), inertiaAbout(a, b, sides[1]));
-  lanes.mass_spinning[lane] = inertiaAbout(a, b, normal);
-
-  const bool both_move = bodies.isMovable(pair.b);
-  Softness soft = Softness::ofPhase(both_move ? kContactPhase : 2 * kContactPhase,
-                                    both_move ? kContactDamping : kContactDamping / 2, substep_);
-  const btScalar size = both_move ? std::min(bodies.size(pair.a), bodies.size(pair.b)) : bodies.size(pair.a);
-  lanes.fastest[lane] = std::max(kFastest * size, -kLeaving * point.getDistance());
-  if (const auto spring = springOf(point, substep_ * substeps_)) {
-    soft = Softness::ofSpring(spring->stiffness, spring->damping, mass, substep_);
-    lanes.spring[lane] = 1;
-    lanes.fastest[lane] = BT_LARGE_FLOAT;
-  }
   const btScalar most = lanes.friction[lane] * lanes.impulse[lane];
   const btScalar held = std::hypot(lanes.impulse_1[lane], lanes.impulse_2[lane]);
   if (held > most) {
     lanes.impulse_1[lane] *= most / held;
     lanes.impulse_2[lane] *= most / held;
+  }
+}
+
+/// How much each row moves.
+void ContactRows::fillMasses(PointLanes& point, const Bodies& a, const Bodies& b, bool rolls) {
+  const auto along = [&](const Lanes3& way) {
+    const Lanes3 turn_a = cross(point.arm_a, way), turn_b = cross(point.arm_b, way);
+    return massOf(dot(way, scaled(a.inverse_mass, way)) + dot(way, scaled(b.inverse_mass, way)) +
+                  dot(turn_a, a.inverseInertiaTimes(turn_a)) + dot(turn_b, b.inverseInertiaTimes(turn_b)));
+  };
+  const auto about = [&](const Lanes3& axis) {
+    return massOf(dot(axis, a.inverseInertiaTimes(axis)) + dot(axis, b.inverseInertiaTimes(axis)));
+  };
+  point.mass = along(point.normal);
+  point.mass_1 = along(point.side_1);
+  point.mass_2 = along(point.side_2);
+  if (!rolls) return;
+  point.mass_rolling = smaller(about(point.side_1), about(point.side_2));
+  point.mass_spinning = about(point.normal);
+}
+
+/// How they give way.
+void ContactRows::fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
+                               const SolverBodies& bodies) const {
+  const bool both_move = bodies.isMovable(pair.b);
+  const btScalar size = both_move ? std::min(bodies.size(pair.a), bodies.size(pair.b)) : bodies.size(pair.a);
+  Softness soft = both_move ? soft_ : soft_on_fixed_;
+  lanes.fastest[lane] = std::max(kFastest * size, -kLeaving * point.getDistance());
+  if (const auto spring = springOf(point, substep_ * substeps_)) {
+    soft = Softness::ofSpring(spring->stiffness, spring->damping, lanes.mass[lane], substep_);
+    lanes.spring[lane] = 1;
+    lanes.fastest[lane] = BT_LARGE_FLOAT;
   }
   lanes.rate[lane] = soft.rate;
   lanes.soft_mass[lane] = soft.mass;

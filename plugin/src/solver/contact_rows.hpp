@@ -7,6 +7,7 @@
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
 #include "solver/lanes.hpp"
+#include "solver/soft_step.hpp"
 #include "solver/solver_bodies.hpp"
 
 namespace innersphere {
@@ -38,7 +39,7 @@ class ContactRows {
   void addBlock(const int* pairs, int count);
   int blocks() const { return static_cast<int>(blocks_.size()); }
   /// Returns the number of points that all blocks have room for.
-  int points() const { return static_cast<int>(points_.size()); }
+  int points() const { return point_count_; }
 
   /// Takes over what holds for all rows of a step.
   void beginStep(const btContactSolverInfo& info, int substeps);
@@ -97,8 +98,11 @@ class ContactRows {
                  const SolverBodies& bodies) const;
   static void fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a,
                          btScalar size_b);
-  void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
-                  const SolverBodies& bodies) const;
+  static void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
+                         const SolverBodies& bodies);
+  static void fillMasses(PointLanes& point, const Bodies& a, const Bodies& b, bool rolls);
+  void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
+                    const SolverBodies& bodies) const;
   static void follow(const Block& block, PointLanes& point, const Bodies& a, const Bodies& b);
   void startBounces(Block& block, PointLanes& point, const Bodies& a, const Bodies& b) const;
   static void solveFriction(const Block& block, PointLanes& point, Bodies& a, Bodies& b);
@@ -108,7 +112,9 @@ class ContactRows {
   std::vector<Source> sources_;
   std::vector<ContactPair> pairs_;
   std::vector<Block> blocks_;
-  std::vector<PointLanes> points_;
+  std::vector<PointLanes> points_;  ///< some of them of an earlier, larger step
+  int point_count_ = 0;
+  Softness soft_, soft_on_fixed_;
   btScalar substep_ = 0;           ///< [s]
   btScalar substeps_ = 1;
   btScalar bounce_threshold_ = 0;  ///< [m/s]

@@ -44,6 +44,7 @@ class SolverBodies {
   int movable() const { return movable_; }
   bool isMovable(int index) const { return index < movable_; }
   std::vector<BodyState>& states() { return states_; }
+  const std::vector<BodyState>& states() const { return states_; }
   const BodyState& state(int index) const { return states_[static_cast<std::size_t>(index)]; }
   /// Returns null for the fixed world.
   const btRigidBody* rigid(int index) const { return bodies_[static_cast<std::size_t>(index)].rigid; }
