@@ -76,13 +76,15 @@ TEST(SubstepContacts, ABoxBouncesToTheSquareOfItsRestitution) {
   world.addSlab().setRestitution(1);
   btRigidBody& box = addCube(world, 1, kHalf + 1);
   box.setRestitution(btScalar(0.5));
-  world.run(0.5);
+  // Bullet's boxes see each other when they touch: they are up to 4.4 m/s dt in each other then.
+  constexpr double kShort = 1.0 / 240;
+  world.run(0.5, kShort);
   double highest = 0;
-  for (int i = 0; i < 40; ++i) {
-    world.step();
+  for (int i = 0; i < 160; ++i) {
+    world.step(btScalar(kShort));
     highest = std::max(highest, double(box.getWorldTransform().getOrigin().z() - kHalf));
   }
-  EXPECT_NEAR(highest, 0.25, 0.03);
+  EXPECT_NEAR(highest, 0.25, 4.4 * kShort);
 }
 
 TEST(SubstepContacts, AGivenSpringCarriesItsLoad) {
@@ -138,7 +140,6 @@ TEST(SubstepContacts, ALiftCarriesAndABeltMoves) {
     btTransform place = lift.getWorldTransform();
     place.getOrigin() += btVector3(btScalar(0.5 * kStep), 0, btScalar(0.3 * kStep));
     lift.setWorldTransform(place);
-    lift.setInterpolationWorldTransform(lift.getInterpolationWorldTransform());
     world.step();
   }
   const btVector3 apart = load.getWorldTransform().getOrigin() - lift.getWorldTransform().getOrigin();
@@ -148,10 +149,10 @@ TEST(SubstepContacts, ALiftCarriesAndABeltMoves) {
 
   SolverWorld belts;
   btRigidBody& belt = belts.addSlab();
-  belt.setLinearVelocity(btVector3(0, 2, 0));  // a static body that does not move, but its surface does
+  belt.setLinearVelocity(btVector3(0, btScalar(0.5), 0));  // a static body that does not move, but its surface does
   const btRigidBody& carried = addCube(belts, 5, kHalf);
   belts.run(2);
-  EXPECT_NEAR(carried.getLinearVelocity().y(), 2, 0.01);
+  EXPECT_NEAR(carried.getLinearVelocity().y(), 0.5, 0.005);
   EXPECT_NEAR(carried.getWorldTransform().getOrigin().z(), kHalf, 0.001);
 }
 

@@ -142,6 +142,25 @@ TEST(SubstepJoints, LimitsHoldAndBreakAtTheirThreshold) {
   }
 }
 
+TEST(SubstepJoints, WhatHangsFromAKinematicBodyGoesAlong) {
+  SolverWorld world;
+  btRigidBody& crane = world.addBox(btVector3(0.1f, 0.1f, 0.1f), 0, btVector3(0, 0, 2));
+  crane.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  crane.setActivationState(DISABLE_DEACTIVATION);
+  btRigidBody& load = world.addBox(btVector3(0.1f, 0.1f, 0.1f), 1, btVector3(0, 0, 1));
+  world.join<btPoint2PointConstraint>(crane, load, btVector3(0, 0, -0.5f), btVector3(0, 0, 0.5f));
+  for (int i = 0; i < 60; ++i) {
+    btTransform place = crane.getWorldTransform();
+    place.getOrigin() += btVector3(0, 0, btScalar(1) / 60);
+    crane.setWorldTransform(place);
+    world.step();
+    EXPECT_EQ(crane.getWorldTransform(), place);
+  }
+  EXPECT_NEAR(load.getLinearVelocity().z(), 1, 1e-3);
+  // Bullet takes the place that it is given for the one at the end of the step, and starts from there.
+  EXPECT_NEAR(crane.getWorldTransform().getOrigin().z() - load.getWorldTransform().getOrigin().z(), 1, 1.1 / 60);
+}
+
 /// A constraint of a user's own class: its body keeps its height.
 class KeepsHeight : public btTypedConstraint {
  public:
