@@ -3,6 +3,7 @@
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <LinearMath/btMinMax.h>
 
 #include "innersphere/bullet_precision.hpp"
@@ -23,7 +24,8 @@ struct SolverSettings {
         deepest_spring(info.m_splitImpulse ? kSpringShare * deepest_push : BT_LARGE_FLOAT),
         one_friction_row((info.m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS) == 0) {}
   explicit SolverSettings(btDynamicsWorld& world) : SolverSettings(world.getSolverInfo()) {
-    substeps = dynamic_cast<const SubstepSolver*>(world.getConstraintSolver()) != nullptr;
+    substeps = dynamic_cast<const SubstepSolver*>(world.getConstraintSolver()) != nullptr &&
+               dynamic_cast<const btMultiBodyDynamicsWorld*>(&world) == nullptr;  // that has a solver of its own
     if (substeps) one_friction_row = false;
   }
 

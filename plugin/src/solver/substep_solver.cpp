@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
-#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include "common/log.hpp"
 #include "innersphere/error.hpp"
@@ -40,7 +39,8 @@ class SubstepSolver::Impl {
 
   void solve(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds, int manifold_count,
              btTypedConstraint** constraints, int constraint_count, const btContactSolverInfo& info);
-  void endStep() { constraints_.endStep(); }
+  void beginStep();
+  void endStep();
   void reset() { constraints_.forget(); }
 
  private:
@@ -56,8 +56,23 @@ class SubstepSolver::Impl {
   ConstraintRows constraints_;
   Colouring colouring_;
   Crew crew_;
-  bool reported_ = false;
+  bool called_ = false;  ///< in this step
+  bool reported_ = false, reported_world_ = false;
 };
+
+void SubstepSolver::Impl::beginStep() {
+  last_substeps = 0;
+  called_ = false;
+}
+
+/// A btDiscreteDynamicsWorld hands over a group in each step, if only an empty one.
+void SubstepSolver::Impl::endStep() {
+  constraints_.endStep();
+  if (called_ || reported_world_) return;
+  reported_world_ = true;
+  log("SubstepSolver is told of steps, but not given anything to solve: a btMultiBodyDynamicsWorld solves with a "
+      "btMultiBodyConstraintSolver of its own. This is said once.");
+}
 
 /// Calls for all constraints and for all blocks of contacts, colour by colour.
 template <typename Joint, typename Block>
@@ -101,7 +116,9 @@ void SubstepSolver::Impl::step(btScalar substep) {
 void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
                                 int manifold_count, btTypedConstraint** constraints, int constraint_count,
                                 const btContactSolverInfo& info) {
+  called_ = true;
   const btScalar time_step = info.m_timeStep;
+  if (!(time_step > 0)) return;
   bodies_.begin(bodies, body_count);
   if (bodies_.movable() == 0) return report(bodies_.finish(time_step));
   contacts_.collect(manifolds, manifold_count, bodies_);
@@ -153,14 +170,13 @@ int SubstepSolver::substeps() const {
 }
 
 void SubstepSolver::prepareSolve(int, int) {
-  impl_->last_substeps = 0;
+  impl_->beginStep();
 }
 
 btScalar SubstepSolver::solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
                                    int manifold_count, btTypedConstraint** constraints, int constraint_count,
                                    const btContactSolverInfo& info, btIDebugDraw*, btDispatcher*) {
-  if (info.m_timeStep > 0)
-    impl_->solve(bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info);
+  impl_->solve(bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info);
   return 0;
 }
 

@@ -6,6 +6,8 @@
 #include <tbb/task_arena.h>
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 
 #include "../gpu/allocation_counter.hpp"
 #include "capture_log.hpp"
@@ -138,6 +140,19 @@ TEST(SubstepInput, OneSolverServesTwoWorlds) {
   }
   EXPECT_EQ(first.motion(), alone.motion());
   EXPECT_EQ(second.motion(), alone.motion());
+}
+
+TEST(SubstepInput, AMultiBodyWorldIsNamed) {
+  CaptureLog log;
+  SolverWorld parts;
+  btMultiBodyConstraintSolver own;
+  btMultiBodyDynamicsWorld world(&parts.dispatcher, &parts.broadphase, &own, &parts.configuration);
+  world.setConstraintSolver(&parts.solver);
+  for (int i = 0; i < 3; ++i) world.stepSimulation(btScalar(1) / 60, 0);
+  ASSERT_EQ(log.messages.size(), 1u);
+  EXPECT_NE(log.messages[0].find("btMultiBodyConstraintSolver"), std::string::npos);
+  parts.world.stepSimulation(btScalar(1) / 60, 0);
+  EXPECT_EQ(log.messages.size(), 1u);
 }
 
 TEST(SubstepInput, OptionsOutOfRangeAreErrors) {
