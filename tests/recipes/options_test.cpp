@@ -61,7 +61,8 @@ TEST(Recipes, ASolverOfItsOwnStandsHeavyOnLight) {
   PackingShape box(boxModel({1, 1, 1}));
   btVector3 inertia;
   box.calculateLocalInertia(1, inertia);
-  btRigidBody floor(0, nullptr, &plane), light(1, nullptr, &box, inertia), heavy(100, nullptr, &box, 100 * inertia);
+  btRigidBody floor(0, nullptr, &plane), light(1, nullptr, &box, inertia),
+      heavy(100, nullptr, &box, 100 * inertia);
   light.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(0.5))));
   heavy.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(1.5))));
   for (btRigidBody* body : {&floor, &light, &heavy}) world.addRigidBody(body);

@@ -110,7 +110,8 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     point.m_combinedRollingFriction = law.rolling;
   // Bullet reads the one only where there is the other.
   if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
-    point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curved.a + from.curved.b);
+    point.m_combinedSpinningFriction =
+        point.m_combinedFriction * spinningLever(from.depth, from.curved.a + from.curved.b);
   if (law.penalty) {
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
@@ -213,8 +214,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
     }
     if (motion.isSwept() && match[i] < 0) keepApart(point.local_a, manifold);
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
-    if (btManifoldPoint* added = pointAt(manifold, point.on_b))
-      setLaw(*added, point, a, motion, solver);
+    if (btManifoldPoint* added = pointAt(manifold, point.on_b)) setLaw(*added, point, a, motion, solver);
   }
   result->refreshContactPoints();
 }

@@ -24,8 +24,9 @@ struct SolverSettings {
         deepest_spring(info.m_splitImpulse ? kSpringShare * deepest_push : BT_LARGE_FLOAT),
         one_friction_row((info.m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS) == 0) {}
   explicit SolverSettings(btDynamicsWorld& world) : SolverSettings(world.getSolverInfo()) {
-    substeps = dynamic_cast<const SubstepSolver*>(world.getConstraintSolver()) != nullptr &&
-               dynamic_cast<const btMultiBodyDynamicsWorld*>(&world) == nullptr;  // that has a solver of its own
+    substeps =
+        dynamic_cast<const SubstepSolver*>(world.getConstraintSolver()) != nullptr &&
+        dynamic_cast<const btMultiBodyDynamicsWorld*>(&world) == nullptr;  // that has a solver of its own
     if (substeps) one_friction_row = false;
   }
 
@@ -44,8 +45,8 @@ struct SolverSettings {
   /// before contacts push, and no point can set it: bodies that fall together have none, and the row may lie
   /// across the load.
   bool one_friction_row = false;
-  /// It is a SubstepSolver, which makes contacts soft by itself, remembers friction, and bounces bodies in the
-  /// substep in which they meet: it is told of contacts as they are.
+  /// It is a SubstepSolver, which makes contacts soft by itself, remembers friction, and bounces bodies in
+  /// the substep in which they meet: it is told of contacts as they are.
   bool substeps = false;
 
  private:

@@ -11,17 +11,17 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Constraints and blocks of contacts that can be solved at the same time, as places in Colouring::joints() and in
-/// ContactRows.
+/// Constraints and blocks of contacts that can be solved at the same time, as places in Colouring::joints()
+/// and in ContactRows.
 struct Colour {
   int first_joint = 0, joints = 0;
   int first_block = 0, blocks = 0;
   bool alone = false;  ///< one after the other, for they may share bodies
 };
 
-/// Gives each pair the first colour that neither of its bodies has yet, constraints first. Contacts with the fixed
-/// world, of which a body has one pair, come last: what stands on it is let in least. A body with more pairs than
-/// there are colours leaves some that are solved alone.
+/// Gives each pair the first colour that neither of its bodies has yet, constraints first. Contacts with the
+/// fixed world, of which a body has one pair, come last: what stands on it is let in least. A body with more
+/// pairs than there are colours leaves some that are solved alone.
 class Colouring {
  public:
   /// Colours the rows of a group, and lays contacts out in blocks.

@@ -69,7 +69,8 @@ void ConstraintRows::collect(btTypedConstraint** constraints, int count, SolverB
     btTypedConstraint::btConstraintInfo1 size{};
     constraint.getInfo1(&size);
     Joint& joint = joints_.emplace_back();
-    joint = {&constraint, a, b, rows_.size(), factors_.size(), 0, std::max(kRoom, size.m_numConstraintRows), 1, 1};
+    joint = {&constraint, a, b, rows_.size(), factors_.size(), 0, std::max(kRoom, size.m_numConstraintRows),
+             1,           1};
     const std::size_t room = static_cast<std::size_t>(joint.room);
     rows_.resize(rows_.size() + room);
     factors_.resize(factors_.size() + room * room);
@@ -133,9 +134,9 @@ void ConstraintRows::ask(Joint& joint, btScalar erp, btScalar step) {
 }
 
 /// Rows that a limit adds or takes away leave the others their impulses.
-/// Rows turn with the bodies. J v is to hold in the middle of the substep, half a turn of J further: then a pendulum
-/// keeps its energy, as with SHAKE (Ryckaert et al., J. Comput. Phys. 23, 1977). At the start it would lose a part
-/// that is of first order in the substep.
+/// Rows turn with the bodies. J v is to hold in the middle of the substep, half a turn of J further: then a
+/// pendulum keeps its energy, as with SHAKE (Ryckaert et al., J. Comput. Phys. 23, 1977). At the start it
+/// would lose a part that is of first order in the substep.
 void ConstraintRows::match(Joint& joint, const Row* before, int count_before, const BodyState& a,
                            const BodyState& b) {
   const auto alike = [](const Row& l, const Row& r) {
@@ -188,7 +189,8 @@ void ConstraintRows::refresh(int index, const SolverBodies& bodies) {
   }
   match(joint, before_.data(), count_before, bodies.state(joint.a), bodies.state(joint.b));
   // Limits of a motor that has become weaker hold for what it starts with, too.
-  for (int i = 0; i < joint.count; ++i) first[i].impulse = btMax(first[i].low, btMin(first[i].impulse, first[i].high));
+  for (int i = 0; i < joint.count; ++i)
+    first[i].impulse = btMax(first[i].low, btMin(first[i].impulse, first[i].high));
   factor(joint, bodies.state(joint.a), bodies.state(joint.b));
 }
 
@@ -196,7 +198,9 @@ void ConstraintRows::refresh(int index, const SolverBodies& bodies) {
 void ConstraintRows::factor(const Joint& joint, const BodyState& a, const BodyState& b) {
   const std::size_t size = static_cast<std::size_t>(joint.count);
   btScalar* const factors = &factors_[joint.matrix];
-  const auto at = [&](std::size_t row, std::size_t column) -> btScalar& { return factors[row * size + column]; };
+  const auto at = [&](std::size_t row, std::size_t column) -> btScalar& {
+    return factors[row * size + column];
+  };
   for (std::size_t i = 0; i < size; ++i) {
     Row& row = rows_[joint.begin + i];
     const btVector3 linear_a = row.linear_a * a.inverse_mass, linear_b = row.linear_b * b.inverse_mass;

@@ -19,11 +19,11 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// Error reduction (ERP) and constraint force mixing (CFM) act in each.
 ///
 /// What reduces an error gives bodies a speed that is not theirs, which the pass Pass::relax takes
-/// back. It is told from the speed of motors by asking twice, with half of the error reduction: rows are linear
-/// in it. Where a constraint has an error reduction of its own it stays, as with Bullet's solver.
+/// back. It is told from the speed of motors by asking twice, with half of the error reduction: rows are
+/// linear in it. Where a constraint has an error reduction of its own it stays, as with Bullet's solver.
 ///
-/// Rows of a joint that no limit bounds are solved together, exactly: those of a pendulum that is thin for its
-/// length all but depend on each other, and one after the other they would need hundreds of passes.
+/// Rows of a joint that no limit bounds are solved together, exactly: those of a pendulum that is thin for
+/// its length all but depend on each other, and one after the other they would need hundreds of passes.
 class ConstraintRows {
  public:
   /// Takes the constraints of a group that are enabled.
@@ -39,8 +39,8 @@ class ConstraintRows {
   /// Applies the impulses of the last substep.
   void warmStart(int joint, std::vector<BodyState>& states);
   void solve(int joint, Pass pass, std::vector<BodyState>& states);
-  /// Tells constraints what they have borne, breaks those that have borne too much, and remembers the impulses
-  /// for the next step.
+  /// Tells constraints what they have borne, breaks those that have borne too much, and remembers the
+  /// impulses for the next step.
   void writeBack();
 
   /// A step ends: impulses of constraints that have not been seen for long are forgotten.

@@ -6,6 +6,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
+#include "solver/lane_bodies.hpp"
 #include "solver/lanes.hpp"
 #include "solver/soft_step.hpp"
 #include "solver/solver_bodies.hpp"
@@ -67,27 +68,26 @@ class ContactRows {
     Lanes bend;                         ///< how far the normal turns for a metre that the bodies slide [1/m]
     Lanes3 normal, side_1, side_2, arm_a, arm_b;  ///< now
     Lanes gap;
-    Lanes mass, mass_1, mass_2;               ///< what each row moves [kg]
-    Lanes rate, soft_mass, soft_impulse;      ///< of the spring that drives bodies apart
-    Lanes spring;                             ///< 1: it is the user's, and acts in all passes
-    Lanes fastest;                            ///< that bodies are driven apart [m/s]
+    Lanes mass, mass_1, mass_2;           ///< what each row moves [kg]
+    Lanes rate, soft_mass, soft_impulse;  ///< of the spring that drives bodies apart
+    Lanes spring;                         ///< 1: it is the user's, and acts in all passes
+    Lanes fastest;                        ///< that bodies are driven apart [m/s]
     Lanes friction, rolling, spinning;
-    Lanes mass_rolling, mass_spinning;        ///< [kg m^2]
-    Lanes belt_1, belt_2;                     ///< speeds of the surface [m/s]
-    Lanes restitution, bounce;                ///< the speed at which the bodies leave in this substep [m/s]
-    Lanes impulse, impulse_1, impulse_2;      ///< of this substep [N s]
-    Lanes roll_1, roll_2, spin;               ///< [N m s]
-    Lanes sum, sum_1, sum_2;                  ///< of the step [N s]
+    Lanes mass_rolling, mass_spinning;    ///< [kg m^2]
+    Lanes belt_1, belt_2;                 ///< speeds of the surface [m/s]
+    Lanes restitution, bounce;            ///< the speed at which the bodies leave in this substep [m/s]
+    Lanes impulse, impulse_1, impulse_2;  ///< of this substep [N s]
+    Lanes roll_1, roll_2, spin;           ///< [N m s]
+    Lanes sum, sum_1, sum_2;              ///< of the step [N s]
   };
   struct Block {
     int a[kLanes], b[kLanes];
-    int pair[kLanes];  ///< -1: nothing is in this lane
-    int begin, count;  ///< in points_
-    Lanes share;       ///< of what they slide apart, to the place in the middle
+    int pair[kLanes];            ///< -1: nothing is in this lane
+    int begin, count;            ///< in points_
+    Lanes share;                 ///< of what they slide apart, to the place in the middle
     bool bounces, rolls, bends;  ///< what some of its points do
     bool bouncing;               ///< in this substep
   };
-  struct Bodies;
   struct Entry {
     int a, b;
     int manifold;
@@ -96,17 +96,16 @@ class ContactRows {
 
   void fillPlace(PointLanes& lanes, int lane, const Source& source, const ContactPair& pair,
                  const SolverBodies& bodies) const;
-  static void fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a,
-                         btScalar size_b);
+  static void fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a, btScalar size_b);
   static void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
                          const SolverBodies& bodies);
-  static void fillMasses(PointLanes& point, const Bodies& a, const Bodies& b, bool rolls);
+  static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls);
   void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
                     const SolverBodies& bodies) const;
-  static void follow(const Block& block, PointLanes& point, const Bodies& a, const Bodies& b);
-  void startBounces(Block& block, PointLanes& point, const Bodies& a, const Bodies& b) const;
-  static void solveFriction(const Block& block, PointLanes& point, Bodies& a, Bodies& b);
-  void solveNormal(PointLanes& point, Pass pass, Bodies& a, Bodies& b) const;
+  static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
+  void startBounces(Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) const;
+  static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
+  void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
 
   std::vector<Entry> entries_;
   std::vector<Source> sources_;
@@ -115,7 +114,7 @@ class ContactRows {
   std::vector<PointLanes> points_;  ///< some of them of an earlier, larger step
   int point_count_ = 0;
   Softness soft_, soft_on_fixed_;
-  btScalar substep_ = 0;           ///< [s]
+  btScalar substep_ = 0;  ///< [s]
   btScalar substeps_ = 1;
   btScalar bounce_threshold_ = 0;  ///< [m/s]
   btScalar slop_ = 0;              ///< [m]

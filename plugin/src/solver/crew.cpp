@@ -18,8 +18,8 @@ void pause(int& asked) {
 
 }  // namespace
 
-/// A part that is taken keeps its stage alive, so that what is read after that is of this stage. What was read
-/// before may be of another; then the ticket has changed.
+/// A part that is taken keeps its stage alive, so that what is read after that is of this stage. What was
+/// read before may be of another; then the ticket has changed.
 bool Crew::takePart() {
   std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
   for (;;) {

@@ -14,9 +14,10 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// A substep has dozens of stages of some microseconds, each of which needs the one before: too short for a task
-/// group each. So helpers are called once, and wait for the stages in a loop. Nothing depends on them: the thread
-/// that leads takes every part that no helper has begun, and helpers that come late find nothing to do.
+/// A substep has dozens of stages of some microseconds, each of which needs the one before: too short for a
+/// task group each. So helpers are called once, and wait for the stages in a loop. Nothing depends on them:
+/// the thread that leads takes every part that no helper has begun, and helpers that come late find nothing
+/// to do.
 class Crew {
  public:
   /// Calls lead(), which may call forEach(), with up to so many helpers.

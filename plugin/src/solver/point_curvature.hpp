@@ -8,13 +8,14 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Of the first and the second body of a manifold at a point [1/m], positive where convex, 0 where flat or not known.
+/// Of the first and the second body of a manifold at a point [1/m], positive where convex, 0 where flat or
+/// not known.
 struct Curvatures {
   btScalar a = 0, b = 0;
 };
 
-/// A manifold point has no place for them. Where no one has set directions of friction, no one reads the speeds along
-/// these.
+/// A manifold point has no place for them. Where no one has set directions of friction, no one reads the
+/// speeds along these.
 inline bool hasRoomForCurvatures(const btManifoldPoint& point) {
   return (point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) == 0;
 }

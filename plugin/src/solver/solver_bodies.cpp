@@ -165,8 +165,8 @@ void SolverBodies::turn(const Body& body, BodyState& state, btScalar substep) co
   }
   const btQuaternion start = (state.turned * body.rotation).normalized();
   const btVector3 momentum = quatRotate(start.inverse(), state.spin) * body.inertia;  // in its own frame
-  // Only changes are turned, and multiplied by the inertia and its inverse. None of that is so to the last bit, and
-  // thousands of substeps would add up what is missing.
+  // Only changes are turned, and multiplied by the inertia and its inverse. None of that is so to the last
+  // bit, and thousands of substeps would add up what is missing.
   const auto spinAfter = [&](const btQuaternion& turn) {
     const btQuaternion rotation = (turn * start).normalized();
     const btVector3 change = changeBy(rotation.inverse() * start, momentum) * body.inverse_inertia;

@@ -73,10 +73,10 @@ class SolverBodies {
  private:
   struct Body {
     btRigidBody* rigid = nullptr;
-    btVector3 force{0, 0, 0};   ///< as an acceleration [m/s^2]
-    btVector3 torque{0, 0, 0};  ///< [N m]
-    btTransform given;          ///< of what moves by itself: where it is put again
-    btVector3 origin{0, 0, 0};  ///< at the start
+    btVector3 force{0, 0, 0};                             ///< as an acceleration [m/s^2]
+    btVector3 torque{0, 0, 0};                            ///< [N m]
+    btTransform given;                                    ///< of what moves by itself: where it is put again
+    btVector3 origin{0, 0, 0};                            ///< at the start
     btQuaternion rotation = btQuaternion::getIdentity();  ///< at the start
     btVector3 inverse_inertia{0, 0, 0};                   ///< about its own axes
     btVector3 inertia{0, 0, 0};

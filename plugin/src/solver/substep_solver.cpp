@@ -70,7 +70,8 @@ void SubstepSolver::Impl::endStep() {
   constraints_.endStep();
   if (called_ || reported_world_) return;
   reported_world_ = true;
-  log("SubstepSolver is told of steps, but not given anything to solve: a btMultiBodyDynamicsWorld solves with a "
+  log("SubstepSolver is told of steps, but not given anything to solve: a btMultiBodyDynamicsWorld solves "
+      "with a "
       "btMultiBodyConstraintSolver of its own. This is said once.");
 }
 
@@ -128,8 +129,8 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
   contacts_.beginStep(info, substeps);
   constraints_.beginStep(info, substeps);
   colouring_.colour(bodies_, constraints_, contacts_);
-  const int helpers = std::min(contacts_.points() * kLanes / kPointsForThread,
-                               tbb::this_task_arena::max_concurrency() - 1);
+  const int helpers =
+      std::min(contacts_.points() * kLanes / kPointsForThread, tbb::this_task_arena::max_concurrency() - 1);
   crew_.work(helpers, [&] {
     const auto each = [&](const auto& job) {
       crew_.forEach(contacts_.blocks(), kBlocks, [&](int begin, int end) {
@@ -173,8 +174,9 @@ void SubstepSolver::prepareSolve(int, int) {
   impl_->beginStep();
 }
 
-btScalar SubstepSolver::solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
-                                   int manifold_count, btTypedConstraint** constraints, int constraint_count,
+btScalar SubstepSolver::solveGroup(btCollisionObject** bodies, int body_count,
+                                   btPersistentManifold** manifolds, int manifold_count,
+                                   btTypedConstraint** constraints, int constraint_count,
                                    const btContactSolverInfo& info, btIDebugDraw*, btDispatcher*) {
   impl_->solve(bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info);
   return 0;

@@ -47,7 +47,8 @@ TEST(SubstepContacts, ABlockSlidesAsFarAsFrictionLets) {
     block.setAngularFactor(0);
     world.run(0.5);
     const btVector3 from = block.getWorldTransform().getOrigin();
-    block.setLinearVelocity(btVector3(btScalar(kSpeed * std::cos(angle)), btScalar(kSpeed * std::sin(angle)), 0));
+    block.setLinearVelocity(
+        btVector3(btScalar(kSpeed * std::cos(angle)), btScalar(kSpeed * std::sin(angle)), 0));
     world.run(2);
     const double way = kSpeed * kSpeed / (2 * kFriction * kGravity);
     EXPECT_NEAR((block.getWorldTransform().getOrigin() - from).length(), way, 0.005 * way) << angle;
@@ -109,7 +110,8 @@ TEST(SubstepContacts, RollingFrictionStopsABall) {
   world.run(0.5);
   ball.setLinearVelocity(btVector3(kSpeed, 0, 0));
   ball.setAngularVelocity(btVector3(0, btScalar(kSpeed / kRadius), 0));
-  const double lever = world.dispatcher.getManifoldByIndexInternal(0)->getContactPoint(0).m_combinedRollingFriction;
+  const double lever =
+      world.dispatcher.getManifoldByIndexInternal(0)->getContactPoint(0).m_combinedRollingFriction;
   ASSERT_GT(lever, 0);
   world.run(0.2);
   // The torque lever m g brakes m r + I / r.
@@ -149,7 +151,8 @@ TEST(SubstepContacts, ALiftCarriesAndABeltMoves) {
 
   SolverWorld belts;
   btRigidBody& belt = belts.addSlab();
-  belt.setLinearVelocity(btVector3(0, btScalar(0.5), 0));  // a static body that does not move, but its surface does
+  belt.setLinearVelocity(
+      btVector3(0, btScalar(0.5), 0));  // a static body that does not move, but its surface does
   const btRigidBody& carried = addCube(belts, 5, kHalf);
   belts.run(2);
   EXPECT_NEAR(carried.getLinearVelocity().y(), 0.5, 0.005);

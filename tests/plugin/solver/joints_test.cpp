@@ -31,8 +31,9 @@ TEST(SubstepJoints, APendulumSwingsAsItsEllipticIntegralSays) {
   for (const bool hinge : {false, true}) {
     SolverWorld world;
     constexpr double kLength = 1, kAmplitude = 1;
-    btRigidBody& bob = world.addBox(btVector3(0.1f, 0.1f, 0.1f), 1,
-                                    btVector3(btScalar(std::sin(kAmplitude)), 0, btScalar(-std::cos(kAmplitude))));
+    btRigidBody& bob =
+        world.addBox(btVector3(0.1f, 0.1f, 0.1f), 1,
+                     btVector3(btScalar(std::sin(kAmplitude)), 0, btScalar(-std::cos(kAmplitude))));
     const btVector3 pivot = -bob.getWorldTransform().getOrigin();
     if (hinge)
       world.join<btHingeConstraint>(bob, pivot, btVector3(0, 1, 0));
@@ -53,8 +54,8 @@ TEST(SubstepJoints, ADoublePendulumKeepsItsEnergy) {
   btRigidBody& upper = world.addBox(btVector3(0.5f, 0.05f, 0.05f), 1, btVector3(0.5f, 0, 0));
   btRigidBody& lower = world.addBox(btVector3(0.5f, 0.05f, 0.05f), 1, btVector3(1.5f, 0, 0));
   world.join<btHingeConstraint>(upper, btVector3(-0.5f, 0, 0), btVector3(0, 1, 0));
-  world.join<btHingeConstraint>(upper, lower, btVector3(0.5f, 0, 0), btVector3(-0.5f, 0, 0), btVector3(0, 1, 0),
-                                btVector3(0, 1, 0));
+  world.join<btHingeConstraint>(upper, lower, btVector3(0.5f, 0, 0), btVector3(-0.5f, 0, 0),
+                                btVector3(0, 1, 0), btVector3(0, 1, 0));
   const double before = world.energy();
   double most = 0;
   for (int i = 0; i < 600; ++i) {
@@ -91,8 +92,8 @@ TEST(SubstepJoints, AFastTopPrecessesAsItsMomentsSay) {
   // Steady precession: about the pivot, A cos W^2 - C s W + m g l = 0, with s the spin about the axis.
   const double across = kAcross + kMass * kArm * kArm, c = std::cos(kTilt);
   const double linear = kAxial * kSpin;
-  const double slow = (linear - std::sqrt(linear * linear - 4 * across * c * kMass * kGravity * kArm)) /
-                      (2 * across * c);
+  const double slow =
+      (linear - std::sqrt(linear * linear - 4 * across * c * kMass * kGravity * kArm)) / (2 * across * c);
   const btVector3 spin = axis * btScalar(kSpin - slow * c) + btVector3(0, 0, btScalar(slow));
   top.setAngularVelocity(spin);
   top.setLinearVelocity(spin.cross(axis * btScalar(kArm)));
@@ -158,7 +159,8 @@ TEST(SubstepJoints, WhatHangsFromAKinematicBodyGoesAlong) {
   }
   EXPECT_NEAR(load.getLinearVelocity().z(), 1, 1e-3);
   // Bullet takes the place that it is given for the one at the end of the step, and starts from there.
-  EXPECT_NEAR(crane.getWorldTransform().getOrigin().z() - load.getWorldTransform().getOrigin().z(), 1, 1.1 / 60);
+  EXPECT_NEAR(crane.getWorldTransform().getOrigin().z() - load.getWorldTransform().getOrigin().z(), 1,
+              1.1 / 60);
 }
 
 /// A constraint of a user's own class: its body keeps its height.

@@ -35,7 +35,8 @@ void fill(SolverWorld& world, int across, int layers) {
   }
   btRigidBody* above = nullptr;
   for (int i = 0; i < 8; ++i) {
-    btRigidBody& link = world.addBox(btVector3(0.1f, 0.05f, 0.05f), 1, btVector3(btScalar(0.2) * btScalar(i), 0, 9));
+    btRigidBody& link =
+        world.addBox(btVector3(0.1f, 0.05f, 0.05f), 1, btVector3(btScalar(0.2) * btScalar(i), 0, 9));
     if (above != nullptr)
       world.join<btHingeConstraint>(*above, link, btVector3(0.1f, 0, 0), btVector3(-0.1f, 0, 0),
                                     btVector3(0, 1, 0), btVector3(0, 1, 0));
@@ -99,7 +100,8 @@ TEST(SubstepInput, PointsWithoutNumbersAreLeftOut) {
   btPersistentManifold* manifold = world.dispatcher.getManifoldByIndexInternal(0);
   manifold->getContactPoint(0).m_normalWorldOnB = btVector3(kNan, 0, 0);
   btCollisionObject* body = &box;
-  world.solver.solveGroup(&body, 1, &manifold, 1, nullptr, 0, btContactSolverInfo(), nullptr, &world.dispatcher);
+  world.solver.solveGroup(&body, 1, &manifold, 1, nullptr, 0, btContactSolverInfo(), nullptr,
+                          &world.dispatcher);
   EXPECT_TRUE(std::isfinite(box.getLinearVelocity().length()));
   EXPECT_EQ(log.messages.size(), 1u);
 }
@@ -124,7 +126,8 @@ TEST(SubstepInput, AStepOfNothingDoesNothing) {
   btContactSolverInfo info;
   info.m_timeStep = 0;
   world.solver.solveGroup(&body, 1, nullptr, 0, nullptr, 0, info, nullptr, &world.dispatcher);
-  world.solver.solveGroup(nullptr, 0, nullptr, 0, nullptr, 0, btContactSolverInfo(), nullptr, &world.dispatcher);
+  world.solver.solveGroup(nullptr, 0, nullptr, 0, nullptr, 0, btContactSolverInfo(), nullptr,
+                          &world.dispatcher);
   EXPECT_EQ(box.getWorldTransform().getOrigin(), btVector3(0, 0, 1));
   EXPECT_EQ(box.getLinearVelocity(), btVector3(1, 0, 0));
 }

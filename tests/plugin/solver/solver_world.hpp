@@ -44,9 +44,7 @@ class SolverWorld {
     return add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)), 0, btVector3(0, 0, 0));
   }
   /// Between boxes Bullet finds all points at once, on its plane one more in each step.
-  btRigidBody& addSlab() {
-    return addBox(btVector3(50, 50, 1), 0, btVector3(0, 0, -1));
-  }
+  btRigidBody& addSlab() { return addBox(btVector3(50, 50, 1), 0, btVector3(0, 0, -1)); }
   template <class Constraint, typename... Arguments>
   Constraint& join(Arguments&&... arguments) {
     auto made = std::make_unique<Constraint>(std::forward<Arguments>(arguments)...);
@@ -67,8 +65,8 @@ class SolverWorld {
       if (body->isStaticObject()) continue;
       const btVector3 spin = body->getAngularVelocity() * body->getWorldTransform().getBasis();
       const btVector3 inverse = body->getInvInertiaDiagLocal();
-      sum += body->getMass() * (body->getLinearVelocity().length2() / 2 +
-                                kGravity * body->getWorldTransform().getOrigin().z());
+      sum += body->getMass() *
+             (body->getLinearVelocity().length2() / 2 + kGravity * body->getWorldTransform().getOrigin().z());
       for (int k = 0; k < 3; ++k) sum += inverse[k] > 0 ? spin[k] * spin[k] / inverse[k] / 2 : 0;
     }
     return sum;
