@@ -46,7 +46,8 @@ ScenePlay play(const Scene& scene, const SceneOptions& options) {
   ScenePlay result;
   result.options = completed(scene, options);
   result.world = std::make_unique<SceneWorld>(result.options.contact, result.options.bodies,
-                                              result.options.plain ? Stepping::plain : Stepping::careful);
+                                              result.options.plain ? Stepping::plain : Stepping::careful,
+                                              result.options.solver);
   result.world->film.title = scene.title;
   scene.build(*result.world, result.options);
   result.recording =

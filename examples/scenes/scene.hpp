@@ -12,6 +12,7 @@
 #include "innersphere/progress.hpp"
 #include "innersphere/solid.hpp"
 #include "recording.hpp"
+#include "solver_choice.hpp"
 #include "truth.hpp"
 
 namespace innersphere::demo {
@@ -29,6 +30,7 @@ struct SceneOptions {
   std::vector<std::shared_ptr<const Solid>> solids;
   ContactOptions contact;
   BodyOptions bodies;
+  SolverChoice solver;
   Progress progress;  ///< packing takes a while
 };
 

@@ -5,6 +5,7 @@
 #include "bullet_math.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/packing_collision_algorithm.hpp"
+#include "innersphere/substep_solver.hpp"
 #include "scaled_solid.hpp"
 #include "shapes.hpp"
 
@@ -54,6 +55,13 @@ Surface surfaceOf(const Mesh& mesh) {
   return surface;
 }
 
+std::unique_ptr<btConstraintSolver> makeSolver(const SolverChoice& choice) {
+  if (choice.kind == SolverKind::bullet) return std::make_unique<btSequentialImpulseConstraintSolver>();
+  SubstepOptions options;
+  options.substeps = choice.substeps;
+  return std::make_unique<SubstepSolver>(options);
+}
+
 }  // namespace
 
 void makeKinematic(btRigidBody& body) {
@@ -62,8 +70,9 @@ void makeKinematic(btRigidBody& body) {
   body.setActivationState(DISABLE_DEACTIVATION);
 }
 
-SceneWorld::SceneWorld(const ContactOptions& options, const BodyOptions& bodies, Stepping stepping)
-    : body_options_(bodies), stepping_(stepping) {
+SceneWorld::SceneWorld(const ContactOptions& options, const BodyOptions& bodies, Stepping stepping,
+                       const SolverChoice& solver)
+    : body_options_(bodies), stepping_(stepping), solver_(makeSolver(solver)) {
   world_.setGravity(btVector3(0, 0, -kGravity));
   // Runs repeat exactly, whatever order the broad phase finds pairs in.
   world_.getDispatchInfo().m_deterministicOverlappingPairs = true;

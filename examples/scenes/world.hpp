@@ -14,6 +14,7 @@
 #include "innersphere/packing_shape.hpp"
 #include "innersphere/progress.hpp"
 #include "innersphere/solid.hpp"
+#include "solver_choice.hpp"
 #include "truth.hpp"
 
 namespace innersphere::demo {
@@ -63,7 +64,7 @@ void makeKinematic(btRigidBody& body);
 class SceneWorld {
  public:
   explicit SceneWorld(const ContactOptions& options, const BodyOptions& bodies = {},
-                      Stepping stepping = Stepping::careful);
+                      Stepping stepping = Stepping::careful, const SolverChoice& solver = {});
   ~SceneWorld();
   SceneWorld(const SceneWorld&) = delete;
   SceneWorld& operator=(const SceneWorld&) = delete;
@@ -129,8 +130,8 @@ class SceneWorld {
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
-  btSequentialImpulseConstraintSolver solver_;
-  btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  std::unique_ptr<btConstraintSolver> solver_;
+  btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, solver_.get(), &configuration_};
   std::vector<SceneSolid> solids_;
   std::vector<std::unique_ptr<btTriangleMesh>> triangles_;
   std::vector<std::unique_ptr<btCollisionShape>> bullet_shapes_;

@@ -87,6 +87,11 @@ void addSceneOptions(Command& command, demo::SceneOptions& options) {
   command.flag("--plain", options.plain,
                "Bullet as its HelloWorld has it: solver mode untouched, stepSimulation(1/60, 10), bodies may "
                "sleep");
+  command.choice<demo::SolverKind>(
+      "--solver", options.solver.kind,
+      {{"bullet", demo::SolverKind::bullet}, {"substep", demo::SolverKind::substep}},
+      "What solves contacts and constraints: Bullet's sequential impulses, or SubstepSolver");
+  command.count("--substeps", options.solver.substeps, {0, 1000}, "Of SubstepSolver in a step; 0: it chooses");
   command.count("--seed", options.seed, kNotNegative, "Of random places and orientations");
 }
 

@@ -9,6 +9,7 @@
 #include "innersphere/batched_dispatcher.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/log.hpp"
+#include "innersphere/substep_solver.hpp"
 #include "recipes/recipe_world.hpp"
 
 namespace innersphere::recipes {
@@ -44,6 +45,31 @@ TEST(Recipes, OneLinePreparesAWorld) {
   const btRigidBody& body = simulation.add(shape, 1, btVector3(0, 0, btScalar(0.1)));
   simulation.run(2);
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kTubeRadius, 0.001);
+}
+
+TEST(Recipes, ASolverOfItsOwnStandsHeavyOnLight) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  // [snippet substeps]
+  innersphere::SubstepSolver solver;  // in place of btSequentialImpulseConstraintSolver
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  innersphere::PackingCollisionAlgorithm::prepareWorld(world);
+  // [snippet]
+  world.setGravity(btVector3(0, 0, btScalar(-9.81)));
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  PackingShape box(boxModel({1, 1, 1}));
+  btVector3 inertia;
+  box.calculateLocalInertia(1, inertia);
+  btRigidBody floor(0, nullptr, &plane), light(1, nullptr, &box, inertia),
+      heavy(100, nullptr, &box, 100 * inertia);
+  light.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(0.5))));
+  heavy.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(1.5))));
+  for (btRigidBody* body : {&floor, &light, &heavy}) world.addRigidBody(body);
+  for (int i = 0; i < 120; ++i) world.stepSimulation(btScalar(1) / 60, 0);
+  EXPECT_NEAR(heavy.getWorldTransform().getOrigin().z(), 1.5, 0.005);
+  for (btRigidBody* body : {&floor, &light, &heavy}) world.removeRigidBody(body);
+  PackingCollisionAlgorithm::unregisterAlgorithm(&dispatcher);
 }
 
 TEST(Recipes, AShapeHasOptionsOfItsOwn) {

@@ -3,4 +3,4 @@
 set(libraries packing gpu plugin)
 set(packing_rooms common packing file mesh mesh/import solids packer)
 set(gpu_rooms core common grid batch cpu|cuda patches query)
-set(plugin_rooms common surface shape narrow_phase/shapes narrow_phase response pair_cache bullet)
+set(plugin_rooms common surface shape narrow_phase/shapes narrow_phase solver response pair_cache bullet)

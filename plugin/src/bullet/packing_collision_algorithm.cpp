@@ -67,13 +67,13 @@ void PackingCollisionAlgorithm::registerAlgorithm(btDispatcher* of_world, const 
   }
   PairTable& table = Registration::of(&dispatcher).table();
   table.setOptions(options);
-  table.setSolver(nullptr);
+  table.setWorld(nullptr);
   noticeRegistration();
 }
 
 void PackingCollisionAlgorithm::registerAlgorithm(btDynamicsWorld& world, const ContactOptions& options) {
   registerAlgorithm(world.getDispatcher(), options);
-  Registration::find(collisionDispatcher(world.getDispatcher()))->table().setSolver(&world.getSolverInfo());
+  Registration::find(collisionDispatcher(world.getDispatcher()))->table().setWorld(&world);
 }
 
 void PackingCollisionAlgorithm::prepareWorld(btDynamicsWorld& world, const ContactOptions& options) {

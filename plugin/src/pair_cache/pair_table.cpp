@@ -58,10 +58,10 @@ ContactOptions PairTable::options() const {
   return options_;
 }
 
-void PairTable::setSolver(const btContactSolverInfo* solver) {
+void PairTable::setWorld(btDynamicsWorld* world) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  solver_ = solver;
-  awaits_contact_ = solver != nullptr;
+  world_ = world;
+  awaits_contact_ = world != nullptr;
   lacks_directions_ = false;
 }
 
@@ -317,7 +317,7 @@ void PairTable::count(Reuse reuse) {
 }
 
 StepSettings PairTable::settingsFor(btScalar time_step) const {
-  return {options_, solver_ == nullptr ? SolverSettings() : SolverSettings(*solver_), time_step};
+  return {options_, world_ == nullptr ? SolverSettings() : SolverSettings(*world_), time_step};
 }
 
 std::unique_ptr<PackingSearch> PairTable::takeSearch() {

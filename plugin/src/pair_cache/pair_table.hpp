@@ -39,10 +39,10 @@ class PairTable {
   /// registers.
   void setOptions(const ContactOptions& options);
   ContactOptions options() const;
-  /// Sets the solver whose settings contacts are for; it must live as long as pairs are dispatched. Null
-  /// means Bullet's defaults.
-  void setSolver(const btContactSolverInfo* solver);
-  /// Says in the log, once after each setSolver(), that the solver lacks what friction needs, if it did when
+  /// Sets the world whose solver contacts are for; it must live as long as pairs are dispatched. Null means
+  /// Bullet's defaults.
+  void setWorld(btDynamicsWorld* world);
+  /// Says in the log, once after each setWorld(), that the solver lacks what friction needs, if it did when
   /// bodies touched first. The table is not locked then: the log may ask it something.
   void logSolver();
 
@@ -127,8 +127,8 @@ class PairTable {
   btDispatcher* const dispatcher_;
   mutable std::mutex mutex_;
   ContactOptions options_;
-  const btContactSolverInfo* solver_ = nullptr;
-  std::atomic<bool> awaits_contact_{false};    ///< no bodies have touched since the solver was set
+  btDynamicsWorld* world_ = nullptr;
+  std::atomic<bool> awaits_contact_{false};    ///< no bodies have touched since the world was set
   std::atomic<bool> lacks_directions_{false};  ///< as the log is to say
   std::deque<ContactPair> places_;
   std::vector<ContactPair*> unused_;

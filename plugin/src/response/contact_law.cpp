@@ -95,6 +95,12 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   law.depth = depth;
   law.time_step = law_->time_step_;
   law.rolling = rolling_;
+  if (law_->solver_.substeps && !law_->penalty()) {
+    law.spring = law_->response_ == Response::compliant && !law_->defaultSpring();
+    law.stiffness = stiffness_;
+    law.damping = damping_;
+    return law;
+  }
   const btScalar fastest = btMax(kFastest * law_->size_, leaving_ * depth);
   if (law_->response_ == Response::rigid) {
     if (!(depth > law_->solver_.deepest_push))

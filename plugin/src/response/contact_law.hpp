@@ -39,6 +39,8 @@ struct PointLaw {
 /// that was measured on their surfaces, in a second. So does Response::rigid as far as the solver would give
 /// them a speed; what is deeper than the threshold of split impulses it moves apart at once.
 ///
+/// A SubstepSolver is told the measured depth, without a spring but for one that is given: it has its own.
+///
 /// Where bodies touch in one place or along a line, on which they could roll, they resist it as if their load
 /// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second.
 class ContactLaw {

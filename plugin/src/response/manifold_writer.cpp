@@ -5,6 +5,7 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include "response/patch_friction.hpp"
+#include "solver/point_curvature.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -29,7 +30,7 @@ struct NewPoint {
   btVector3 slip{0, 0, 0};     ///< of A on B, that friction is to undo
   btVector3 aside{0, 0, 0};    ///< of the point on A from the one on B
   btScalar friction = 1;       ///< share of it
-  btScalar curvature = 0;      ///< of both surfaces [1/m]
+  Curvatures curved;           ///< of both surfaces
 };
 
 /// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.
@@ -98,7 +99,7 @@ void keepApart(const btVector3& local_a, btPersistentManifold& manifold) {
 /// set a law of their own, through the bodies or in a material callback. The callback has seen the true
 /// depth.
 void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObject& a,
-            const PairMotion& motion, btScalar warm_starting) {
+            const PairMotion& motion, const SolverSettings& solver) {
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
                             BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   const PointLaw& law = from.law;
@@ -109,7 +110,8 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     point.m_combinedRollingFriction = law.rolling;
   // Bullet reads the one only where there is the other.
   if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
-    point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curvature);
+    point.m_combinedSpinningFriction =
+        point.m_combinedFriction * spinningLever(from.depth, from.curved.a + from.curved.b);
   if (law.penalty) {
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
@@ -123,15 +125,19 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   const btScalar approach = motion.approachAt(from.on_b, from.normal);
   const bool meets = depth + approach * law.time_step > 0;
   const bool bounces = point.m_combinedRestitution * approach > law.push;
-  // The solver would begin the bounce before they touch, and brake them on their way.
-  if (!meets) point.m_combinedRestitution = 0;
-  if (meets && bounces && (depth < 0 || spring)) {
-    depth = 0;
-    spring = false;
+  if (solver.substeps) {
+    setCurvatures(point, from.curved);
+  } else {
+    // The solver would begin the bounce before they touch, and brake them on their way.
+    if (!meets) point.m_combinedRestitution = 0;
+    if (meets && bounces && (depth < 0 || spring)) {
+      depth = 0;
+      spring = false;
+    }
   }
   // The solver lets a gap close at a constant speed; points beside the one that a body rolls on turn away
   // instead, and would brake it.
-  if (depth < 0) {
+  if (depth < 0 && !solver.substeps) {
     const btScalar turning = motion.approachByTurningAt(from.on_b, from.normal);
     depth = btMin(btScalar(0), depth + turning * law.time_step * law.time_step / 2);
   }
@@ -140,9 +146,9 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   if (spring) {
     // The solver starts with a part of the last impulse. What is short of a load that lies still would make
     // it sink until its spring has replaced it: where the spring bears more, it starts with all of it.
-    if (warm_starting > 0)
+    if (solver.warm_starting > 0)
       point.m_appliedImpulse =
-          btMax(point.m_appliedImpulse, btMin(point.m_appliedImpulse / warm_starting, law.bears));
+          btMax(point.m_appliedImpulse, btMin(point.m_appliedImpulse / solver.warm_starting, law.bears));
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
@@ -159,10 +165,21 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
 }
 
+/// A point above a slope whose hilltop is among the points. A SubstepSolver has the hill go along with the
+/// bodies, so that its top meets the other body before the slope does.
+bool leavesItToTop(const ContactPatch& patch, int index) {
+  const ContactPoint& point = patch.points[index];
+  if (point.depth >= 0 || !(point.below_top > 0)) return false;
+  for (int i = 0; i < patch.count; ++i) {
+    if (patch.points[i].depth > point.depth + point.below_top / 2) return true;
+  }
+  return false;
+}
+
 /// The points of one patch into the manifold that `result` holds.
 void writePatch(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
                 const btVector3& origin, const ContactPatch& patch, const ContactLaw::OfPatch& law,
-                btScalar warm_starting, btManifoldResult* result) {
+                const SolverSettings& solver, btManifoldResult* result) {
   btPersistentManifold& manifold = *result->getPersistentManifold();
   std::array<NewPoint, kPatchPoints> points;
   int count = 0;
@@ -171,8 +188,9 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
     point.depth = patch.points[i].depth;
     point.law = law.at(point.depth);
     if (-point.depth > manifold.getContactBreakingThreshold()) continue;
+    if (solver.substeps && leavesItToTop(patch, i)) continue;
     point.normal = patch.points[i].normal;
-    point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
+    point.curved = {patch.points[i].bend_a.mean(), patch.points[i].bend_b.mean()};
     point.on_b = origin + patch.points[i].on_b;
     point.aside = patch.points[i].aside;
     point.local_a = a.getWorldTransform().invXform(point.on_b + point.normal * point.depth);
@@ -190,14 +208,13 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
     // first.
     if (match[i] >= 0) {
       btManifoldPoint& cached = manifold.getContactPoint(match[i]);
-      point.slip = slipOf(cached, a, b, point.normal, largest_slip, farthest_slip);
+      if (!solver.substeps) point.slip = slipOf(cached, a, b, point.normal, largest_slip, farthest_slip);
       cached.m_localPointA = point.local_a;
       letGo(a, b, cached);
     }
     if (motion.isSwept() && match[i] < 0) keepApart(point.local_a, manifold);
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
-    if (btManifoldPoint* added = pointAt(manifold, point.on_b))
-      setLaw(*added, point, a, motion, warm_starting);
+    if (btManifoldPoint* added = pointAt(manifold, point.on_b)) setLaw(*added, point, a, motion, solver);
   }
   result->refreshContactPoints();
 }
@@ -285,7 +302,7 @@ void ManifoldWriter::write(const btCollisionObject& a, const btCollisionObject& 
     entry.manifold->setContactBreakingThreshold(btMax(entry.threshold, separation));
     entry.manifold->setContactProcessingThreshold(law.penalty() ? -BT_LARGE_FLOAT : entry.processing);
     result->setPersistentManifold(entry.manifold);
-    writePatch(a, b, motion, origin, patches[p], law.of(patches, p), law.solver().warm_starting, result);
+    writePatch(a, b, motion, origin, patches[p], law.of(patches, p), law.solver(), result);
   }
   result->setPersistentManifold(before);
 }

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/Dynamics/btDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <LinearMath/btMinMax.h>
 
 #include "innersphere/bullet_precision.hpp"
+#include "innersphere/substep_solver.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -20,6 +23,12 @@ struct SolverSettings {
         deepest_push(info.m_splitImpulse ? -info.m_splitImpulsePenetrationThreshold : BT_LARGE_FLOAT),
         deepest_spring(info.m_splitImpulse ? kSpringShare * deepest_push : BT_LARGE_FLOAT),
         one_friction_row((info.m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS) == 0) {}
+  explicit SolverSettings(btDynamicsWorld& world) : SolverSettings(world.getSolverInfo()) {
+    substeps =
+        dynamic_cast<const SubstepSolver*>(world.getConstraintSolver()) != nullptr &&
+        dynamic_cast<const btMultiBodyDynamicsWorld*>(&world) == nullptr;  // that has a solver of its own
+    if (substeps) one_friction_row = false;
+  }
 
   /// The part of its last impulse that a contact starts with.
   btScalar warm_starting = btScalar(0.85);
@@ -36,6 +45,9 @@ struct SolverSettings {
   /// before contacts push, and no point can set it: bodies that fall together have none, and the row may lie
   /// across the load.
   bool one_friction_row = false;
+  /// It is a SubstepSolver, which makes contacts soft by itself, remembers friction, and bounces bodies in
+  /// the substep in which they meet: it is told of contacts as they are.
+  bool substeps = false;
 
  private:
   static constexpr btScalar kSpringShare = btScalar(0.75);

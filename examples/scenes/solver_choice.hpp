@@ -1,0 +1,16 @@
+// Which of the constraint solvers a scene runs with.
+#pragma once
+
+namespace innersphere::demo {
+
+enum class SolverKind {
+  bullet,  ///< btSequentialImpulseConstraintSolver
+  substep  ///< SubstepSolver
+};
+
+struct SolverChoice {
+  SolverKind kind = SolverKind::bullet;
+  int substeps = 0;  ///< of a SubstepSolver; 0: it chooses
+};
+
+}  // namespace innersphere::demo

@@ -1,0 +1,214 @@
+// How a point of a manifold becomes a row.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "common/bullet_vectors.hpp"
+#include "common/contact_tolerances.hpp"
+#include "solver/contact_rows.hpp"
+#include "solver/point_curvature.hpp"
+#include "solver/soft_step.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Fastest push, in sizes of the smaller body per second, and in depths per second for what is deeper.
+constexpr btScalar kFastest = btScalar(0.5), kLeaving = 3;
+
+/// Bullet's anisotropic friction: how far each axis of a body counts.
+btVector3 scaledByAnisotropy(const btCollisionObject& body, const btVector3& way) {
+  const btMatrix3x3& axes = body.getWorldTransform().getBasis();
+  return axes * ((way * axes) * body.getAnisotropicFriction());
+}
+
+/// The mass that gets this speed from an impulse; 0 if it moves nothing.
+Lanes massOf(Lanes yields) {
+  const Lanes mass = inAll(1) / yields;
+  return yields > Lanes{} ? (mass < inAll(BT_LARGE_FLOAT) ? mass : Lanes{}) : Lanes{};
+}
+
+struct Spring {
+  btScalar stiffness, damping;
+};
+
+/// The spring that a point has been given, if it has; from ERP and CFM, what they mean in the whole step.
+std::optional<Spring> springOf(const btManifoldPoint& point, btScalar time_step) {
+  if ((point.m_contactPointFlags & BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING) != 0)
+    return Spring{point.m_combinedContactStiffness1, point.m_combinedContactDamping1};
+  constexpr int kBoth = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP;
+  if ((point.m_contactPointFlags & kBoth) != kBoth || !(point.m_contactCFM > 0)) return {};
+  const btScalar holds = 1 / point.m_contactCFM;  // k dt + c
+  return Spring{point.m_contactERP * holds / time_step, (1 - point.m_contactERP) * holds};
+}
+
+}  // namespace
+
+void ContactRows::beginStep(const btContactSolverInfo& info, int substeps) {
+  substeps_ = btScalar(substeps);
+  substep_ = info.m_timeStep / substeps_;
+  slop_ = info.m_linearSlop;
+  bounce_threshold_ = info.m_restitutionVelocityThreshold;
+  soft_ = Softness::ofPhase(kContactPhase, kContactDamping, substep_);
+  soft_on_fixed_ = Softness::ofPhase(2 * kContactPhase, kContactDamping / 2, substep_);
+  warm_starting_ = (info.m_solverMode & SOLVER_USE_WARMSTARTING) != 0;
+}
+
+void ContactRows::prepare(int index, const SolverBodies& bodies) {
+  Block& block = blocks_[static_cast<std::size_t>(index)];
+  block.bounces = block.rolls = block.bends = false;
+  block.share = Lanes{};
+  for (int i = 0; i < block.count; ++i) points_[static_cast<std::size_t>(block.begin + i)] = PointLanes{};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    block.a[lane] = block.b[lane] = bodies.movable();
+    if (block.pair[lane] < 0) continue;
+    const ContactPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
+    block.a[lane] = pair.a;
+    block.b[lane] = pair.b;
+    block.share[lane] = bodies.isMovable(pair.b) ? btScalar(0.5) : btScalar(0);
+    for (int i = 0; i < pair.count; ++i) {
+      PointLanes& point = points_[static_cast<std::size_t>(block.begin + i)];
+      const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];
+      fillPlace(point, lane, source, pair, bodies);
+      fillForces(point, lane, *source.point, pair, bodies);
+      block.bounces = block.bounces || point.restitution[lane] > 0;
+      block.bends = block.bends || point.bend[lane] != 0;
+      block.rolls = block.rolls || point.rolling[lane] > 0 || point.spinning[lane] > 0;
+    }
+  }
+  const LaneBodies a(block.a, bodies.states()), b(block.b, bodies.states());
+  for (int i = block.begin; i < block.begin + block.count; ++i)
+    fillMasses(points_[static_cast<std::size_t>(i)], a, b, block.rolls);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (block.pair[lane] < 0) continue;
+    const ContactPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
+    for (int i = 0; i < pair.count; ++i) {
+      const btManifoldPoint& point = *sources_[static_cast<std::size_t>(pair.begin + i)].point;
+      fillSoftness(points_[static_cast<std::size_t>(block.begin + i)], lane, point, pair, bodies);
+    }
+  }
+}
+
+/// Where the bodies touch, and what they have borne there.
+void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, const ContactPair& pair,
+                            const SolverBodies& bodies) const {
+  const btManifoldPoint& point = *source.point;
+  const btScalar sign = source.flipped ? btScalar(-1) : btScalar(1);
+  const btVector3& on_a = source.flipped ? point.getPositionWorldOnB() : point.getPositionWorldOnA();
+  const btVector3& on_b = source.flipped ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
+  const btVector3 normal = point.m_normalWorldOnB * sign;
+  // The fixed world does not turn.
+  const btVector3 arm_a = on_a - bodies.origin(pair.a),
+                  arm_b = pair.b == bodies.movable() ? btVector3(0, 0, 0) : on_b - bodies.origin(pair.b);
+  lanes.normal.set(lane, normal);
+  lanes.arm_a.set(lane, arm_a);
+  lanes.arm_b.set(lane, arm_b);
+  lanes.gap[lane] = point.getDistance() + slop_;
+  fillCurves(lanes, lane, source, bodies.size(pair.a), bodies.size(pair.b));
+  btVector3 side_1, side_2;
+  if ((point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0) {
+    side_1 = point.m_lateralFrictionDir1 * sign;
+    side_2 = point.m_lateralFrictionDir2 * sign;
+    lanes.belt_1[lane] = point.m_contactMotion1;
+    lanes.belt_2[lane] = point.m_contactMotion2;
+  } else {
+    // As Bullet does for a new point, which takes over the impulses of an old one, but not its directions.
+    btPlaneSpace1(point.m_normalWorldOnB, side_1, side_2);
+    side_1 *= sign;
+    side_2 *= sign;
+  }
+  if (warm_starting_) {
+    const btVector3 borne = (point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
+                             point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2) *
+                            (sign / substeps_);
+    lanes.impulse[lane] = std::max(point.m_prevRHS / substeps_, btScalar(0));
+    lanes.impulse_1[lane] = borne.dot(side_1);
+    lanes.impulse_2[lane] = borne.dot(side_2);
+  }
+  lanes.side_1.set(lane, side_1);
+  lanes.side_2.set(lane, side_2);
+}
+
+/// How the place goes along with them: the centre of curvature stays on its body, as if spheres touched. A
+/// place without one is a corner, which is its own centre, or lies on a face; there it stays on the body, as
+/// it does on what is nearly flat: that would roll off its end. Sizes of 0 are of what does not turn.
+void ContactRows::fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a,
+                             btScalar size_b) {
+  Curvatures curved = curvaturesOf(*source.point);
+  if (source.flipped) std::swap(curved.a, curved.b);
+  const auto radius = [](btScalar curvature, btScalar size) {
+    if (curvature == 0) return btScalar(0);
+    return size == 0 || std::fabs(curvature) * size > 1 ? 1 / curvature : btScalar(0);
+  };
+  btScalar a = radius(curved.a, size_a), b = radius(curved.b, size_b);
+  // Where surfaces fit each other there is no one place.
+  if (!(curved.a + curved.b > kConforming * (std::fabs(curved.a) + std::fabs(curved.b)))) a = b = 0;
+  const btVector3 normal = lanes.normal.get(lane);
+  lanes.radius_a[lane] = a;
+  lanes.radius_b[lane] = b;
+  lanes.bend[lane] = a != 0 && b != 0 ? 1 / (a + b) : btScalar(0);
+  lanes.normal_0.set(lane, normal);
+  lanes.gap_0[lane] = lanes.gap[lane];
+  lanes.pivot_a.set(lane, lanes.arm_a.get(lane) + normal * a);
+  lanes.pivot_b.set(lane, lanes.arm_b.get(lane) - normal * b);
+}
+
+/// What the point has been told of forces, and what it bore.
+void ContactRows::fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point,
+                             const ContactPair& pair, const SolverBodies& bodies) {
+  for (int body : {pair.a, pair.b}) {
+    const btRigidBody* rigid = bodies.rigid(body);
+    if (rigid == nullptr || !rigid->hasAnisotropicFriction(btCollisionObject::CF_ANISOTROPIC_FRICTION))
+      continue;
+    for (Lanes3* side : {&lanes.side_1, &lanes.side_2})
+      side->set(lane, scaledByAnisotropy(*rigid, side->get(lane)));
+  }
+  lanes.friction[lane] = point.m_combinedFriction;
+  lanes.restitution[lane] = point.m_combinedRestitution;
+  lanes.rolling[lane] = point.m_combinedRollingFriction;
+  lanes.spinning[lane] = point.m_combinedSpinningFriction;
+  const btScalar most = lanes.friction[lane] * lanes.impulse[lane];
+  const btScalar held = std::hypot(lanes.impulse_1[lane], lanes.impulse_2[lane]);
+  if (held > most) {
+    lanes.impulse_1[lane] *= most / held;
+    lanes.impulse_2[lane] *= most / held;
+  }
+}
+
+/// How much each row moves.
+void ContactRows::fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls) {
+  const auto along = [&](const Lanes3& way) {
+    const Lanes3 turn_a = cross(point.arm_a, way), turn_b = cross(point.arm_b, way);
+    return massOf(dot(way, scaled(a.inverse_mass, way)) + dot(way, scaled(b.inverse_mass, way)) +
+                  dot(turn_a, a.inverseInertiaTimes(turn_a)) + dot(turn_b, b.inverseInertiaTimes(turn_b)));
+  };
+  const auto about = [&](const Lanes3& axis) {
+    return massOf(dot(axis, a.inverseInertiaTimes(axis)) + dot(axis, b.inverseInertiaTimes(axis)));
+  };
+  point.mass = along(point.normal);
+  point.mass_1 = along(point.side_1);
+  point.mass_2 = along(point.side_2);
+  if (!rolls) return;
+  point.mass_rolling = smaller(about(point.side_1), about(point.side_2));
+  point.mass_spinning = about(point.normal);
+}
+
+/// How they give way.
+void ContactRows::fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point,
+                               const ContactPair& pair, const SolverBodies& bodies) const {
+  const bool both_move = bodies.isMovable(pair.b);
+  const btScalar size = both_move ? std::min(bodies.size(pair.a), bodies.size(pair.b)) : bodies.size(pair.a);
+  Softness soft = both_move ? soft_ : soft_on_fixed_;
+  lanes.fastest[lane] = std::max(kFastest * size, -kLeaving * point.getDistance());
+  if (const auto spring = springOf(point, substep_ * substeps_)) {
+    soft = Softness::ofSpring(spring->stiffness, spring->damping, lanes.mass[lane], substep_);
+    lanes.spring[lane] = 1;
+    lanes.fastest[lane] = BT_LARGE_FLOAT;
+  }
+  lanes.rate[lane] = soft.rate;
+  lanes.soft_mass[lane] = soft.mass;
+  lanes.soft_impulse[lane] = soft.impulse;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,252 @@
+#include "solver/contact_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "common/bullet_vectors.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// A face that lands flat is thrown back by all its corners in one substep: each of them goes on until the
+/// others have had their part.
+constexpr int kBounceRounds = 8;
+
+bool isSound(const btManifoldPoint& point) {
+  return isFinite(point.getPositionWorldOnA()) && isFinite(point.getPositionWorldOnB()) &&
+         isFinite(point.m_normalWorldOnB) && std::isfinite(point.getDistance());
+}
+
+/// Both parts of an impulse across the normal, which together are no larger than `most`.
+void holdWithin(Lanes most, Lanes& along_1, Lanes& along_2) {
+  const Lanes length = root(along_1 * along_1 + along_2 * along_2);
+  const Lanes share = length > most ? most / length : inAll(1);
+  along_1 *= share;
+  along_2 *= share;
+}
+
+}  // namespace
+
+void ContactRows::collect(btPersistentManifold** manifolds, int count, SolverBodies& bodies) {
+  entries_.clear();
+  sources_.clear();
+  pairs_.clear();
+  broken_ = 0;
+  movable_ = bodies.movable();
+  for (int i = 0; i < count; ++i) {
+    if (manifolds[i]->getNumContacts() == 0) continue;
+    int a = bodies.indexOf(*manifolds[i]->getBody0()), b = bodies.indexOf(*manifolds[i]->getBody1());
+    if (a == SolverBodies::kBroken || b == SolverBodies::kBroken) continue;
+    const bool flipped = a > b;
+    if (flipped) std::swap(a, b);
+    if (bodies.isMovable(a)) entries_.push_back({a, b, i, flipped});
+  }
+  std::sort(entries_.begin(), entries_.end(), [](const Entry& l, const Entry& r) {
+    return std::tie(l.a, l.b, l.manifold) < std::tie(r.a, r.b, r.manifold);
+  });
+  for (const Entry& entry : entries_) {
+    btPersistentManifold& manifold = *manifolds[entry.manifold];
+    if (pairs_.empty() || pairs_.back().a != entry.a || pairs_.back().b != entry.b)
+      pairs_.push_back({entry.a, entry.b, static_cast<int>(sources_.size()), 0});
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+      btManifoldPoint& point = manifold.getContactPoint(k);
+      // Bullet's own measure of which points its solver is to leave alone.
+      if (point.getDistance() > manifold.getContactProcessingThreshold()) continue;
+      if (!isSound(point)) {
+        ++broken_;
+        continue;
+      }
+      sources_.push_back({&point, entry.flipped});
+      ++pairs_.back().count;
+    }
+  }
+  pairs_.erase(
+      std::remove_if(pairs_.begin(), pairs_.end(), [](const ContactPair& p) { return p.count == 0; }),
+      pairs_.end());
+}
+
+void ContactRows::clearBlocks() {
+  blocks_.clear();
+  point_count_ = 0;
+}
+
+void ContactRows::addBlock(const int* pairs, int count) {
+  Block& block = blocks_.emplace_back();
+  block.begin = point_count_;
+  block.count = 0;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    block.pair[lane] = lane < count ? pairs[lane] : -1;
+    if (lane < count)
+      block.count = std::max(block.count, pairs_[static_cast<std::size_t>(pairs[lane])].count);
+  }
+  point_count_ += block.count;
+  if (points_.size() < static_cast<std::size_t>(point_count_))
+    points_.resize(static_cast<std::size_t>(point_count_));
+}
+
+/// Where the bodies touch now.
+void ContactRows::follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) {
+  const Lanes3 moved = a.moved - b.moved;
+  const Lanes3 way = moved + swing(a.axis, a.w, point.pivot_a) - swing(b.axis, b.w, point.pivot_b);
+  const Lanes along = dot(way, point.normal_0);
+  point.gap = point.gap_0 + along;
+  // Both feel the push at one place, in the middle, so that it turns them as much as it would turn one body.
+  Lanes3 apart = moved + point.normal_0 * point.gap_0;
+  if (block.bends) {
+    const Lanes3 aside = way - point.normal_0 * along;
+    point.gap += inAll(btScalar(0.5)) * dot(aside, aside) * point.bend;
+    const Lanes3 turned = point.normal_0 + aside * point.bend;
+    const Lanes length = root(dot(turned, turned));
+    point.normal = turned * (length > Lanes{} ? inAll(1) / length : Lanes{});
+    point.side_1 = point.side_1 - point.normal * dot(point.side_1, point.normal);
+    point.side_2 = point.side_2 - point.normal * dot(point.side_2, point.normal);
+    apart = apart - (point.normal - point.normal_0) * (point.radius_a + point.radius_b);
+  }
+  point.arm_a = point.pivot_a - point.normal * point.radius_a - apart * block.share;
+  point.arm_b = point.pivot_b + point.normal * point.radius_b + apart * block.share;
+}
+
+void ContactRows::warmStart(int index, std::vector<BodyState>& states) {
+  Block& block = blocks_[static_cast<std::size_t>(index)];
+  block.bouncing = false;
+  LaneBodies a(block.a, states), b(block.b, states);
+  for (int i = block.begin; i < block.begin + block.count; ++i) {
+    PointLanes& point = points_[static_cast<std::size_t>(i)];
+    if (block.bounces) startBounces(block, point, a, b);
+    const Lanes3 impulse =
+        point.normal * point.impulse + point.side_1 * point.impulse_1 + point.side_2 * point.impulse_2;
+    a.pushAt(point.arm_a, impulse);
+    b.pushAt(point.arm_b, impulse * inAll(-1));
+    if (!block.rolls) continue;
+    const Lanes3 turn = point.side_1 * point.roll_1 + point.side_2 * point.roll_2 + point.normal * point.spin;
+    a.turn(turn);
+    b.turn(turn * inAll(-1));
+  }
+  a.put(block.a, movable_, states);
+  b.put(block.b, movable_, states);
+}
+
+/// Points that the bodies reach in this substep leave as fast as restitution says. What threw them back is no
+/// load that goes on.
+void ContactRows::startBounces(Block& block, PointLanes& point, const LaneBodies& a,
+                               const LaneBodies& b) const {
+  const Lanes none{};
+  const auto bounced = point.bounce > none;
+  point.impulse = bounced ? none : point.impulse;
+  point.impulse_1 = bounced ? none : point.impulse_1;
+  point.impulse_2 = bounced ? none : point.impulse_2;
+  const Lanes speed = dot(a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b), point.normal);
+  const auto hits = point.gap + speed * inAll(substep_) <= none;
+  point.bounce = hits ? speed * point.restitution * inAll(-1) : none;
+  point.bounce = speed < inAll(-bounce_threshold_) ? point.bounce : none;
+  for (int lane = 0; lane < kLanes; ++lane) block.bouncing = block.bouncing || point.bounce[lane] > 0;
+}
+
+void ContactRows::solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b) {
+  const Lanes3 slide = a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b);
+  Lanes along_1 = point.impulse_1 - point.mass_1 * (dot(slide, point.side_1) - point.belt_1);
+  Lanes along_2 = point.impulse_2 - point.mass_2 * (dot(slide, point.side_2) - point.belt_2);
+  holdWithin(point.friction * point.impulse, along_1, along_2);
+  const Lanes3 impulse =
+      point.side_1 * (along_1 - point.impulse_1) + point.side_2 * (along_2 - point.impulse_2);
+  point.impulse_1 = along_1;
+  point.impulse_2 = along_2;
+  a.pushAt(point.arm_a, impulse);
+  b.pushAt(point.arm_b, impulse * inAll(-1));
+  if (!block.rolls) return;
+  const Lanes3 rolls = a.spin - b.spin;
+  Lanes roll_1 = point.roll_1 - point.mass_rolling * dot(rolls, point.side_1);
+  Lanes roll_2 = point.roll_2 - point.mass_rolling * dot(rolls, point.side_2);
+  holdWithin(point.rolling * point.impulse, roll_1, roll_2);
+  const Lanes most = point.spinning * point.impulse;
+  const Lanes spin =
+      larger(smaller(point.spin - point.mass_spinning * dot(rolls, point.normal), most), most * inAll(-1));
+  const Lanes3 turn = point.side_1 * (roll_1 - point.roll_1) + point.side_2 * (roll_2 - point.roll_2) +
+                      point.normal * (spin - point.spin);
+  point.roll_1 = roll_1;
+  point.roll_2 = roll_2;
+  point.spin = spin;
+  a.turn(turn);
+  b.turn(turn * inAll(-1));
+}
+
+void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const {
+  const Lanes none{}, one = inAll(1);
+  const Lanes gap = point.gap;
+  const Lanes speed = dot(a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b), point.normal);
+  const auto open = gap > none;
+  const auto bounces = point.bounce > none;
+  // Apart, they may come as near as they are; in each other, they are driven apart.
+  Lanes bias = gap * inAll(1 / substep_), mass = one, impulse = none, acts = one;
+  if (pass == Pass::push) {
+    bias = open ? bias : larger(gap * point.rate, point.fastest * inAll(-1));
+    mass = open ? one : point.soft_mass;
+    impulse = open ? none : point.soft_impulse;
+  } else {
+    bias = open ? bias : none;
+    // What is to bounce goes on until its substep; a spring of the user's is no error to be given back.
+    const Lanes goes_on =
+        speed * point.restitution < inAll(-bounce_threshold_) * point.restitution ? none : one;
+    acts = open ? goes_on : one - point.spring;
+  }
+  bias = bounces ? point.bounce * inAll(-1) : bias;
+  mass = bounces ? one : mass;
+  impulse = bounces ? none : impulse;
+  const Lanes change = acts * (none - point.mass * mass * (speed + bias) - impulse * point.impulse);
+  const Lanes total = larger(point.impulse + change, none);
+  const Lanes3 push = point.normal * (total - point.impulse);
+  point.impulse = total;
+  a.pushAt(point.arm_a, push);
+  b.pushAt(point.arm_b, push * inAll(-1));
+}
+
+void ContactRows::solve(int index, Pass pass, std::vector<BodyState>& states) {
+  const Block& block = blocks_[static_cast<std::size_t>(index)];
+  LaneBodies a(block.a, states), b(block.b, states);
+  PointLanes* const begin = points_.data() + block.begin;
+  PointLanes* const end = begin + block.count;
+  if (pass == Pass::relax) {
+    for (PointLanes* point = begin; point != end; ++point) follow(block, *point, a, b);
+  }
+  for (int round = block.bouncing ? kBounceRounds : 1; round > 0; --round) {
+    for (PointLanes* point = begin; point != end; ++point) {
+      solveNormal(*point, pass, a, b);
+      solveFriction(block, *point, a, b);
+    }
+  }
+  for (int i = block.begin; pass == Pass::relax && i < block.begin + block.count; ++i) {
+    PointLanes& point = points_[static_cast<std::size_t>(i)];
+    point.sum += point.impulse;
+    point.sum_1 += point.impulse_1;
+    point.sum_2 += point.impulse_2;
+  }
+  a.put(block.a, movable_, states);
+  b.put(block.b, movable_, states);
+}
+
+void ContactRows::writeBack(int index) {
+  const Block& block = blocks_[static_cast<std::size_t>(index)];
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (block.pair[lane] < 0) continue;
+    const ContactPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
+    for (int i = 0; i < pair.count; ++i) {
+      const PointLanes& from = points_[static_cast<std::size_t>(block.begin + i)];
+      const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];
+      btManifoldPoint& point = *source.point;
+      const bool bounced = from.bounce[lane] > 0;
+      point.m_appliedImpulse = from.sum[lane];
+      point.m_prevRHS = bounced ? btScalar(0) : from.impulse[lane] * substeps_;
+      point.m_appliedImpulseLateral1 = from.sum_1[lane];
+      point.m_appliedImpulseLateral2 = from.sum_2[lane];
+      if ((point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0) continue;
+      const btScalar sign = source.flipped ? btScalar(-1) : btScalar(1);
+      point.m_lateralFrictionDir1 = from.side_1.get(lane) * sign;
+      point.m_lateralFrictionDir2 = from.side_2.get(lane) * sign;
+    }
+  }
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,127 @@
+// Contacts of pairs of bodies as rows that are solved several pairs at a time.
+#pragma once
+
+#include <vector>
+
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+
+#include "solver/lane_bodies.hpp"
+#include "solver/lanes.hpp"
+#include "solver/soft_step.hpp"
+#include "solver/solver_bodies.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Two bodies that touch, and the points at which they do. Normals lead from b to a.
+struct ContactPair {
+  int a = 0, b = 0;  ///< places of the bodies, a can be moved
+  int begin = 0;     ///< of its points in ContactRows
+  int count = 0;     ///< of its points
+};
+
+/// How a pass treats contacts.
+enum class Pass {
+  push,  ///< with what drives bodies apart that are in each other
+  relax  ///< without: the speed that this took is given back
+};
+
+/// The contacts of a group. Call collect(), then layOut() with the pairs in the order in which they are to be
+/// solved, then passes over blocks, then writeBack().
+class ContactRows {
+ public:
+  /// Finds all points that push, and the pairs that they are of.
+  void collect(btPersistentManifold** manifolds, int count, SolverBodies& bodies);
+  const std::vector<ContactPair>& pairs() const { return pairs_; }
+
+  void clearBlocks();
+  /// Puts up to kLanes pairs, no two of which share a body that can be moved, into a block.
+  void addBlock(const int* pairs, int count);
+  int blocks() const { return static_cast<int>(blocks_.size()); }
+  /// Returns the number of points that all blocks have room for.
+  int points() const { return point_count_; }
+
+  /// Takes over what holds for all rows of a step.
+  void beginStep(const btContactSolverInfo& info, int substeps);
+  /// Fills the rows of a block.
+  void prepare(int block, const SolverBodies& bodies);
+  /// Applies the impulses of the last substep.
+  void warmStart(int block, std::vector<BodyState>& states);
+  void solve(int block, Pass pass, std::vector<BodyState>& states);
+  /// Tells the points what they have borne.
+  void writeBack(int block);
+
+  /// Returns the number of points that were left out because they are not finite.
+  int broken() const { return broken_; }
+
+ private:
+  struct Source {
+    btManifoldPoint* point;
+    bool flipped;  ///< the manifold has the bodies the other way round
+  };
+  /// A point of each pair of a block.
+  struct PointLanes {
+    Lanes3 normal_0, pivot_a, pivot_b;  ///< when the step begins; pivots are centres of curvature
+    Lanes gap_0;                        ///< [m]
+    Lanes radius_a, radius_b;           ///< of curvature; 0: the place stays on the body [m]
+    Lanes bend;                         ///< how far the normal turns for a metre that the bodies slide [1/m]
+    Lanes3 normal, side_1, side_2, arm_a, arm_b;  ///< now
+    Lanes gap;
+    Lanes mass, mass_1, mass_2;           ///< what each row moves [kg]
+    Lanes rate, soft_mass, soft_impulse;  ///< of the spring that drives bodies apart
+    Lanes spring;                         ///< 1: it is the user's, and acts in all passes
+    Lanes fastest;                        ///< that bodies are driven apart [m/s]
+    Lanes friction, rolling, spinning;
+    Lanes mass_rolling, mass_spinning;    ///< [kg m^2]
+    Lanes belt_1, belt_2;                 ///< speeds of the surface [m/s]
+    Lanes restitution, bounce;            ///< the speed at which the bodies leave in this substep [m/s]
+    Lanes impulse, impulse_1, impulse_2;  ///< of this substep [N s]
+    Lanes roll_1, roll_2, spin;           ///< [N m s]
+    Lanes sum, sum_1, sum_2;              ///< of the step [N s]
+  };
+  struct Block {
+    int a[kLanes], b[kLanes];
+    int pair[kLanes];            ///< -1: nothing is in this lane
+    int begin, count;            ///< in points_
+    Lanes share;                 ///< of what they slide apart, to the place in the middle
+    bool bounces, rolls, bends;  ///< what some of its points do
+    bool bouncing;               ///< in this substep
+  };
+  struct Entry {
+    int a, b;
+    int manifold;
+    bool flipped;
+  };
+
+  void fillPlace(PointLanes& lanes, int lane, const Source& source, const ContactPair& pair,
+                 const SolverBodies& bodies) const;
+  static void fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a, btScalar size_b);
+  static void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
+                         const SolverBodies& bodies);
+  static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls);
+  void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
+                    const SolverBodies& bodies) const;
+  static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
+  void startBounces(Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) const;
+  static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
+  void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
+
+  std::vector<Entry> entries_;
+  std::vector<Source> sources_;
+  std::vector<ContactPair> pairs_;
+  std::vector<Block> blocks_;
+  std::vector<PointLanes> points_;  ///< some of them of an earlier, larger step
+  int point_count_ = 0;
+  Softness soft_, soft_on_fixed_;
+  btScalar substep_ = 0;  ///< [s]
+  btScalar substeps_ = 1;
+  btScalar bounce_threshold_ = 0;  ///< [m/s]
+  btScalar slop_ = 0;              ///< [m]
+  bool warm_starting_ = true;
+  int movable_ = 0;
+  int broken_ = 0;
+};
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,64 @@
+// Several scalars that are computed with at once: one for each of several pairs of bodies.
+#pragma once
+
+#include <cmath>
+
+#include <LinearMath/btVector3.h>
+
+#include "innersphere/bullet_precision.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// As many as fit into 16 bytes, which every 64-bit processor adds and multiplies at once.
+constexpr int kLanes = 16 / sizeof(btScalar);
+using Lanes = btScalar __attribute__((vector_size(16)));
+
+inline Lanes inAll(btScalar x) {
+  return x - Lanes{};
+}
+inline Lanes larger(Lanes a, Lanes b) {
+  return a > b ? a : b;
+}
+inline Lanes smaller(Lanes a, Lanes b) {
+  return a < b ? a : b;
+}
+inline Lanes root(Lanes a) {
+  for (int lane = 0; lane < kLanes; ++lane) a[lane] = std::sqrt(a[lane]);
+  return a;
+}
+
+/// A vector in each lane.
+struct Lanes3 {
+  Lanes x{}, y{}, z{};
+
+  void set(int lane, const btVector3& v) {
+    x[lane] = v.x();
+    y[lane] = v.y();
+    z[lane] = v.z();
+  }
+  btVector3 get(int lane) const { return btVector3(x[lane], y[lane], z[lane]); }
+};
+
+inline Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Lanes3 operator*(const Lanes3& a, Lanes s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+/// Component by component.
+inline Lanes3 scaled(const Lanes3& a, const Lanes3& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+inline Lanes dot(const Lanes3& a, const Lanes3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

@@ -1,0 +1,237 @@
+#include "solver/solver_bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <LinearMath/btTransformUtil.h>
+
+#include "common/bullet_vectors.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Marks bodies that are of no use: the companion ids of Bullet itself are -2 and above.
+constexpr int kBrokenId = -3;
+
+/// The rotation of a spin [rad/s] that lasts for a time [s].
+btQuaternion rotationOf(const btVector3& spin, btScalar time) {
+  const btScalar half = spin.length() * time / 2;
+  constexpr btScalar kSmall = btScalar(0.01);
+  // sin(x) / x to the last bit of single precision; nothing is divided by zero.
+  const btScalar sinc = half < kSmall ? 1 - half * half / 6 : std::sin(half) / half;
+  const btVector3 axis = spin * (time / 2 * sinc);
+  return btQuaternion(axis.x(), axis.y(), axis.z(), std::cos(half));
+}
+
+/// How a rotation changes a vector.
+btVector3 changeBy(const btQuaternion& rotation, const btVector3& v) {
+  const btVector3 axis(rotation.x(), rotation.y(), rotation.z()), across = axis.cross(v);
+  return (across * rotation.w() + axis.cross(across)) * 2;
+}
+
+bool isUsable(const btRigidBody& body) {
+  // Squares of velocities are formed: they have to be finite, too.
+  return isFinite(body.getWorldTransform()) && std::isfinite(body.getLinearVelocity().length2()) &&
+         std::isfinite(body.getAngularVelocity().length2()) && isFinite(body.getTotalForce()) &&
+         isFinite(body.getTotalTorque()) && std::isfinite(body.getInvMass()) &&
+         isFinite(body.getInvInertiaDiagLocal());
+}
+
+bool canBeMoved(const btRigidBody& body) {
+  const bool yields = body.getInvMass() > 0 || !body.getInvInertiaDiagLocal().isZero();
+  return yields && !body.isStaticOrKinematicObject() && body.getActivationState() != DISABLE_SIMULATION;
+}
+
+btScalar inverseOrZero(btScalar x) {
+  return x > 0 ? 1 / x : btScalar(0);
+}
+
+}  // namespace
+
+void SolverBodies::begin(btCollisionObject** objects, int count) {
+  states_.clear();
+  bodies_.clear();
+  broken_.clear();
+  for (int i = 0; i < count; ++i) {
+    btRigidBody* rigid = btRigidBody::upcast(objects[i]);
+    if (rigid == nullptr || !canBeMoved(*rigid)) continue;
+    if (isUsable(*rigid)) {
+      add(*rigid);
+      continue;
+    }
+    rigid->setCompanionId(kBrokenId);
+    broken_.push_back(rigid);
+  }
+  movable_ = static_cast<int>(bodies_.size());
+  states_.emplace_back();  // the fixed world
+  bodies_.emplace_back();
+}
+
+void SolverBodies::add(btRigidBody& rigid) {
+  rigid.setCompanionId(static_cast<int>(bodies_.size()));
+  Body& body = bodies_.emplace_back();
+  BodyState& state = states_.emplace_back();
+  body.rigid = &rigid;
+  body.origin = rigid.getWorldTransform().getOrigin();
+  body.rotation = rigid.getWorldTransform().getRotation().normalized();
+  body.mass = rigid.getMass();
+  body.force = rigid.getTotalForce() * rigid.getInvMass();
+  body.torque = rigid.getTotalTorque();
+  body.inverse_inertia = rigid.getInvInertiaDiagLocal();
+  body.angular_factor = rigid.getAngularFactor();
+  const btVector3& inverse = body.inverse_inertia;
+  body.inertia.setValue(inverseOrZero(inverse.x()), inverseOrZero(inverse.y()), inverseOrZero(inverse.z()));
+  constexpr int kGyroscopic = BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT |
+                              BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
+                              BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY;
+  const bool free = body.angular_factor == btVector3(1, 1, 1) && inverse[inverse.minAxis()] > 0;
+  const bool round = inverse.x() == inverse.y() && inverse.y() == inverse.z();
+  body.tumbles = free && !round && (rigid.getFlags() & kGyroscopic) != 0;
+  btVector3 centre;
+  if (rigid.getCollisionShape() != nullptr) {
+    rigid.getCollisionShape()->getBoundingSphere(centre, body.size);
+    body.size *= 2;
+  }
+  state.velocity = rigid.getLinearVelocity();
+  state.spin = rigid.getAngularVelocity();
+  state.inverse_mass = rigid.getLinearFactor() * rigid.getInvMass();
+  updateInertia(body, state);
+}
+
+int SolverBodies::indexOf(const btCollisionObject& object) {
+  const int id = object.getCompanionId();
+  if (id == kBrokenId) return kBroken;
+  if (id >= 0 && id < movable_ && bodies_[static_cast<std::size_t>(id)].rigid == &object) return id;
+  const btRigidBody* rigid = btRigidBody::upcast(&object);
+  if (rigid == nullptr || (rigid->getLinearVelocity().isZero() && rigid->getAngularVelocity().isZero()))
+    return movable_;
+  if (!std::isfinite(rigid->getLinearVelocity().length2()) ||
+      !std::isfinite(rigid->getAngularVelocity().length2()))
+    return kBroken;
+  if (bodies_.back().rigid == rigid) return static_cast<int>(bodies_.size()) - 1;
+  Body& body = bodies_.emplace_back();
+  BodyState& state = states_.emplace_back();
+  body.rigid = const_cast<btRigidBody*>(rigid);
+  body.given = rigid->getWorldTransform();
+  body.origin = body.given.getOrigin();
+  body.rotation = body.given.getRotation();
+  state.velocity = rigid->getLinearVelocity();
+  state.spin = rigid->getAngularVelocity();
+  return static_cast<int>(bodies_.size()) - 1;
+}
+
+void SolverBodies::follow(int index) {
+  if (index >= 0) bodies_[static_cast<std::size_t>(index)].followed = true;
+}
+
+btScalar SolverBodies::largestAcceleration() const {
+  btScalar largest = 0;
+  for (const Body& body : bodies_) largest = std::max(largest, body.force.length2());
+  return std::sqrt(largest);
+}
+
+void SolverBodies::accelerate(int begin, int end, btScalar substep) {
+  for (int i = begin; i < end; ++i) {
+    const Body& body = bodies_[static_cast<std::size_t>(i)];
+    BodyState& state = states_[static_cast<std::size_t>(i)];
+    state.velocity += body.force * substep;
+    if (!body.torque.isZero()) state.spin += state.inverseInertiaTimes(body.torque * substep);
+  }
+}
+
+void SolverBodies::updateInertia(const Body& body, BodyState& state) const {
+  const btMatrix3x3 axes(state.turned * body.rotation);
+  const btMatrix3x3 inverse = axes.scaled(body.inverse_inertia) * axes.transpose();
+  const btVector3& f = body.angular_factor;
+  state.xx = inverse[0][0] * f.x() * f.x();
+  state.yy = inverse[1][1] * f.y() * f.y();
+  state.zz = inverse[2][2] * f.z() * f.z();
+  state.xy = inverse[0][1] * f.x() * f.y();
+  state.xz = inverse[0][2] * f.x() * f.z();
+  state.yz = inverse[1][2] * f.y() * f.z();
+}
+
+/// Nothing but the orientation changes of a body that keeps its spin. One that tumbles keeps its angular
+/// momentum: its spin follows from that and the orientation, in the middle of the way as at its end, which is
+/// of second order in the substep.
+void SolverBodies::turn(const Body& body, BodyState& state, btScalar substep) const {
+  if (state.spin.isZero()) return;
+  if (!body.tumbles) {
+    state.turned = (rotationOf(state.spin, substep) * state.turned).normalized();
+    updateInertia(body, state);
+    return;
+  }
+  const btQuaternion start = (state.turned * body.rotation).normalized();
+  const btVector3 momentum = quatRotate(start.inverse(), state.spin) * body.inertia;  // in its own frame
+  // Only changes are turned, and multiplied by the inertia and its inverse. None of that is so to the last
+  // bit, and thousands of substeps would add up what is missing.
+  const auto spinAfter = [&](const btQuaternion& turn) {
+    const btQuaternion rotation = (turn * start).normalized();
+    const btVector3 change = changeBy(rotation.inverse() * start, momentum) * body.inverse_inertia;
+    return state.spin + changeBy(turn, state.spin) + quatRotate(rotation, change);
+  };
+  const btVector3 middle = spinAfter(rotationOf(state.spin, substep / 2));
+  const btQuaternion turn = rotationOf(middle, substep);
+  state.spin = spinAfter(turn);
+  state.turned = (turn * state.turned).normalized();
+  updateInertia(body, state);
+}
+
+void SolverBodies::move(int begin, int end, btScalar substep) {
+  for (int i = begin; i < end; ++i) {
+    const Body& body = bodies_[static_cast<std::size_t>(i)];
+    BodyState& state = states_[static_cast<std::size_t>(i)];
+    state.moved += state.velocity * substep;
+    turn(body, state, substep);
+    if (!body.followed) continue;
+    body.rigid->setWorldTransform(poseOf(body, state));
+    body.rigid->setLinearVelocity(state.velocity);
+    body.rigid->setAngularVelocity(state.spin);
+    body.rigid->updateInertiaTensor();
+  }
+}
+
+void SolverBodies::moveDriven(btScalar substep) {
+  for (std::size_t i = static_cast<std::size_t>(movable_) + 1; i < states_.size(); ++i) {
+    BodyState& state = states_[i];
+    // A static body with a velocity is a belt: its surface moves, it does not.
+    if (!bodies_[i].rigid->isKinematicObject()) continue;
+    state.moved += state.velocity * substep;
+    state.turned = (rotationOf(state.spin, substep) * state.turned).normalized();
+    if (bodies_[i].followed) bodies_[i].rigid->setWorldTransform(poseOf(bodies_[i], state));
+  }
+}
+
+btTransform SolverBodies::poseOf(const Body& body, const BodyState& state) const {
+  return btTransform(state.turned * body.rotation, body.origin + state.moved);
+}
+
+int SolverBodies::finish(btScalar time_step) {
+  int lost = 0;
+  for (btRigidBody* body : broken_) body->setCompanionId(-1);
+  for (std::size_t i = static_cast<std::size_t>(movable_) + 1; i < bodies_.size(); ++i) {
+    if (bodies_[i].followed) bodies_[i].rigid->setWorldTransform(bodies_[i].given);
+  }
+  for (int i = 0; i < movable_; ++i) {
+    const Body& body = bodies_[static_cast<std::size_t>(i)];
+    BodyState& state = states_[static_cast<std::size_t>(i)];
+    if (!isFinite(poseOf(body, state)) || !std::isfinite(state.velocity.length2()) ||
+        !std::isfinite(state.spin.length2())) {
+      state = BodyState();
+      ++lost;
+    }
+    // Bullet goes on from here by the velocities, over the whole step.
+    btTransform start;
+    btTransformUtil::integrateTransform(poseOf(body, state), -state.velocity, -state.spin, time_step, start);
+    body.rigid->setWorldTransform(start);
+    body.rigid->setLinearVelocity(state.velocity);
+    body.rigid->setAngularVelocity(state.spin);
+    body.rigid->setCompanionId(-1);
+  }
+  return lost;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

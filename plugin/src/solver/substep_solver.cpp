@@ -1,0 +1,198 @@
+#include "innersphere/substep_solver.hpp"
+
+#include <algorithm>
+
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+
+#include "common/log.hpp"
+#include "innersphere/error.hpp"
+#include "solver/colouring.hpp"
+#include "solver/constraint_rows.hpp"
+#include "solver/contact_rows.hpp"
+#include "solver/crew.hpp"
+#include "solver/solver_bodies.hpp"
+#include "solver/substep_count.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Parts that a thread takes at once, and what makes a thread worth calling.
+constexpr int kBlocks = 4, kJoints = 8, kBodies = 32, kPointsForThread = 512;
+
+void check(const SubstepOptions& options) {
+  constexpr int kMost = 1000;
+  if (options.substeps < 0 || options.substeps > kMost)
+    throw Error(ErrorCode::bad_argument, "SubstepOptions::substeps is 0, or from 1 to 1000.");
+  if (options.most < 1 || options.most > kMost)
+    throw Error(ErrorCode::bad_argument, "SubstepOptions::most is from 1 to 1000.");
+  if (!(options.longest > 0)) throw Error(ErrorCode::bad_argument, "SubstepOptions::longest is above 0.");
+  if (!(options.depth > 0)) throw Error(ErrorCode::bad_argument, "SubstepOptions::depth is above 0.");
+}
+
+}  // namespace
+
+class SubstepSolver::Impl {
+ public:
+  SubstepOptions options;
+  int last_substeps = 0;
+
+  void solve(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds, int manifold_count,
+             btTypedConstraint** constraints, int constraint_count, const btContactSolverInfo& info);
+  void beginStep();
+  void endStep();
+  void reset() { constraints_.forget(); }
+
+ private:
+  void prepare(const btContactSolverInfo& info, int substeps);
+  void step(btScalar substep);
+  void pass(Pass pass);
+  template <typename Joint, typename Block>
+  void forEachRow(const Joint& joint, const Block& block);
+  void report(int lost);
+
+  SolverBodies bodies_;
+  ContactRows contacts_;
+  ConstraintRows constraints_;
+  Colouring colouring_;
+  Crew crew_;
+  bool called_ = false;  ///< in this step
+  bool reported_ = false, reported_world_ = false;
+};
+
+void SubstepSolver::Impl::beginStep() {
+  last_substeps = 0;
+  called_ = false;
+}
+
+/// A btDiscreteDynamicsWorld hands over a group in each step, if only an empty one.
+void SubstepSolver::Impl::endStep() {
+  constraints_.endStep();
+  if (called_ || reported_world_) return;
+  reported_world_ = true;
+  log("SubstepSolver is told of steps, but not given anything to solve: a btMultiBodyDynamicsWorld solves "
+      "with a "
+      "btMultiBodyConstraintSolver of its own. This is said once.");
+}
+
+/// Calls for all constraints and for all blocks of contacts, colour by colour.
+template <typename Joint, typename Block>
+void SubstepSolver::Impl::forEachRow(const Joint& joint, const Block& block) {
+  for (const Colour& colour : colouring_.colours()) {
+    const auto joints = [&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        joint(colouring_.joints()[static_cast<std::size_t>(colour.first_joint + i)]);
+    };
+    const auto blocks = [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) block(colour.first_block + i);
+    };
+    if (colour.alone) {
+      joints(0, colour.joints);
+      blocks(0, colour.blocks);
+    } else {
+      crew_.forEach(colour.joints, kJoints, joints);
+      crew_.forEach(colour.blocks, kBlocks, blocks);
+    }
+  }
+}
+
+void SubstepSolver::Impl::pass(Pass pass) {
+  forEachRow([&](int joint) { constraints_.solve(joint, pass, bodies_.states()); },
+             [&](int block) { contacts_.solve(block, pass, bodies_.states()); });
+}
+
+void SubstepSolver::Impl::step(btScalar substep) {
+  crew_.forEach(bodies_.movable(), kBodies,
+                [&](int begin, int end) { bodies_.accelerate(begin, end, substep); });
+  // The user's classes are asked by this thread alone.
+  for (int i = 0; i < constraints_.count(); ++i) constraints_.refresh(i, bodies_);
+  forEachRow([&](int joint) { constraints_.warmStart(joint, bodies_.states()); },
+             [&](int block) { contacts_.warmStart(block, bodies_.states()); });
+  pass(Pass::push);
+  crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.move(begin, end, substep); });
+  bodies_.moveDriven(substep);
+  pass(Pass::relax);
+}
+
+void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+                                int manifold_count, btTypedConstraint** constraints, int constraint_count,
+                                const btContactSolverInfo& info) {
+  called_ = true;
+  const btScalar time_step = info.m_timeStep;
+  if (!(time_step > 0)) return;
+  bodies_.begin(bodies, body_count);
+  if (bodies_.movable() == 0) return report(bodies_.finish(time_step));
+  contacts_.collect(manifolds, manifold_count, bodies_);
+  constraints_.collect(constraints, constraint_count, bodies_);
+  const int substeps = substepsFor(options, time_step, bodies_, contacts_.pairs(), constraints_);
+  last_substeps = std::max(last_substeps, substeps);
+  contacts_.beginStep(info, substeps);
+  constraints_.beginStep(info, substeps);
+  colouring_.colour(bodies_, constraints_, contacts_);
+  const int helpers =
+      std::min(contacts_.points() * kLanes / kPointsForThread, tbb::this_task_arena::max_concurrency() - 1);
+  crew_.work(helpers, [&] {
+    const auto each = [&](const auto& job) {
+      crew_.forEach(contacts_.blocks(), kBlocks, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) job(i);
+      });
+    };
+    each([&](int block) { contacts_.prepare(block, bodies_); });
+    for (int i = 0; i < substeps; ++i) step(time_step / btScalar(substeps));
+    each([&](int block) { contacts_.writeBack(block); });
+  });
+  constraints_.writeBack();
+  report(bodies_.finish(time_step));
+}
+
+void SubstepSolver::Impl::report(int lost) {
+  if (reported_ || lost + bodies_.broken() + contacts_.broken() == 0) return;
+  reported_ = true;
+  log("SubstepSolver leaves out bodies or contacts whose velocities, forces or places are infinite or not "
+      "numbers: such bodies stand still, and nothing touches them. This is said once.");
+}
+
+SubstepSolver::SubstepSolver(const SubstepOptions& options) : impl_(std::make_unique<Impl>()) {
+  setOptions(options);
+}
+SubstepSolver::~SubstepSolver() = default;
+
+const SubstepOptions& SubstepSolver::options() const {
+  return impl_->options;
+}
+
+void SubstepSolver::setOptions(const SubstepOptions& options) {
+  check(options);
+  impl_->options = options;
+}
+
+int SubstepSolver::substeps() const {
+  return impl_->last_substeps;
+}
+
+void SubstepSolver::prepareSolve(int, int) {
+  impl_->beginStep();
+}
+
+btScalar SubstepSolver::solveGroup(btCollisionObject** bodies, int body_count,
+                                   btPersistentManifold** manifolds, int manifold_count,
+                                   btTypedConstraint** constraints, int constraint_count,
+                                   const btContactSolverInfo& info, btIDebugDraw*, btDispatcher*) {
+  impl_->solve(bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info);
+  return 0;
+}
+
+void SubstepSolver::allSolved(const btContactSolverInfo&, btIDebugDraw*) {
+  impl_->endStep();
+}
+
+void SubstepSolver::reset() {
+  impl_->reset();
+}
+
+btConstraintSolverType SubstepSolver::getSolverType() const {
+  return BT_SEQUENTIAL_IMPULSE_SOLVER;
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

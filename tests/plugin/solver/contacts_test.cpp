@@ -1,0 +1,229 @@
+// Contacts of Bullet's own shapes under SubstepSolver, against closed forms, at 60 steps a second.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "solver/solver_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+constexpr btScalar kHalf = btScalar(0.25);  // of a box's edge [m]
+constexpr double kStep = 1.0 / 60;
+
+btRigidBody& addCube(SolverWorld& world, btScalar mass, btScalar z) {
+  return world.addBox(btVector3(kHalf, kHalf, kHalf), mass, btVector3(0, 0, z));
+}
+
+TEST(SubstepContacts, TenBoxesStandForHalfAMinute) {
+  SolverWorld world;
+  world.addFloor();
+  for (int i = 0; i < 10; ++i) addCube(world, 125, (2 * i + 1) * kHalf);
+  world.run(30);
+  for (int i = 0; i < 10; ++i) {
+    const btVector3 from(0, 0, (2 * i + 1) * kHalf);
+    EXPECT_LT(world.bodies[i + 1]->getWorldTransform().getOrigin().distance(from), 0.003) << i;
+  }
+}
+
+TEST(SubstepContacts, HeavyBoxesRestOnLightOnes) {
+  for (const btScalar ratio : {10, 100, 1000}) {
+    SolverWorld world;
+    world.addFloor();
+    addCube(world, 1, kHalf);
+    const btRigidBody& upper = addCube(world, ratio, 3 * kHalf);
+    world.run(5);
+    EXPECT_NEAR(upper.getWorldTransform().getOrigin().z(), 3 * kHalf, 0.005 * 2 * kHalf) << ratio;
+  }
+}
+
+TEST(SubstepContacts, ABlockSlidesAsFarAsFrictionLets) {
+  for (const double angle : {0.0, 0.5, 0.8}) {  // friction in all directions is the same
+    SolverWorld world;
+    world.addFloor().setFriction(1);
+    btRigidBody& block = addCube(world, 3, kHalf);
+    constexpr double kFriction = 0.4, kSpeed = 3;
+    block.setFriction(btScalar(kFriction));
+    block.setAngularFactor(0);
+    world.run(0.5);
+    const btVector3 from = block.getWorldTransform().getOrigin();
+    block.setLinearVelocity(
+        btVector3(btScalar(kSpeed * std::cos(angle)), btScalar(kSpeed * std::sin(angle)), 0));
+    world.run(2);
+    const double way = kSpeed * kSpeed / (2 * kFriction * kGravity);
+    EXPECT_NEAR((block.getWorldTransform().getOrigin() - from).length(), way, 0.005 * way) << angle;
+    EXPECT_LT(block.getLinearVelocity().length(), 1e-5);
+  }
+}
+
+TEST(SubstepContacts, BallsCollideAsMomentumAndRestitutionSay) {
+  for (const double e : {0.0, 0.5, 1.0}) {
+    SolverWorld world;
+    world.world.setGravity(btVector3(0, 0, 0));
+    btRigidBody& left = world.addBall(btScalar(0.2), 1, btVector3(btScalar(-0.71), 0, 0));
+    btRigidBody& right = world.addBall(btScalar(0.2), 3, btVector3(btScalar(0.3), 0, 0));
+    left.setRestitution(1);
+    right.setRestitution(btScalar(e));
+    left.setLinearVelocity(btVector3(2, 0, 0));
+    world.run(1);
+    // v1 = (m1 - e m2) / (m1 + m2) v, v2 = (1 + e) m1 / (m1 + m2) v
+    EXPECT_NEAR(left.getLinearVelocity().x(), (1 - e * 3) / 4 * 2, 1e-4) << e;
+    EXPECT_NEAR(right.getLinearVelocity().x(), (1 + e) / 4 * 2, 1e-4) << e;
+  }
+}
+
+TEST(SubstepContacts, ABoxBouncesToTheSquareOfItsRestitution) {
+  SolverWorld world;
+  world.addSlab().setRestitution(1);
+  btRigidBody& box = addCube(world, 1, kHalf + 1);
+  box.setRestitution(btScalar(0.5));
+  // Bullet's boxes see each other when they touch: they are up to 4.4 m/s dt in each other then.
+  constexpr double kShort = 1.0 / 240;
+  world.run(0.5, kShort);
+  double highest = 0;
+  for (int i = 0; i < 160; ++i) {
+    world.step(btScalar(kShort));
+    highest = std::max(highest, double(box.getWorldTransform().getOrigin().z() - kHalf));
+  }
+  EXPECT_NEAR(highest, 0.25, 4.4 * kShort);
+}
+
+TEST(SubstepContacts, AGivenSpringCarriesItsLoad) {
+  SolverWorld world;
+  world.addSlab();
+  btRigidBody& box = addCube(world, 10, kHalf);
+  constexpr btScalar kStiffness = 20000;
+  box.setContactStiffnessAndDamping(kStiffness, 500);
+  world.run(4);
+  // Four corners, each with a spring.
+  const double expected = 10 * kGravity / (4 * kStiffness);
+  EXPECT_NEAR(kHalf - box.getWorldTransform().getOrigin().z(), expected, 0.02 * expected);
+}
+
+TEST(SubstepContacts, RollingFrictionStopsABall) {
+  SolverWorld world;
+  world.addFloor().setFriction(1);
+  constexpr double kRadius = 0.2, kLever = 0.01, kSpeed = 1;
+  btRigidBody& ball = world.addBall(btScalar(kRadius), 1, btVector3(0, 0, btScalar(kRadius)));
+  ball.setFriction(1);
+  ball.setRollingFriction(btScalar(kLever));
+  world.run(0.5);
+  ball.setLinearVelocity(btVector3(kSpeed, 0, 0));
+  ball.setAngularVelocity(btVector3(0, btScalar(kSpeed / kRadius), 0));
+  const double lever =
+      world.dispatcher.getManifoldByIndexInternal(0)->getContactPoint(0).m_combinedRollingFriction;
+  ASSERT_GT(lever, 0);
+  world.run(0.2);
+  // The torque lever m g brakes m r + I / r.
+  const double braking = lever * kGravity / (kRadius * (1 + 0.4));
+  EXPECT_NEAR(ball.getLinearVelocity().x(), kSpeed - 0.2 * braking, 0.05 * 0.2 * braking);
+  world.run(30);
+  EXPECT_LT(ball.getLinearVelocity().length(), 1e-3);
+}
+
+TEST(SubstepContacts, ImpulsesInPointsCarryTheWeight) {
+  SolverWorld world;
+  world.addFloor();
+  addCube(world, 7, kHalf);
+  world.run(1);
+  double sum = 0;
+  const btPersistentManifold& manifold = *world.dispatcher.getManifoldByIndexInternal(0);
+  for (int i = 0; i < manifold.getNumContacts(); ++i) sum += manifold.getContactPoint(i).m_appliedImpulse;
+  EXPECT_NEAR(sum, 7 * kGravity * kStep, 0.001 * 7 * kGravity * kStep);
+}
+
+TEST(SubstepContacts, ALiftCarriesAndABeltMoves) {
+  SolverWorld world;
+  btRigidBody& lift = world.addBox(btVector3(1, 1, btScalar(0.1)), 0, btVector3(0, 0, btScalar(-0.1)));
+  lift.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  lift.setActivationState(DISABLE_DEACTIVATION);
+  const btRigidBody& load = addCube(world, 5, kHalf);
+  for (int i = 0; i < 120; ++i) {
+    btTransform place = lift.getWorldTransform();
+    place.getOrigin() += btVector3(btScalar(0.5 * kStep), 0, btScalar(0.3 * kStep));
+    lift.setWorldTransform(place);
+    world.step();
+  }
+  const btVector3 apart = load.getWorldTransform().getOrigin() - lift.getWorldTransform().getOrigin();
+  EXPECT_NEAR(apart.z(), 0.1 + kHalf, 0.01);
+  EXPECT_NEAR(load.getLinearVelocity().x(), 0.5, 0.01);
+  EXPECT_NEAR(load.getLinearVelocity().z(), 0.3, 0.01);
+
+  SolverWorld belts;
+  btRigidBody& belt = belts.addSlab();
+  belt.setLinearVelocity(
+      btVector3(0, btScalar(0.5), 0));  // a static body that does not move, but its surface does
+  const btRigidBody& carried = addCube(belts, 5, kHalf);
+  belts.run(2);
+  EXPECT_NEAR(carried.getLinearVelocity().y(), 0.5, 0.005);
+  EXPECT_NEAR(carried.getWorldTransform().getOrigin().z(), kHalf, 0.001);
+}
+
+TEST(SubstepContacts, ForcesActOverTheWholeStep) {
+  SolverWorld world;
+  world.world.setGravity(btVector3(0, 0, 0));
+  btRigidBody& box = addCube(world, 2, 0);
+  for (int i = 0; i < 60; ++i) {
+    box.applyCentralForce(btVector3(6, 0, 0));
+    box.applyTorque(btVector3(0, 0, btScalar(0.1)));
+    world.step();
+  }
+  EXPECT_NEAR(box.getLinearVelocity().x(), 3, 1e-4);
+  EXPECT_NEAR(box.getAngularVelocity().z(), 0.1 * box.getInvInertiaDiagLocal().z(), 1e-4);
+}
+
+TEST(SubstepContacts, FactorsAndDampingHold) {
+  SolverWorld world;
+  world.addFloor();
+  btRigidBody& box = addCube(world, 2, kHalf);
+  box.setLinearFactor(btVector3(1, 0, 1));
+  box.setAngularFactor(btVector3(0, 0, 0));
+  box.setLinearVelocity(btVector3(0, 1, 0));
+  btRigidBody& other = world.addBall(btScalar(0.2), 1, btVector3(0, btScalar(-2), btScalar(0.2)));
+  other.setLinearVelocity(btVector3(0, 5, 0));
+  const btScalar y = box.getWorldTransform().getOrigin().y();
+  box.setLinearVelocity(btVector3(0, 0, 0));
+  world.run(2);
+  EXPECT_EQ(box.getWorldTransform().getOrigin().y(), y);
+  SolverWorld damped;
+  damped.world.setGravity(btVector3(0, 0, 0));
+  btRigidBody& slow = addCube(damped, 2, 0);
+  slow.setDamping(btScalar(0.5), 0);
+  slow.setLinearVelocity(btVector3(1, 0, 0));
+  damped.run(2);
+  EXPECT_NEAR(slow.getLinearVelocity().x(), 0.25, 0.001);  // half a second
+}
+
+TEST(SubstepContacts, BodiesAtRestFallAsleepAndWake) {
+  SolverWorld world;
+  world.addFloor();
+  btRigidBody& box = addCube(world, 2, kHalf);
+  box.forceActivationState(ACTIVE_TAG);
+  world.run(5);
+  EXPECT_EQ(box.getActivationState(), ISLAND_SLEEPING);
+  EXPECT_EQ(world.solver.substeps(), 0);
+  box.activate(true);
+  box.applyCentralImpulse(btVector3(4, 0, 0));
+  world.run(1);
+  EXPECT_GT(box.getWorldTransform().getOrigin().x(), 0.1);
+}
+
+TEST(SubstepContacts, ABodyThatTumblesKeepsItsMomentumAndEnergy) {
+  SolverWorld world;
+  world.world.setGravity(btVector3(0, 0, 0));
+  btRigidBody& plate = world.addBox(btVector3(0.5f, 0.3f, 0.1f), 1, btVector3(0, 0, 0));
+  plate.setAngularVelocity(btVector3(btScalar(0.1), 5, btScalar(0.1)));
+  const auto momentum = [&] {
+    const btMatrix3x3& axes = plate.getWorldTransform().getBasis();
+    const btVector3 spin = plate.getAngularVelocity() * axes, inverse = plate.getInvInertiaDiagLocal();
+    return axes * btVector3(spin.x() / inverse.x(), spin.y() / inverse.y(), spin.z() / inverse.z());
+  };
+  const btVector3 before = momentum();
+  const double energy = world.energy();
+  world.run(20);
+  EXPECT_LT((momentum() - before).length(), 1e-3 * before.length());
+  EXPECT_NEAR(world.energy(), energy, 0.01 * energy);
+}
+
+}  // namespace
+}  // namespace innersphere::test
