@@ -18,6 +18,7 @@ from ._core import (
     cuda_available,
     overlap_dtype,
     pair_dtype,
+    solid,
     sphere_contact_dtype,
 )
 from ._distances import surface_of
@@ -71,6 +72,7 @@ __all__ = [
     "pair_dtype",
     "random_poses",
     "read",
+    "solid",
     "sphere_contact_dtype",
     "surface_of",
     "sweep",
