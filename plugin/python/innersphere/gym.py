@@ -111,4 +111,4 @@ class NutOnBolt(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             p.disconnect(self._client)
 
 
-gymnasium.register("innersphere/NutOnBolt-v0", entry_point=NutOnBolt, max_episode_steps=200)
+gymnasium.register("innersphere/NutOnBolt-v0", entry_point="innersphere.gym:NutOnBolt", max_episode_steps=200)
