@@ -53,7 +53,7 @@ need_packages() {
 
 # shellcheck disable=SC2034  # by those who source this
 build_packages="g++ cmake ninja-build pkg-config libbullet-dev libtbb-dev libeigen3-dev libassimp-dev libembree-dev \
-libcli11-dev nlohmann-json3-dev libpng-dev libjs-three"
+libcli11-dev nlohmann-json3-dev libpng-dev zlib1g-dev libjs-three"
 
 # shellcheck disable=SC2034
 python_packages="python3-dev python3-venv"

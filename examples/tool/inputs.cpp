@@ -128,7 +128,10 @@ Packing loadOrPack(const std::string& source, std::size_t spheres) {
 }
 
 std::string stemOf(const std::string& source) {
-  return source == "-" ? "stdin" : std::filesystem::path(source).stem().string();
+  if (source == "-") return "stdin";
+  std::filesystem::path stem = std::filesystem::path(source).stem();
+  if (endingOf(source) == ".gz") stem = stem.stem();
+  return stem.string();
 }
 
 }  // namespace innersphere::tool

@@ -1,6 +1,5 @@
 #include "outputs.hpp"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,6 +11,7 @@
 #include "file_names.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/packing_file.hpp"
+#include "innersphere/replace_file.hpp"
 #include "temporary_file.hpp"
 
 namespace innersphere::tool {
@@ -36,16 +36,6 @@ void copyTo(const std::string& path, const std::string& from) {
   const int code = errno;
   if (file != stdout) std::fclose(file);
   if (!good) fail(isStdout(path) ? "to stdout" : path, std::strerror(code));
-}
-
-// The file that a symbolic link leads to, there or not; the path itself if it is none.
-fs::path linkTarget(fs::path path) {
-  constexpr int kMostLinks = 40;  // as many as Linux follows
-  std::error_code ignored;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, ignored)); ++i) {
-    path = path.parent_path() / fs::read_symlink(path, ignored);
-  }
-  return path;
 }
 
 }  // namespace
@@ -74,21 +64,7 @@ void writeOutput(const std::string& path, bool force, const std::function<void(c
     write(file.path());
     return copyTo(path, file.path());
   }
-  const std::string target = linkTarget(path).string();
-  const std::string temporary = target + "." + std::to_string(getpid()) + ".tmp";
-  std::error_code failure;
-  try {
-    write(temporary);
-    struct stat old {};
-    if (stat(target.c_str(), &old) == 0 && chmod(temporary.c_str(), old.st_mode & 07777) != 0) {
-      fail(path, std::strerror(errno));
-    }
-    fs::rename(temporary, target, failure);
-    if (failure) fail(path, failure.message());
-  } catch (...) {
-    fs::remove(temporary, failure);
-    throw;
-  }
+  replaceFile(path, force, write);
 }
 
 void writeTextOutput(const std::string& path, bool force, const std::string& text) {

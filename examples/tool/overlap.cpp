@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -38,6 +39,7 @@ struct Arguments {
   std::size_t spheres = 0;
   QueryOptions query;
   QueryContextOptions context;
+  std::string device;
   Force force_law = Force::by_estimator;
   Shard shard;
   bool force = false;
@@ -146,8 +148,21 @@ std::string jobOf(const PairQuery& query, const QueryOptions& options, const std
   return text;
 }
 
+int deviceOf(const std::string& name) {
+  if (name.empty()) return kCurrentDevice;
+  if (name == "all") return kAllDevices;
+  int number = -1;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error != std::errc() || end != name.data() + name.size() || number < 0) {
+    throw Error(ErrorCode::bad_argument,
+                "--device is the number of a CUDA device, from 0 on, or all; not " + name);
+  }
+  return number;
+}
+
 void run(Arguments& arguments) {
   checkOutput(arguments.output, arguments.force);
+  arguments.context.device = deviceOf(arguments.device);
   std::vector<NamedPose> poses = readPoses(arguments.poses);
   QueryContext context(arguments.context);
   const auto a = modelOf(arguments.a, arguments.spheres);
@@ -219,6 +234,8 @@ Command overlapCommand() {
   command.count("--spheres", arguments->spheres, kNotNegative, "Use the largest ones only; 0: all");
   addEstimatorOption(command, arguments->query.estimator);
   addBackendOption(command, arguments->context.backend);
+  command.text("--device", arguments->device, "Number of the CUDA device; all: they share the poses")
+      .withSuggestions({"all"});
   addShardOption(command, arguments->shard);
   command.choice<Force>(
       "--force-law", arguments->force_law,

@@ -1,7 +1,10 @@
+#include <filesystem>
 #include <memory>
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "file_names.hpp"
+#include "innersphere/error.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
 #include "inputs.hpp"
@@ -16,20 +19,53 @@ struct Arguments {
   SolidArguments solid;
   PackOptions pack;
   PackingOutput output;
+  bool split = false;
   bool json = false;
 };
+
+void packInto(const PackingOutput& output, bool say_where, const Solid& solid, const Arguments& arguments) {
+  checkPackingOutput(output);
+  const Packing packing = pack(solid, arguments.pack, progressBar());
+  clearProgressBar();
+  writePackingOutput(packing, output);
+  if (say_where) say("wrote " + output.path);
+  describe(packing).print(arguments.json, isStdout(output.path) ? stderr : stdout);
+}
+
+// "chess.cbor" becomes "chess-3.cbor".
+std::string numbered(const std::string& path, std::size_t number) {
+  std::filesystem::path name(path);
+  name.replace_filename(name.stem().string() + "-" + std::to_string(number) + name.extension().string());
+  return name.string();
+}
+
+// One packing each.
+void packBodies(const Solid& solid, const Arguments& arguments) {
+  const std::vector<Mesh> bodies = splitBodies(solid.surface());
+  std::vector<PackingOutput> outputs(bodies.size(), arguments.output);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    outputs[i].path = numbered(arguments.output.path, i + 1);
+    checkPackingOutput(outputs[i]);
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::string name =
+        arguments.solid.source + ", body " + std::to_string(i + 1) + " of " + std::to_string(bodies.size());
+    packInto(outputs[i], true, *makeSolid(bodies[i], name, arguments.solid.mesh), arguments);
+  }
+}
 
 void run(Arguments& arguments) {
   PackingOutput& output = arguments.output;
   const bool named = !output.path.empty();
   if (!named) output.path = stemOf(arguments.solid.source) + ".cbor";
-  checkPackingOutput(output);
+  if (arguments.split && isStream(output.path)) {
+    throw Error(ErrorCode::bad_argument,
+                "--split writes a file for each body; give -o a name, not " + output.path);
+  }
+  if (!arguments.split) checkPackingOutput(output);
   const auto solid = loadSolid(arguments.solid);
-  const Packing packing = pack(*solid, arguments.pack, progressBar());
-  clearProgressBar();
-  writePackingOutput(packing, output);
-  if (!named) say("wrote " + output.path);
-  describe(packing).print(arguments.json, isStdout(output.path) ? stderr : stdout);
+  if (arguments.split) return packBodies(*solid, arguments);
+  packInto(output, !named, *solid, arguments);
 }
 
 }  // namespace
@@ -58,6 +94,8 @@ Command packCommand() {
   command.count("--threads", options.threads, kNotNegative, "0: all cores; the result does not depend on it");
   addScaleOption(command, arguments->solid.mesh);
   addRepairOption(command, arguments->solid.mesh);
+  command.flag("--split", arguments->split,
+               "Pack each body of the file for itself: NAME-1.cbor, NAME-2.cbor, ...");
   addPackingOutputOptions(command, arguments->output);
   command.flag("--json", arguments->json, "Print the summary as JSON");
   command.notes = "The first limit that is reached ends the packing.";

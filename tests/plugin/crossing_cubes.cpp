@@ -1,5 +1,7 @@
 #include "crossing_cubes.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,6 +11,7 @@
 #include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
 #include "test_packings.hpp"
+#include "test_world.hpp"
 
 namespace innersphere::test {
 
@@ -96,6 +99,79 @@ std::string describe(const Crossing& c) {
   text << c.depth << " deep at " << c.angle << " rad, leaning " << c.lean_upper << " and " << c.lean_lower
        << " rad, " << c.along_upper << " and " << c.along_lower << " from the middle";
   return text.str();
+}
+
+ContactOptions rigidContacts() {
+  ContactOptions options;
+  options.response = Response::rigid;
+  return options;
+}
+
+int expectLeastPushes(const std::shared_ptr<btCollisionShape>& upper,
+                      const std::shared_ptr<btCollisionShape>& lower, double deepest) {
+  const btTransform turn(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(0.7)));
+  int count = 0;
+  for (const Crossing& crossing : crossings()) {
+    Cubes cubes = place(crossing);
+    cubes = {turn * cubes.upper, turn * cubes.lower};
+    const Escape escape = leastEscape(cubes);
+    if (!escape.between_edges || escape.next < 1.2 * escape.depth || crossing.depth > deepest) continue;
+    SCOPED_TRACE(describe(crossing));
+    ++count;
+    TestWorld world(rigidContacts());
+    world.add(lower, 0, cubes.lower.getOrigin(), cubes.lower.getRotation());
+    world.add(upper, 1, cubes.upper.getOrigin(), cubes.upper.getRotation());
+    world.world.performDiscreteCollisionDetection();
+    const auto points = world.contactsOfLast();
+    EXPECT_GE(points.size(), 1u);
+    if (points.empty()) continue;
+    EXPECT_NEAR(-points[0].getDistance(), escape.depth, 1e-4);
+    const btVector3& normal = points[0].m_normalWorldOnB;
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(normal[i], escape.direction[i], 1e-3);
+    // What else touches pushes the same way, or not at all.
+    for (const btManifoldPoint& point : points) {
+      EXPECT_TRUE(point.getDistance() > 0 || point.m_normalWorldOnB.dot(normal) > btScalar(0.95));
+    }
+  }
+  return count;
+}
+
+void expectDepthsOfTwiceTheSize(const std::shared_ptr<btCollisionShape>& upper,
+                                const std::shared_ptr<btCollisionShape>& lower, double margins) {
+  constexpr btScalar kScale = 2;
+  for (const auto& shape : {upper, lower}) shape->setLocalScaling(btVector3(kScale, kScale, kScale));
+  for (const double depth : {-0.005, 0.02, 0.1}) {
+    const Cubes cubes = place({depth, 1.3, 0.1, -0.2, 0.1, 0.05});
+    TestWorld world(rigidContacts());
+    world.add(lower, 0, cubes.lower.getOrigin() * kScale, cubes.lower.getRotation());
+    world.add(upper, 1, cubes.upper.getOrigin() * kScale, cubes.upper.getRotation());
+    world.world.performDiscreteCollisionDetection();
+    const auto points = world.contactsOfLast();
+    ASSERT_GE(points.size(), 1u) << depth;
+    EXPECT_NEAR(-points[0].getDistance(), depth * kScale + margins, 1e-4);
+    EXPECT_GT(points[0].m_normalWorldOnB.z(), 0.9999) << depth;
+  }
+}
+
+void expectGuidedCubeIsCarried(const std::shared_ptr<btCollisionShape>& upper,
+                               const std::shared_ptr<btCollisionShape>& lower) {
+  for (const double lean : {0.0, 0.2}) {
+    const Cubes cubes = place({-0.05, 1.3, lean, -lean, 0.1, 0.05});
+    TestWorld world;
+    world.add(lower, 0, cubes.lower.getOrigin(), cubes.lower.getRotation());
+    btRigidBody& cube = world.add(upper, 1, cubes.upper.getOrigin(), cubes.upper.getRotation());
+    cube.setLinearFactor(btVector3(0, 0, 1));
+    cube.setAngularFactor(0);
+    const auto depth = [&] { return leastEscape(Cubes{cube.getWorldTransform(), cubes.lower}).depth; };
+    double deepest = 0;
+    for (int i = 0; i < 480; ++i) {
+      world.run(1.0 / 240, 1.0 / 240);
+      deepest = std::max(deepest, depth());
+    }
+    EXPECT_LT(deepest, 0.01);
+    EXPECT_NEAR(depth(), 0, 0.002);
+    EXPECT_NEAR(cube.getLinearVelocity().z(), 0, 1e-3);
+  }
 }
 
 }  // namespace innersphere::test

@@ -8,6 +8,7 @@
 
 #include <LinearMath/btTransform.h>
 
+#include "innersphere/contact_options.hpp"
 #include "innersphere/packing_shape.hpp"
 
 namespace innersphere::test {
@@ -43,5 +44,21 @@ Escape leastEscape(const Cubes& cubes);
 /// Angles, depths to a quarter of the size, and places along the edges.
 std::vector<Crossing> crossings();
 std::string describe(const Crossing& crossing);
+
+/// Expects that cubes of these shapes push each other along the least way out, as deep as that is, for all
+/// crossings() in which it lies between edges and is the least by far. Returns how many were tried.
+int expectLeastPushes(const std::shared_ptr<btCollisionShape>& upper,
+                      const std::shared_ptr<btCollisionShape>& lower, double deepest);
+
+/// Expects that cubes of twice the size, whose margins add up to this [m], are as deep in each other.
+void expectDepthsOfTwiceTheSize(const std::shared_ptr<btCollisionShape>& upper,
+                                const std::shared_ptr<btCollisionShape>& lower, double margins);
+
+/// Expects that an edge carries a cube that is guided downwards, without sinking in.
+void expectGuidedCubeIsCarried(const std::shared_ptr<btCollisionShape>& upper,
+                               const std::shared_ptr<btCollisionShape>& lower);
+
+/// Options of contacts that have their true depths.
+ContactOptions rigidContacts();
 
 }  // namespace innersphere::test

@@ -243,6 +243,42 @@ def test_bad_backends():
     if not innersphere.cuda_available():
         with pytest.raises(innersphere.NoDeviceError):
             Query("cuda")
+    with pytest.raises(innersphere.NoDeviceError):
+        Query("cuda", device=innersphere.cuda_device_count())
+    for device in (-1, "both"):
+        with pytest.raises(ValueError, match="device"):
+            Query(device=device)
+
+
+def test_arrays_in_a_row_are_read_in_place_to_the_same_bits(box):
+    """One array in C's order takes another way than a list of single queries, and than any other array."""
+    rng = np.random.default_rng(5)
+    positions = rng.uniform(-1.2, 1.2, (2, 40, 3))
+    quaternions = rng.normal(size=(2, 40, 4))
+    quaternions /= np.linalg.norm(quaternions, axis=-1, keepdims=True)
+    matrices = np.tile(np.eye(4), (2, 40, 1, 1))
+    x, y, z, w = np.moveaxis(quaternions, -1, 0)
+    matrices[..., :3, :3] = np.moveaxis(
+        np.array(
+            [
+                [w * w + x * x - y * y - z * z, 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                [2 * (x * y + z * w), w * w - x * x + y * y - z * z, 2 * (y * z - x * w)],
+                [2 * (x * z - y * w), 2 * (y * z + x * w), w * w - x * x - y * y + z * z],
+            ]
+        ),
+        (0, 1),
+        (-2, -1),
+    )
+    matrices[..., :3, 3] = positions
+    place_a = np.eye(4)
+    place_a[:3, 3] = 0.1, 0.2, -0.1
+    query = Query()
+    in_row = query.overlap(box, box, place_a, matrices)
+    assert in_row.shape == (2, 40) and (in_row["pair_count"] > 0).any() and (in_row["pair_count"] == 0).any()
+    assert query.overlap(box, box, place_a, (positions, quaternions)).tobytes() == in_row.tobytes()
+    assert query.overlap(box, box, place_a, np.asfortranarray(matrices)).tobytes() == in_row.tobytes()
+    for at in np.ndindex(2, 40):
+        assert query.overlap(box, box, place_a, matrices[at]).tobytes() == in_row[at].tobytes()
 
 
 def test_not_packings(ball):

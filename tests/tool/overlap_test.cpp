@@ -215,6 +215,15 @@ TEST_F(Overlap, FewerSpheresAreThePrefix) {
   EXPECT_EQ(readFile(path("more.csv")), readFile(path("all.csv")));
 }
 
+TEST_F(Overlap, DevicesAreNamed) {
+  succeed("pack box --spheres 64 -o box.cbor");
+  writeFile(path("poses.csv"), kHeader + "0,1,0,0,0.3,0,1,0,0.1,0,0,1,0\n");
+  const std::string command = "overlap box.cbor box.cbor --poses poses.csv -o out.csv --force --device ";
+  for (const char* device : {"-1", "first", "1x"}) refuse(command + device, 2, {"--device", device});
+  succeed(command + "all --backend cpu");  // a device that nobody asks need not be there
+  EXPECT_NE(run(command + "99 --backend cuda").exit_code, 0);
+}
+
 // The shards of a table of 700 rows (more than one batch), for some splits; more shards than rows, too.
 TEST_F(Overlap, ShardsMergeToTheSameBytes) {
   succeed("pack torus --spheres 100 -o torus.cbor");

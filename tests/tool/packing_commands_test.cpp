@@ -40,6 +40,36 @@ TEST_F(PackingCommands, PacksAMeshFileAtAScale) {
   EXPECT_EQ(outcome.exit_code, 1);
 }
 
+TEST_F(PackingCommands, PacksTheBodiesOfAFileForThemselves) {
+  std::string two = kTetrahedron;
+  two += "v 5 0 0\nv 7 0 0\nv 5 2 0\nv 5 0 2\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
+  writeFile(path("two.obj"), two);
+  const Outcome outcome = run("pack two.obj --split --spheres 20");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(files(), (std::set<std::string>{"two.obj", "two-1.cbor", "two-2.cbor"}));
+  EXPECT_NEAR(json("info two-1.cbor")["volume"].get<double>(), 1.0 / 6, 1e-9);
+  EXPECT_NEAR(json("info two-2.cbor")["volume"].get<double>(), 8.0 / 6, 1e-9);
+  refuse("pack two.obj --split -o -", 2, {"--split"});
+  refuse("pack two.obj --split", 5, {"two-1.cbor", "exists"});
+}
+
+TEST_F(PackingCommands, ReadsCompressedMeshes) {
+  writeFile(path("tetra.obj"), kTetrahedron);
+  ASSERT_EQ(shell("gzip tetra.obj").exit_code, 0);
+  EXPECT_EQ(run("pack tetra.obj.gz --spheres 20").exit_code, 0);
+  EXPECT_EQ(json("check tetra.cbor --mesh tetra.obj.gz")["valid"], true);
+  ASSERT_EQ(shell("head -c 60 tetra.obj.gz > cut.obj.gz; gzip -c tetra.cbor > thing.gltf.gz").exit_code, 0);
+  refuse("pack cut.obj.gz --force", 3, {"cut.obj.gz", "cut"});
+  refuse("pack thing.gltf.gz --force", 3, {"thing.gltf.gz", "unpack"});
+}
+
+TEST_F(PackingCommands, SaysAtOnceThatASheetIsTooThin) {
+  writeFile(path("sheet.obj"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1e-6\nv 1 0 1e-6\nv 0 1 1e-6\nv 1 1 1e-6\n"
+            "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 2 4 8 6\nf 4 3 7 8\nf 3 1 5 7\n");
+  refuse("pack sheet.obj -o sheet.cbor", 3, {"it is a sheet", "thickness"});
+}
+
 TEST_F(PackingCommands, ReportsForPeopleGoToStandardOutput) {
   const Outcome outcome = succeed("pack box --spheres 10 -o box.json");
   EXPECT_NE(outcome.out.find("density"), std::string::npos);

@@ -9,6 +9,7 @@
 #include "innersphere/collision_model.hpp"
 #include "innersphere/overlap.hpp"
 #include "innersphere/placement.hpp"
+#include "innersphere/poses.hpp"
 
 namespace innersphere {
 
@@ -71,12 +72,21 @@ struct QueryResult {
   Ranges<SphereContact> contacts_b;  ///< Spheres of B that touch, with Want::contacts.
 };
 
+inline constexpr int kCurrentDevice = -1;  ///< The CUDA device that is current in the calling thread.
+inline constexpr int kAllDevices = -2;     ///< All CUDA devices of the machine.
+
 /// Says how queries run.
 struct QueryContextOptions {
   Backend backend = Backend::automatic;  ///< Where queries run.
   int threads = 0;  ///< The threads of the CPU backend. 0: all cores. The result does not depend on it.
   bool time_kernels = false;  ///< Whether kernelTime() is measured, which takes some microseconds a run.
+  /// The CUDA device: a number from 0 on, kCurrentDevice, or kAllDevices, which share a batch or a sweep.
+  /// Results do not depend on it. Each device keeps copies of the models that it has worked on.
+  int device = kCurrentDevice;
 };
+
+/// Returns the number of CUDA devices that answer; 0 if CUDA is not compiled in. Creates no CUDA context.
+int cudaDeviceCount();
 
 /// Returns true if CUDA is compiled in and a device answers. Creates no CUDA context.
 bool cudaAvailable();
@@ -86,8 +96,8 @@ bool cudaAvailable();
 /// threads and any place in a batch. Without a margin, swapping A and B negates force and area exactly.
 class QueryContext {
  public:
-  /// Makes a context. Throws Error: no_device if CUDA was asked for by name and there is none, bad_argument
-  /// for a negative number of threads.
+  /// Makes a context. Throws Error: no_device if CUDA was asked for by name and there is none, or none of
+  /// that number; bad_argument for a negative number of threads, or one that names no device.
   explicit QueryContext(const QueryContextOptions& options = {});
   ~QueryContext();
   /// Takes what the other context holds, which can then only be destroyed or assigned to.
@@ -102,6 +112,15 @@ class QueryContext {
 
   /// Collides one pair and returns its sums. Contacts and pairs are left out, even if they are wanted.
   Overlap overlap(const PairQuery& query, const QueryOptions& options = {});
+
+  /// Collides one pair with B in many poses: for each of `poses` what overlap() gives with these as rotation
+  /// and translation of placement_b, to the bit. Scales, margin, prefixes and placement_a are those of
+  /// `pair`. `overlaps` has room for poses.count of them. On a device the poses are prepared there, so that a
+  /// sweep costs the host nothing for each pose; both arrays may then be in the memory of a device, or
+  /// pinned, and are used in place. Memory of the context stays bounded, however many poses there are.
+  /// Contacts and pairs are left out, even if they are wanted. Throws as run() does; the message names the
+  /// first pose that is none. Then some overlaps are written, others not.
+  void sweep(const PairQuery& pair, const Poses& poses, const QueryOptions& options, Overlap* overlaps);
 
   /// Starts run(), whose second half is wait(), so that the caller can do other things while a device works.
   /// It copies what it needs of the queries and returns; wait() gives what run() would, to the bit. On the

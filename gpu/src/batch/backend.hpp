@@ -2,14 +2,40 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <vector>
+#include <limits>
+#include <span>
 
 #include "batch/prepare.hpp"
+#include "core/poses.hpp"
 #include "core/sums.hpp"
 #include "innersphere/query.hpp"
 
 namespace innersphere {
+
+/// Says what is computed for two bodies of which one is brought to many poses.
+struct Sweep {
+  core::SweptPair pair;
+  const ModelGrid* grid_a;
+  const ModelGrid* grid_b;
+  Poses poses;
+  Want want;
+
+  /// Returns how many clusters of both bodies may have to be traversed at a pose.
+  std::size_t clusters() const { return std::size_t{pair.a.grid.cluster_count} + pair.b.grid.cluster_count; }
+};
+
+/// Says which pose of a sweep is none, and why. Of two, the one with the lesser number counts.
+struct SweepFault {
+  std::size_t number = std::numeric_limits<std::size_t>::max();
+  core::Fault fault = core::Fault::none;
+
+  void take(const SweepFault& other) {
+    if (other.fault != core::Fault::none && other.number < number) *this = other;
+  }
+  void throwIfAny() const {
+    if (fault != core::Fault::none) failFor(fault, number, "B");
+  }
+};
 
 /// Runs one batch after the other.
 class QueryBackend {
@@ -17,13 +43,17 @@ class QueryBackend {
   virtual ~QueryBackend() = default;
 
   /// Begins a batch. `queries` must live until finish().
-  virtual void start(const std::vector<PreparedQuery>& queries, Want want) = 0;
+  virtual void start(std::span<const PreparedQuery> queries, Want want) = 0;
 
   /// Returns true if finish() need not wait. Throws what finish() would.
   virtual bool ready() = 0;
 
   /// Waits for the batch. Leaves `result` as it was where it throws; the next batch may begin in either case.
   virtual void finish(QueryResult& result) = 0;
+
+  /// Writes the overlap at each pose. Throws Error for the first pose that is none, by number, and then
+  /// leaves some overlaps written and others not.
+  virtual void sweep(const Sweep& sweep, Overlap* overlaps) = 0;
 
   /// Returns the time that a device worked on the last batch [s]; 0 if it is not measured.
   virtual double kernelTime() const { return 0; }

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
-#include "core/setup.hpp"
+#include "core/pair_setup.hpp"
 #include "grid/model_grid.hpp"
 #include "innersphere/query.hpp"
 
@@ -15,7 +16,7 @@ struct PreparedQuery {
   const ModelGrid* grid_a;
   const ModelGrid* grid_b;
 
-  std::size_t clusters() const { return std::size_t{setup.a.clusters} + setup.b.clusters; }
+  std::size_t clusters() const { return std::size_t{setup.clusters[0]} + setup.clusters[1]; }
 };
 
 /// Remembers the last grids. The grids of neighbouring queries are often the same and are then found without
@@ -37,6 +38,9 @@ class KnownGrids {
 /// says; `index` is the query's place in its batch, for messages. Bodies whose bounding balls or boxes are
 /// apart get no clusters to traverse. Builds no grids. All calls with the same `grids` have one estimator.
 PreparedQuery prepare(const PairQuery& query, std::size_t index, Estimator estimator, KnownGrids& grids);
+
+/// Throws what prepare() throws for such a fault of the body `name` in query `index`.
+[[noreturn]] void failFor(core::Fault fault, std::size_t index, const std::string& name);
 
 /// Builds the grids of a query on the CPU if this is their first use there.
 void bringToCpu(PreparedQuery& query);

@@ -19,12 +19,6 @@ struct Frame {
   Vec3d offset;               ///< From the origin of A to that of B, in axes of the world [m].
 };
 
-/// Describes a body as a query sees it.
-struct Body {
-  GridView grid;
-  std::uint32_t clusters;  ///< The clusters that traverse the other's grid: 0 if the bodies are apart.
-};
-
 /// Says how spheres of one body are looked up in the other's grid, in that grid's lengths. The transform is
 /// in double, so that a position is rounded to single precision only once it is relative to the centre of the
 /// grid; the lookup then makes everything larger by `tolerance`, which is more than that rounding. It only
@@ -43,12 +37,17 @@ struct Units {
   Unit volume, moment, torque, area, energy;
 };
 
-/// Holds all that the traversal of one query reads.
-struct Setup {
-  Body a, b;
+/// Holds all that a query has beside its grids.
+struct PairSetup {
   Frame frame;
-  Search a_in_b, b_in_a;
+  Search searches[2];  ///< Of A's spheres in B's grid, and of B's in A's.
   Units units;
+  std::uint32_t clusters[2];  ///< Those of each body that traverse the other's grid: 0 if they are apart.
+};
+
+/// Holds all that the traversal of one query reads.
+struct Setup : PairSetup {
+  GridView a, b;
 };
 
 }  // namespace innersphere::core

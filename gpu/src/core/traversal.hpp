@@ -30,7 +30,7 @@ INNERSPHERE_HD inline Probe makeProbe(const Search& search, const Sphere& s) {
 
 /// Returns true if a cluster of a setup, of all of A's and then all of B's, is one of A's.
 INNERSPHERE_HD inline bool isFromA(const Setup& setup, std::uint32_t cluster) {
-  return cluster < setup.a.clusters;
+  return cluster < setup.clusters[0];
 }
 
 /// Describes one direction of a query: the spheres of a body in the grid of the other.
@@ -41,8 +41,8 @@ struct Traversal {
 };
 
 INNERSPHERE_HD inline Traversal traversalOf(const Setup& setup, bool from_a) {
-  if (from_a) return {setup.a.grid, setup.b.grid, setup.a_in_b};
-  return {setup.b.grid, setup.a.grid, setup.b_in_a};
+  if (from_a) return {setup.a, setup.b, setup.searches[0]};
+  return {setup.b, setup.a, setup.searches[1]};
 }
 
 /// Returns a ball around spheres of the searching body, larger by all margins and tolerances. It may be much

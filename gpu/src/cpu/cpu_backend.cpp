@@ -20,8 +20,8 @@ constexpr std::size_t kKeptPairs = std::size_t{1} << 14;
 
 }  // namespace
 
-void CpuBackend::start(const std::vector<PreparedQuery>& queries, Want want) {
-  queries_ = &queries;
+void CpuBackend::start(std::span<const PreparedQuery> queries, Want want) {
+  queries_ = queries;
   want_ = want;
   first_.resize(queries.size() + 1);
   first_[0] = 0;
@@ -48,28 +48,57 @@ void CpuBackend::finish(QueryResult& result) {
     result.contacts_a = lists_.contacts_a;
     result.contacts_b = lists_.contacts_b;
   } else {
-    PairSorter::clear(queries_->size(), result);
+    PairSorter::clear(queries_.size(), result);
     if (wantsPairs(want_))
-      sorter_.append(*queries_, sums_, 0, queries_->size(), found_pairs_, want_, workers_, result);
+      sorter_.append(queries_, sums_, 0, queries_.size(), found_pairs_, want_, workers_, result);
   }
   releaseUnused();
-  result.overlaps.resize(queries_->size());
-  workers_.forRanges(queries_->size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  result.overlaps.resize(queries_.size());
+  workers_.forRanges(queries_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      result.overlaps[i] = toOverlap(toTotals(sums_[i], (*queries_)[i].setup.units));
+      result.overlaps[i] = toOverlap(toTotals(sums_[i], queries_[i].setup.units));
   });
+}
+
+void CpuBackend::sweep(const Sweep& sweep, Overlap* overlaps) {
+  constexpr std::size_t kAtOnce = 4096, kGrain = 64;  // poses
+  const core::GridView* views[2] = {&sweep.grid_a->onCpu().view(), &sweep.grid_b->onCpu().view()};
+  std::vector<PreparedQuery> prepared;
+  std::vector<core::Fault> faults;
+  QueryResult result;
+  for (std::size_t first = 0; first < sweep.poses.count; first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, sweep.poses.count - first);
+    prepared.resize(count);
+    faults.resize(count);
+    workers_.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        PreparedQuery& query = prepared[i];
+        query.grid_a = sweep.grid_a;
+        query.grid_b = sweep.grid_b;
+        query.setup.a = *views[0];
+        query.setup.b = *views[1];
+        faults[i] = core::prepareAt(sweep.pair, sweep.poses, first + i, query.setup);
+      }
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      if (faults[i] != core::Fault::none) failFor(faults[i], first + i, "B");
+    }
+    start(prepared, sweep.want);
+    finish(result);
+    std::copy(result.overlaps.begin(), result.overlaps.end(), overlaps + first);
+  }
 }
 
 std::size_t CpuBackend::traversePart(std::size_t begin) {
   const bool with_values = wantsContacts(want_);
-  std::size_t end = queries_->size();
+  std::size_t end = queries_.size();
   const double densest = std::max(densest_, densest_so_far_);
   if (densest * static_cast<double>(clustersOf(begin, end)) > kPartPairs) {
     const auto most = static_cast<std::size_t>(kPartPairs / densest);
     end = static_cast<std::size_t>(std::upper_bound(first_.begin() + static_cast<std::ptrdiff_t>(begin),
                                                     first_.end(), first_[begin] + most) -
                                    first_.begin() - 1);
-    end = std::clamp(end, begin + 1, queries_->size());
+    end = std::clamp(end, begin + 1, queries_.size());
   }
   while (true) {
     traverse(begin, end);
@@ -173,7 +202,7 @@ class CpuBackend::Summer : public CandidateSink {
     const auto& bs = from_a_ ? candidates.partner : candidates.query_sphere;
     OverlappingPair* found = found_pairs_.items.data() + at;
     for (std::size_t k = 0; k < candidates.count; ++k) {
-      if (tally_.found[k]) *found++ = {index_, setup_.a.grid.ids[as[k]], setup_.b.grid.ids[bs[k]]};
+      if (tally_.found[k]) *found++ = {index_, setup_.a.ids[as[k]], setup_.b.ids[bs[k]]};
     }
     if (with_values) cpuKernels().writeValues(tally_, candidates.count, found_pairs_.values.data() + at);
   }
@@ -200,8 +229,7 @@ class CpuBackend::Toucher : public CandidateSink {
     const auto& as = from_a_ ? candidates.query_sphere : candidates.partner;
     const auto& bs = from_a_ ? candidates.partner : candidates.query_sphere;
     for (std::size_t k = 0; k < candidates.count; ++k) {
-      const core::Pair pair =
-          core::makePair(setup_.frame, setup_.a.grid.spheres[as[k]], setup_.b.grid.spheres[bs[k]]);
+      const core::Pair pair = core::makePair(setup_.frame, setup_.a.spheres[as[k]], setup_.b.spheres[bs[k]]);
       if (core::isReported(pair, from_a_)) touched_.store(1, std::memory_order_relaxed);
     }
     candidates.count = 0;
@@ -241,8 +269,8 @@ void traverseClusters(const PreparedQuery& query, std::size_t begin, std::size_t
     const auto meeting = [&](const Sphere* balls, std::uint32_t n) {
       return kernels.ballsMeeting(traversal, grid.occupancy(), balls, n);
     };
-    const std::size_t before = from_a ? 0 : setup.a.clusters;
-    const std::size_t all = from_a ? setup.a.clusters : setup.b.clusters;
+    const std::size_t before = from_a ? 0 : setup.clusters[0];
+    const std::size_t all = from_a ? setup.clusters[0] : setup.clusters[1];
     const std::size_t first = std::clamp(begin, before, before + all) - before;
     const std::size_t last = std::clamp(end, before, before + all) - before;
     const ClusterTree& tree = (from_a ? query.grid_a : query.grid_b)->onCpu().clusterTree();
@@ -257,7 +285,7 @@ void traverseClusters(const PreparedQuery& query, std::size_t begin, std::size_t
 }  // namespace
 
 void CpuBackend::traverseQuery(std::uint32_t index, std::size_t begin, std::size_t end) {
-  const PreparedQuery& query = (*queries_)[index];
+  const PreparedQuery& query = queries_[index];
   core::Sums& total = sums_[index];
   if (want_ == Want::touch) {
     Toucher toucher(query.setup, total);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <span>
 #include <vector>
 
 #include "batch/backend.hpp"
@@ -23,9 +24,10 @@ class CpuBackend : public QueryBackend {
  public:
   explicit CpuBackend(Workers& workers) : workers_(workers) {}
 
-  void start(const std::vector<PreparedQuery>& queries, Want want) override;
+  void start(std::span<const PreparedQuery> queries, Want want) override;
   bool ready() override { return true; }
   void finish(QueryResult& result) override;
+  void sweep(const Sweep& sweep, Overlap* overlaps) override;
 
  private:
   class Summer;
@@ -44,7 +46,7 @@ class CpuBackend : public QueryBackend {
   void traverseQuery(std::uint32_t index, std::size_t begin, std::size_t end);
 
   Workers& workers_;
-  const std::vector<PreparedQuery>* queries_ = nullptr;
+  std::span<const PreparedQuery> queries_;
   Want want_ = Want::wrench;
   std::vector<core::Sums> sums_;
   OverlappingPairs found_pairs_;  ///< of the last part

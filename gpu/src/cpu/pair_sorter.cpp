@@ -28,7 +28,7 @@ void PairSorter::clear(std::size_t queries, QueryResult& result) {
   clearRanges(result.contacts_b, queries);
 }
 
-void PairSorter::append(const std::vector<PreparedQuery>& queries, const std::vector<core::Sums>& sums,
+void PairSorter::append(std::span<const PreparedQuery> queries, const std::vector<core::Sums>& sums,
                         std::size_t begin, std::size_t end, const OverlappingPairs& found_pairs, Want want,
                         Workers& workers, QueryResult& result) {
   begin_ = begin;
@@ -58,7 +58,7 @@ void PairSorter::groupByQuery(const std::vector<core::Sums>& sums, const Overlap
     order_[cursor_[found_pairs.items[k].query - begin_]++] = static_cast<std::uint32_t>(k);
 }
 
-void PairSorter::sortGroups(const std::vector<PreparedQuery>& queries, const OverlappingPairs& found_pairs,
+void PairSorter::sortGroups(std::span<const PreparedQuery> queries, const OverlappingPairs& found_pairs,
                             Sphere first, Sphere second, Workers& workers) {
   const auto key = [&](Sphere sphere) {
     return [&found_pairs, sphere](std::uint32_t k) { return found_pairs.items[k].*sphere; };
@@ -67,7 +67,7 @@ void PairSorter::sortGroups(const std::vector<PreparedQuery>& queries, const Ove
     for (std::size_t q = begin; q < end; ++q) {
       const auto limit = [&](Sphere sphere) {
         const core::Setup& setup = queries[begin_ + q].setup;
-        return sphere == &OverlappingPair::a ? setup.a.grid.count : setup.b.grid.count;
+        return sphere == &OverlappingPair::a ? setup.a.count : setup.b.count;
       };
       const std::size_t count = first_[q + 1] - first_[q];
       std::uint32_t *const group = order_.data() + first_[q], *order = group,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "batch/backend.hpp"
@@ -18,7 +19,7 @@ class PairSorter {
   /// Empties the lists of a batch.
   static void clear(std::size_t queries, QueryResult& result);
   /// Appends the lists of queries begin..end, whose pairs were found. Those before them are in the result.
-  void append(const std::vector<PreparedQuery>& queries, const std::vector<core::Sums>& sums,
+  void append(std::span<const PreparedQuery> queries, const std::vector<core::Sums>& sums,
               std::size_t begin, std::size_t end, const OverlappingPairs& found_pairs, Want want,
               Workers& workers, QueryResult& result);
   /// Gives its memory back.
@@ -32,7 +33,7 @@ class PairSorter {
   std::size_t queryCount() const { return first_.size() - 1; }
   /// Sorts each query's pairs by the first of these spheres and, where that is equal, by the second one.
   /// Without a second one equal pairs keep their order.
-  void sortGroups(const std::vector<PreparedQuery>& queries, const OverlappingPairs& found_pairs,
+  void sortGroups(std::span<const PreparedQuery> queries, const OverlappingPairs& found_pairs,
                   Sphere first, Sphere second, Workers& workers);
   void writePairs(const OverlappingPairs& found_pairs, QueryResult::Ranges<SpherePair>& pairs) const;
   void writeContacts(const OverlappingPairs& found_pairs, Sphere sphere, Workers& workers,

@@ -5,8 +5,9 @@
 
 #include <cstdint>
 
+#include "core/poses.hpp"
 #include "core/sums.hpp"
-#include "core/traversal.hpp"
+#include "innersphere/overlap.hpp"
 
 namespace innersphere::device {
 
@@ -31,12 +32,8 @@ struct alignas(16) Grid {
   const std::uint32_t* places;  ///< of the packing's spheres in the grid
 };
 
-/// Describes one pair of bodies: core::Setup without the grids. Of arrays, the first is A's.
-struct alignas(16) Query {
-  core::Frame frame;
-  core::Search searches[2];  ///< of that body's spheres in the grid of the other
-  core::Units units;
-  std::uint32_t clusters[2];
+/// Describes one pair of bodies. Of arrays, the first is A's.
+struct alignas(16) Query : core::PairSetup {
   const Grid* grids[2];
 };
 
@@ -65,10 +62,25 @@ struct Counters {
   unsigned tasks;            ///< of Batch::tasks
   unsigned taken;            ///< of these
   unsigned blocks;           ///< that are done
+  unsigned fault;            ///< the first of a sweep: see packFault()
   unsigned long long found;  ///< overlapping pairs, also those beyond the capacity
 };
 
+/// Packs what is wrong with a pose of a part, so that the first one has the greatest number; 0 is no fault.
+INNERSPHERE_HD inline unsigned packFault(core::Fault fault, unsigned number) {
+  return fault == core::Fault::none ? 0 : ~number << 3 | static_cast<unsigned>(fault);
+}
+INNERSPHERE_HD inline core::Fault faultOf(unsigned packed) {
+  return static_cast<core::Fault>(packed & 7);
+}
+/// Returns the number of the pose that a fault is of.
+INNERSPHERE_HD inline unsigned poseOf(unsigned packed) {
+  return ~packed >> 3;
+}
+
 constexpr unsigned kResultWords = sizeof(core::Totals) / sizeof(unsigned long long);
+static_assert(sizeof(Overlap) == sizeof(core::Totals),
+              "an overlap has a word for each of its totals, in their order");
 
 /// Holds what the host watches, in its own memory.
 struct HostSignal {
@@ -78,6 +90,7 @@ struct HostSignal {
   unsigned long long halves[2 * (kResultWords + 1)];
   /// The number of the last batch that is done, and its overlapping pairs.
   unsigned done;
+  unsigned fault;
   unsigned long long found;
 };
 
@@ -96,6 +109,7 @@ struct Batch {
   unsigned bits_a, bits_b;
   HostSignal* signal;
   core::Totals* results;  ///< in the memory of the host; unused by a single query
+  Overlap* overlaps;      ///< of a sweep, which has these in place of results; else null
   unsigned run;
 };
 

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <iterator>
 
-#include "batch/backend.hpp"
 #include "cuda/device_grid.hpp"
 
 namespace innersphere::device {
@@ -19,8 +18,13 @@ constexpr std::size_t kFewPairs = 1 << 12;
 static_assert(kMostQueries <= 1u << 24, "see packTask()");
 
 std::size_t tasksOf(const PreparedQuery& query) {
-  return (query.setup.a.clusters + kTaskClusters - 1) / kTaskClusters +
-         (query.setup.b.clusters + kTaskClusters - 1) / kTaskClusters;
+  return (query.setup.clusters[0] + kTaskClusters - 1) / kTaskClusters +
+         (query.setup.clusters[1] + kTaskClusters - 1) / kTaskClusters;
+}
+
+std::size_t tasksOf(const core::SweptPair& pair) {
+  return (pair.a.grid.cluster_count + kTaskClusters - 1) / kTaskClusters +
+         (pair.b.grid.cluster_count + kTaskClusters - 1) / kTaskClusters;
 }
 
 unsigned bitsOf(std::uint32_t count) {
@@ -48,8 +52,7 @@ class Grids {
 };
 
 Query makeQuery(const PreparedQuery& from, Grids& grids) {
-  const core::Setup& setup = from.setup;
-  Query to{setup.frame, {setup.a_in_b, setup.b_in_a}, setup.units, {setup.a.clusters, setup.b.clusters}, {}};
+  Query to{from.setup, {}};
   if (from.clusters() == 0) return to;
   to.grids[0] = grids.of(*from.grid_a, 0);
   to.grids[1] = grids.of(*from.grid_b, 1);
@@ -58,25 +61,24 @@ Query makeQuery(const PreparedQuery& from, Grids& grids) {
 
 }  // namespace
 
-std::size_t BatchPart::endOf(const std::vector<PreparedQuery>& queries, std::size_t begin) {
+std::size_t BatchPart::endOf(std::span<const PreparedQuery> queries, std::size_t begin) {
   std::size_t tasks = 0, end = begin;
   unsigned bits_a = 0, bits_b = 0;
   for (; end < queries.size() && end - begin < kMostQueries; ++end) {
     tasks += tasksOf(queries[end]);
-    bits_a = std::max(bits_a, bitsOf(queries[end].setup.a.grid.count));
-    bits_b = std::max(bits_b, bitsOf(queries[end].setup.b.grid.count));
+    bits_a = std::max(bits_a, bitsOf(queries[end].setup.a.count));
+    bits_b = std::max(bits_b, bitsOf(queries[end].setup.b.count));
     const bool wide = (end - begin) >> (64 - bits_a - bits_b) != 0;  // for the keys of overlapping pairs
     if (end > begin && (tasks > kMostTasks || wide)) break;
   }
   return end;
 }
 
-void BatchPart::start(const Device& device, const std::vector<PreparedQuery>& queries, Range range, Want want,
+void BatchPart::start(const Device& device, std::span<const PreparedQuery> queries, Range range, Want want,
                       Workers& workers) {
-  device_ = device;
-  range_ = range;
-  want_ = want;
-  kernel_time_ = 0;
+  begin(device, range, want);
+  sweep_ = nullptr;
+  batch_.overlaps = nullptr;
   most_clusters_ = 0;
   most_tasks_ = 0;
   batch_.bits_a = batch_.bits_b = 0;
@@ -84,19 +86,90 @@ void BatchPart::start(const Device& device, const std::vector<PreparedQuery>& qu
     const core::Setup& setup = queries[q].setup;
     most_clusters_ = std::max(most_clusters_, static_cast<unsigned>(queries[q].clusters()));
     most_tasks_ += tasksOf(queries[q]);
-    batch_.bits_a = std::max(batch_.bits_a, bitsOf(setup.a.grid.count));
-    batch_.bits_b = std::max(batch_.bits_b, bitsOf(setup.b.grid.count));
+    batch_.bits_a = std::max(batch_.bits_a, bitsOf(setup.a.count));
+    batch_.bits_b = std::max(batch_.bits_b, bitsOf(setup.b.count));
   }
   results_.reserve(range.size());
-  if (signal_.capacity() == 0) {
-    signal_.reserve(1);
-    *signal_.data() = {};  // no run has this number
-  }
   gather(queries, workers);
   launch();
 }
 
-void BatchPart::gather(const std::vector<PreparedQuery>& queries, Workers& workers) {
+void BatchPart::begin(const Device& device, Range range, Want want) {
+  device_ = device;
+  range_ = range;
+  want_ = want;
+  kernel_time_ = 0;
+  if (signal_.capacity() > 0) return;
+  signal_.reserve(1);
+  *signal_.data() = {};  // no run has this number
+}
+
+std::size_t BatchPart::mostPoses(const Sweep& sweep) {
+  return std::clamp<std::size_t>(kMostTasks / tasksOf(sweep.pair), 1, kMostQueries);
+}
+
+void BatchPart::startSweep(const Device& device, const Sweep& sweep, Range range, Overlap* overlaps) {
+  begin(device, range, sweep.want);
+  sweep_ = &sweep;
+  overlaps_ = overlaps + range.begin;
+  most_clusters_ = static_cast<unsigned>(sweep.clusters());
+  most_tasks_ = tasksOf(sweep.pair) * range.size();
+  const MemoryOf memory = memoryOf(overlaps_);
+  overlaps_are_staged_ = !memory.isReachedFrom(device_.number);
+  if (overlaps_are_staged_) staged_overlaps_.reserve(range.size());
+  batch_.overlaps = overlaps_are_staged_ ? staged_overlaps_.data() : static_cast<Overlap*>(memory.on_device);
+  launch();
+}
+
+/// Returns the numbers in the memory of the device.
+template <typename T>
+const T* BatchPart::bring(const T* from, std::size_t count, PinnedArray<T>& pinned,
+                          DeviceArray<T>& on_device) {
+  const MemoryOf memory = memoryOf(from);
+  if (memory.isReachedFrom(device_.number)) return static_cast<const T*>(memory.on_device);
+  on_device.reserve(count);
+  if (!memory.on_device) {
+    pinned.reserve(count);
+    std::copy(from, from + count, pinned.data());
+    from = pinned.data();
+  }
+  copyAsync(on_device.data(), from, count, device_.stream);
+  return on_device.data();
+}
+
+void BatchPart::prepareSweep() {
+  const std::size_t first = range_.begin, count = range_.size();
+  Poses poses = sweep_->poses;
+  poses.count = count;
+  const auto part = [&](const double*& numbers, std::size_t width, int array) {
+    numbers = bring(numbers + width * first, width * count, pinned_poses_[array], device_poses_[array]);
+  };
+  if (poses.matrices) {
+    part(poses.matrices, 16, 0);
+  } else {
+    part(poses.positions, 3, 0);
+    part(poses.quaternions, 4, 1);
+  }
+  Grids grids(device_);
+  launchPreparation(batch_, device_queries_.data(), sweep_->pair, grids.of(*sweep_->grid_a, 0),
+                    grids.of(*sweep_->grid_b, 1), poses, device_.stream);
+}
+
+SweepFault BatchPart::collectSweep() {
+  wait();
+  const unsigned fault = signal_.data()->fault;
+  if (fault != 0) return {range_.begin + poseOf(fault), faultOf(fault)};
+  if (!overlaps_are_staged_) return {};
+  const std::size_t bytes = range_.size() * sizeof(Overlap);
+  if (memoryOf(overlaps_).on_device) {  // of another device
+    INNERSPHERE_CUDA(cudaMemcpy(overlaps_, staged_overlaps_.data(), bytes, cudaMemcpyDefault));
+  } else {
+    std::memcpy(static_cast<void*>(overlaps_), staged_overlaps_.data(), bytes);
+  }
+  return {};
+}
+
+void BatchPart::gather(std::span<const PreparedQuery> queries, Workers& workers) {
   queries_.reserve(range_.size());
   workers.forRanges(range_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     const CurrentDevice current(device_.number);
@@ -108,7 +181,7 @@ void BatchPart::gather(const std::vector<PreparedQuery>& queries, Workers& worke
 
 void BatchPart::launch() {
   const std::size_t count = range_.size();
-  const bool single = count == 1;
+  const bool single = isSingle();
   batch_.count = static_cast<unsigned>(count);
   if (most_clusters_ == 0) {
     std::fill_n(results_.data(), count, core::Totals{});
@@ -126,12 +199,19 @@ void BatchPart::launch() {
   clean_ = false;
   if (!single) {
     tasks_.reserve(most_tasks_);
-    device_queries_.reserve(count);
-    copyAsync(device_queries_.data(), queries_.data(), count, device_.stream);
+    if (device_queries_.capacity() < count) {
+      device_queries_.reserve(count);  // kernels copy queries as a whole, with their gaps
+      INNERSPHERE_CUDA(cudaMemsetAsync(device_queries_.data(), 0, count * sizeof(Query), device_.stream));
+    }
   }
   batch_.queries = single ? nullptr : device_queries_.data();
   batch_.sums = sums_.data();
   batch_.counters = counters_.data();
+  if (sweep_) {
+    prepareSweep();
+  } else if (!single) {
+    copyAsync(device_queries_.data(), queries_.data(), count, device_.stream);
+  }
   batch_.tasks = tasks_.data();
   if (wantsPairs(want_)) pair_sorter_.reserve(kFewPairs);
   batch_.found_pairs = wantsPairs(want_) ? pair_sorter_.keys() : nullptr;
@@ -150,7 +230,7 @@ void BatchPart::launch() {
 /// Whether the kernels told the host that they are done.
 bool BatchPart::traversed() const {
   const volatile HostSignal& signal = *signal_.data();
-  if (range_.size() > 1) return signal.done == run_;
+  if (!isSingle()) return signal.done == run_;
   return std::all_of(std::begin(signal.halves), std::end(signal.halves),
                      [&](unsigned long long half) { return half >> 32 == run_; });
 }
@@ -159,7 +239,7 @@ void BatchPart::takeResult() {
   std::atomic_thread_fence(std::memory_order_acquire);
   const HostSignal& signal = *signal_.data();
   found_ = signal.found;
-  if (range_.size() > 1) return;
+  if (!isSingle()) return;
   unsigned long long words[kResultWords + 1];
   for (std::size_t i = 0; i <= kResultWords; ++i)
     words[i] = (signal.halves[2 * i] & 0xffffffffu) | signal.halves[2 * i + 1] << 32;

@@ -1,9 +1,9 @@
 // Takes some neighbouring queries of a batch over the device and back.
 #pragma once
 
-#include <vector>
+#include <span>
 
-#include "batch/prepare.hpp"
+#include "batch/backend.hpp"
 #include "common/workers.hpp"
 #include "cuda/kernels.hpp"
 #include "cuda/memory.hpp"
@@ -30,10 +30,17 @@ class BatchPart {
   };
 
   /// Returns where the part that begins with query `begin` should end: its memory is bounded.
-  static std::size_t endOf(const std::vector<PreparedQuery>& queries, std::size_t begin);
+  static std::size_t endOf(std::span<const PreparedQuery> queries, std::size_t begin);
 
-  void start(const Device& device, const std::vector<PreparedQuery>& queries, Range range, Want want,
+  void start(const Device& device, std::span<const PreparedQuery> queries, Range range, Want want,
              Workers& workers);
+
+  /// Returns how many poses of a sweep a part may have.
+  static std::size_t mostPoses(const Sweep& sweep);
+  /// Starts the poses of a range. The overlaps are at `overlaps` once they were collected.
+  void startSweep(const Device& device, const Sweep& sweep, Range range, Overlap* overlaps);
+  /// Waits for the poses and brings their overlaps home. Returns the first pose that is none.
+  SweepFault collectSweep();
 
   /// Moves on what the device is done with. Returns true if results() are there.
   bool advance();
@@ -48,8 +55,14 @@ class BatchPart {
  private:
   enum class Stage { traversal, traversed, sorting, done };
 
-  void gather(const std::vector<PreparedQuery>& queries, Workers& workers);
+  void begin(const Device& device, Range range, Want want);
+  void gather(std::span<const PreparedQuery> queries, Workers& workers);
   void launch();
+  void prepareSweep();
+  template <typename T>
+  const T* bring(const T* from, std::size_t count, PinnedArray<T>& pinned, DeviceArray<T>& on_device);
+  /// Returns whether the part is one query, which goes to the device as an argument.
+  bool isSingle() const { return !sweep_ && range_.size() == 1; }
   bool traversed() const;
   void takeResult();
   void sort();
@@ -70,6 +83,12 @@ class BatchPart {
   PinnedArray<HostSignal> signal_;
   PinnedArray<Query> queries_;
   PinnedArray<core::Totals> results_;
+  const Sweep* sweep_ = nullptr;
+  Overlap* overlaps_ = nullptr;  ///< where those of a sweep go
+  bool overlaps_are_staged_ = false;
+  PinnedArray<Overlap> staged_overlaps_;
+  PinnedArray<double> pinned_poses_[2];
+  DeviceArray<double> device_poses_[2];
   DeviceArray<Counters> counters_;
   DeviceArray<Query> device_queries_;
   DeviceArray<DeviceSums> sums_;

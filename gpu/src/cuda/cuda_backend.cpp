@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "batch/results.hpp"
 #include "cuda/batch_part.hpp"
+#include "cuda/split_backend.hpp"
 
 namespace innersphere {
 
@@ -13,9 +18,11 @@ namespace {
 using device::BatchPart;
 
 /// A batch goes in parts, two of them at a time, so that the device need not wait for the host.
-class CudaBackend : public QueryBackend {
+class CudaBackend : public OneDevice {
  public:
-  CudaBackend(Workers& workers, bool time_kernels) : workers_(workers) {
+  /// `device` is a number, or kCurrentDevice.
+  CudaBackend(Workers& workers, bool time_kernels, int device) : workers_(workers) {
+    device_.number = device;
     device_.time_kernels = time_kernels;
   }
   ~CudaBackend() override {
@@ -26,11 +33,11 @@ class CudaBackend : public QueryBackend {
 
   double kernelTime() const override { return kernel_time_; }
 
-  void start(const std::vector<PreparedQuery>& queries, Want want) override {
+  void start(std::span<const PreparedQuery> queries, Want want) override {
     open();
     const CurrentDevice current(device_.number);
     discard();
-    queries_ = &queries;
+    queries_ = queries;
     want_ = want;
     next_ = first_ = 0;
     kernel_time_ = 0;
@@ -56,10 +63,48 @@ class CudaBackend : public QueryBackend {
     std::swap(result, staged_);
   }
 
+  void sweep(const Sweep& sweep, Overlap* overlaps) override {
+    std::atomic<std::size_t> next{0};
+    sweepParts(sweep, BatchPart::mostPoses(sweep), next, overlaps).throwIfAny();
+  }
+
+  SweepFault sweepParts(const Sweep& sweep, std::size_t poses, std::atomic<std::size_t>& next,
+                        Overlap* overlaps) override {
+    open();
+    const CurrentDevice current(device_.number);
+    discard();
+    poses = std::min(poses, BatchPart::mostPoses(sweep));
+    kernel_time_ = 0;
+    SweepFault fault;
+    std::size_t started = 0, collected = 0;
+    const auto collect = [&] {
+      BatchPart& part = parts_[collected++ % parts_.size()];
+      fault.take(part.collectSweep());
+      kernel_time_ += part.kernelTime();
+    };
+    try {
+      while (fault.fault == core::Fault::none) {
+        const std::size_t begin = next.fetch_add(poses);
+        if (begin >= sweep.poses.count) break;
+        if (started - collected == parts_.size()) collect();
+        const BatchPart::Range range{begin, std::min(begin + poses, sweep.poses.count)};
+        parts_[started % parts_.size()].startSweep(device_, sweep, range, overlaps);
+        ++started;
+      }
+      while (collected < started) collect();
+    } catch (...) {
+      cudaStreamSynchronize(device_.stream);
+      throw;
+    }
+    if (fault.fault != core::Fault::none) next = sweep.poses.count;  // others need not go on
+    return fault;
+  }
+
  private:
   void open() {
     if (device_.stream) return;
-    INNERSPHERE_CUDA(cudaGetDevice(&device_.number));
+    if (device_.number == kCurrentDevice) INNERSPHERE_CUDA(cudaGetDevice(&device_.number));
+    const CurrentDevice current(device_.number);
     int processors = 1;
     INNERSPHERE_CUDA(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device_.number));
     device_.processors = static_cast<unsigned>(processors);
@@ -75,18 +120,18 @@ class CudaBackend : public QueryBackend {
   /// What is wanted is overwritten, and then cut to its length: nothing is filled twice.
   template <typename T>
   void begin(QueryResult::Ranges<T>& ranges, bool wanted) {
-    if (!wanted || queries_->empty()) ranges.items.clear();
-    ranges.first.assign(queries_->size() + 1, 0);
+    if (!wanted || queries_.empty()) ranges.items.clear();
+    ranges.first.assign(queries_.size() + 1, 0);
   }
 
   BatchPart& oldest() { return parts_[first_ % parts_.size()]; }
 
   /// False if there is no other part, or no room for it now.
   bool startPart() {
-    if (next_ == queries_->size() || under_way_ == parts_.size()) return false;
+    if (next_ == queries_.size() || under_way_ == parts_.size()) return false;
     BatchPart& part = parts_[(first_ + under_way_) % parts_.size()];
-    const std::size_t end = BatchPart::endOf(*queries_, next_);
-    part.start(device_, *queries_, {next_, end}, want_, workers_);
+    const std::size_t end = BatchPart::endOf(queries_, next_);
+    part.start(device_, queries_, {next_, end}, want_, workers_);
     ++under_way_;
     next_ = end;
     return true;
@@ -120,7 +165,7 @@ class CudaBackend : public QueryBackend {
   Workers& workers_;
   device::Device device_;
   std::array<BatchPart, 2> parts_;
-  const std::vector<PreparedQuery>* queries_ = nullptr;
+  std::span<const PreparedQuery> queries_;
   Want want_ = Want::wrench;
   std::size_t next_ = 0;       ///< query that no part has
   std::size_t first_ = 0;      ///< number of the oldest part under way
@@ -132,18 +177,36 @@ class CudaBackend : public QueryBackend {
 }  // namespace
 
 bool cudaDeviceAnswers() {
-  int count = 0;
-  const bool answers = cudaGetDeviceCount(&count) == cudaSuccess && count > 0;
-  cudaGetLastError();
-  return answers;
+  return cudaDevices() > 0;
 }
 
-std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, bool time_kernels) {
-  if (!cudaDeviceAnswers()) {
+int cudaDevices() {
+  int count = 0;
+  const bool answers = cudaGetDeviceCount(&count) == cudaSuccess;
+  cudaGetLastError();
+  return answers ? count : 0;
+}
+
+bool isOnCudaDevice(const void* p) {
+  return cudaDeviceAnswers() && memoryOf(p).device >= 0;
+}
+
+std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, bool time_kernels, int device) {
+  const int devices = cudaDevices();
+  if (devices == 0) {
     throw Error(ErrorCode::no_device,
                 "no CUDA device answers; check the driver with nvidia-smi or use the CPU backend");
   }
-  return std::make_unique<CudaBackend>(workers, time_kernels);
+  if (device >= devices) {
+    throw Error(ErrorCode::no_device, "there is no CUDA device " + std::to_string(device) + "; there are " +
+                                          std::to_string(devices) + ", from 0 on");
+  }
+  if (device != kAllDevices || devices == 1)
+    return std::make_unique<CudaBackend>(workers, time_kernels, device == kAllDevices ? 0 : device);
+  std::vector<std::unique_ptr<OneDevice>> all;
+  for (int number = 0; number < devices; ++number)
+    all.push_back(std::make_unique<CudaBackend>(workers, time_kernels, number));
+  return splitOver(std::move(all));
 }
 
 }  // namespace innersphere

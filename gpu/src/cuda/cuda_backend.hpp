@@ -1,4 +1,4 @@
-// Runs the query on an NVIDIA GPU. Without the CUDA toolkit the same functions say that there is no device.
+// Runs the query on NVIDIA GPUs. Without the CUDA toolkit the same functions say that there is no device.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,14 @@ namespace innersphere {
 /// Returns true if CUDA is compiled in and a device answers. Creates no CUDA context.
 bool cudaDeviceAnswers();
 
-/// Returns a backend that uses the device that is current in the calling thread when it first runs. Throws
-/// Error no_device if there is none.
-std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, bool time_kernels);
+/// Returns the number of devices that answer. Creates no CUDA context.
+int cudaDevices();
+
+/// Returns true for memory that only a device reaches.
+bool isOnCudaDevice(const void* p);
+
+/// Returns a backend that uses this device; kCurrentDevice: the one that is current in the calling thread
+/// when it first runs; kAllDevices: all. Throws Error no_device if there is none of that number.
+std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, bool time_kernels, int device);
 
 }  // namespace innersphere

@@ -105,6 +105,24 @@ void copyAsync(T* to, const T* from, std::size_t count, cudaStream_t stream) {
   INNERSPHERE_CUDA(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDefault, stream));
 }
 
+/// Says where memory is.
+struct MemoryOf {
+  void* on_device = nullptr;  ///< As kernels name it. Null: memory of the host that no device knows.
+  int device = -1;            ///< Whose it is; -1: memory of the host that all devices reach.
+
+  bool isReachedFrom(int other) const { return on_device && (device == -1 || device == other); }
+};
+
+inline MemoryOf memoryOf(const void* p) {
+  cudaPointerAttributes attributes{};
+  INNERSPHERE_CUDA(cudaPointerGetAttributes(&attributes, p));
+  if (attributes.type == cudaMemoryTypeDevice)  // the attribute's own pointer is null for other devices
+    return {const_cast<void*>(p), attributes.device};
+  if (attributes.type == cudaMemoryTypeHost || attributes.type == cudaMemoryTypeManaged)
+    return {attributes.devicePointer, -1};
+  return {};
+}
+
 /// Makes a device current and, at the end, the one that was.
 class CurrentDevice {
  public:

@@ -8,7 +8,15 @@ bool cudaDeviceAnswers() {
   return false;
 }
 
-std::unique_ptr<QueryBackend> makeCudaBackend(Workers&, bool) {
+int cudaDevices() {
+  return 0;
+}
+
+bool isOnCudaDevice(const void*) {
+  return false;
+}
+
+std::unique_ptr<QueryBackend> makeCudaBackend(Workers&, bool, int) {
   throw Error(
       ErrorCode::no_device,
       "InnerSphere was built without CUDA; install the toolkit and configure with INNERSPHERE_CUDA=ON");

@@ -287,18 +287,53 @@ __global__ void __launch_bounds__(kBatchWarps* kWarp, kBatchBlocks)
   }
 }
 
+/// Makes the query of a pose.
+__global__ void prepareQueries(const __grid_constant__ Batch batch, Query* queries,
+                               const __grid_constant__ core::SweptPair pair, const Grid* grid_a,
+                               const Grid* grid_b, const Poses poses) {
+  const unsigned number = blockIdx.x * blockDim.x + threadIdx.x;
+  if (number >= batch.count) return;
+  Query query{};
+  query.grids[0] = grid_a;
+  query.grids[1] = grid_b;
+  const core::Fault fault = core::prepareAt(pair, poses, number, query);
+  if (fault != core::Fault::none) {
+    query.clusters[0] = query.clusters[1] = 0;
+    atomicMax(&batch.counters->fault, packFault(fault, number));
+  }
+  queries[number] = query;
+}
+
+/// Returns word `word` of an Overlap: as toOverlap() does it, to the bit.
+template <Goal goal>
+__device__ unsigned long long overlapWord(const DeviceSums& sums, const core::Units& units, unsigned word) {
+  const bool of_centroid = word >= core::kMoment && word < core::kMoment + 3;
+  if (!of_centroid || goal == Goal::touch) return resultOf<goal>(sums, units, word);
+  const double volume = totalOf(sums, units, core::kVolume);
+  if (!(volume > 0)) return 0;
+  return static_cast<unsigned long long>(
+      __double_as_longlong(totalOf(sums, units, static_cast<int>(word)) / volume));
+}
+
 /// Brings the sums of all queries home.
 template <Goal goal>
 __global__ void finishBatch(const __grid_constant__ Batch batch) {
   const unsigned thread = blockIdx.x * blockDim.x + threadIdx.x, query = thread / kResultWords;
   if (query < batch.count) {
     const unsigned word = thread % kResultWords;
-    reinterpret_cast<unsigned long long*>(batch.results + query)[word] =
-        resultOf<goal>(batch.sums[query], batch.queries[query].units, word);
+    const core::Units& units = batch.queries[query].units;
+    if (batch.overlaps) {
+      reinterpret_cast<unsigned long long*>(batch.overlaps + query)[word] =
+          overlapWord<goal>(batch.sums[query], units, word);
+    } else {
+      reinterpret_cast<unsigned long long*>(batch.results + query)[word] =
+          resultOf<goal>(batch.sums[query], units, word);
+    }
   }
   __threadfence_system();
   if (!isLastBlock(batch) || threadIdx.x != 0) return;
   batch.signal->found = batch.counters->found;
+  batch.signal->fault = batch.counters->fault;
   __threadfence_system();
   *static_cast<volatile unsigned*>(&batch.signal->done) = batch.run;
 }
@@ -324,6 +359,14 @@ void launchGoal(const Batch& batch, const Query* single, unsigned most_clusters,
 }
 
 }  // namespace
+
+void launchPreparation(const Batch& batch, Query* queries, const core::SweptPair& pair, const Grid* grid_a,
+                       const Grid* grid_b, const Poses& poses, cudaStream_t stream) {
+  constexpr unsigned kThreads = 128;
+  prepareQueries<<<(batch.count + kThreads - 1) / kThreads, kThreads, 0, stream>>>(batch, queries, pair,
+                                                                                   grid_a, grid_b, poses);
+  INNERSPHERE_CUDA(cudaGetLastError());
+}
 
 void launchTraversal(Goal goal, const Batch& batch, const Query* single, unsigned most_clusters,
                      std::size_t most_tasks, unsigned processors, cudaStream_t stream) {

@@ -4,12 +4,10 @@
 #include <limits>
 
 #include "core/grid_plan.hpp"
+#include "grid/grid_plan.hpp"
 
 namespace innersphere {
 
-namespace {
-
-/// A ball around all of some balls.
 Sphere ballAround(const Sphere* begin, const Sphere* end) {
   constexpr float kMax = std::numeric_limits<float>::max();
   Vec3f lo{kMax, kMax, kMax}, hi{-kMax, -kMax, -kMax};
@@ -23,11 +21,8 @@ Sphere ballAround(const Sphere* begin, const Sphere* end) {
     const Vec3d d = Vec3d{s->x, s->y, s->z} - Vec3d{middle.x, middle.y, middle.z};
     radius = std::max(radius, std::sqrt(dot(d, d)) + s->radius);
   }
-  return {middle.x, middle.y, middle.z,
-          std::nextafter(static_cast<float>(radius), std::numeric_limits<float>::infinity())};
+  return {middle.x, middle.y, middle.z, roundUp(radius)};
 }
-
-}  // namespace
 
 void ClusterTree::build(const std::vector<core::Cluster>& clusters) {
   if (levels_.empty()) levels_.emplace_back();

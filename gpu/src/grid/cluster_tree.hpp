@@ -12,6 +12,9 @@
 
 namespace innersphere {
 
+/// Returns a ball around all of some balls, rounded outwards. There must be one.
+Sphere ballAround(const Sphere* begin, const Sphere* end);
+
 /// Holds the balls of all levels. Clusters that follow each other are neighbours, because they follow a curve
 /// that fills space.
 class ClusterTree {

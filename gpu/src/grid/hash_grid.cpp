@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "common/radix_sort.hpp"
@@ -12,11 +11,6 @@
 namespace innersphere {
 
 namespace {
-
-double distance(const Sphere& s, const Vec3f& p) {
-  const Vec3d d = Vec3d{s.x, s.y, s.z} - Vec3d{p.x, p.y, p.z};
-  return std::sqrt(dot(d, d));
-}
 
 /// Calls f(begin, end) for ranges that cover [0, n), in several threads where that pays.
 template <typename F>
@@ -86,17 +80,7 @@ void HashGrid::makeClusters(const core::GridPlan& plan) {
     for (std::size_t c = from; c < to; ++c) {
       core::Cluster& cluster = clusters_[c];
       const Sphere* begin = spheres_.data() + cluster.first;
-      const Sphere* end = begin + cluster.count;
-      constexpr float kMax = std::numeric_limits<float>::max();
-      Vec3f lo{kMax, kMax, kMax}, hi{-kMax, -kMax, -kMax};
-      for (const Sphere* s = begin; s < end; ++s) {
-        lo = {std::min(lo.x, s->x), std::min(lo.y, s->y), std::min(lo.z, s->z)};
-        hi = {std::max(hi.x, s->x), std::max(hi.y, s->y), std::max(hi.z, s->z)};
-      }
-      const Vec3f middle = core::middleOf(lo, hi);
-      double radius = 0;
-      for (const Sphere* s = begin; s < end; ++s) radius = std::max(radius, distance(*s, middle) + s->radius);
-      cluster.ball = {middle.x, middle.y, middle.z, roundUp(radius)};
+      cluster.ball = ballAround(begin, begin + cluster.count);
     }
   });
   cluster_tree_.build(clusters_);

@@ -1,6 +1,8 @@
 #include "innersphere/query.hpp"
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -25,7 +27,7 @@ constexpr std::size_t kGrain = 64;  ///< queries of a batch that one thread prep
 struct QueryContext::Impl {
   explicit Impl(const QueryContextOptions& o) : options(o), workers(o.threads), cpu(workers) {
     if (options.backend != Backend::cuda) return;
-    cuda = makeCudaBackend(workers, options.time_kernels);
+    makeCuda();
     last = Backend::cuda;
   }
 
@@ -34,11 +36,16 @@ struct QueryContext::Impl {
     std::size_t clusters = 0;
     for (const PreparedQuery& query : prepared) clusters += query.clusters();
     if (clusters < kDeviceClusters) return false;
-    if (!cuda && !looked_for_device && cudaDeviceAnswers())
-      cuda = makeCudaBackend(workers, options.time_kernels);
+    return findDevice();
+  }
+
+  bool findDevice() {
+    if (!cuda && !looked_for_device && cudaDeviceAnswers()) makeCuda();
     looked_for_device = true;
     return cuda != nullptr;
   }
+
+  void makeCuda() { cuda = makeCudaBackend(workers, options.time_kernels, options.device); }
 
   void prepare(const PairQuery* queries, std::size_t count, Estimator estimator) {
     prepared.resize(count);
@@ -55,6 +62,11 @@ struct QueryContext::Impl {
     }
   }
 
+  void checkIdle() const {
+    if (under_way)
+      throw Error(ErrorCode::bad_argument, "a query is under way in this context; wait for it first");
+  }
+
   QueryBackend& choose() {
     const bool on_device =
         options.backend == Backend::cuda || (options.backend == Backend::automatic && paysOnDevice());
@@ -67,14 +79,51 @@ struct QueryContext::Impl {
   }
 
   void start(const PairQuery* queries, std::size_t count, const QueryOptions& query_options) {
-    if (under_way)
-      throw Error(ErrorCode::bad_argument, "a query is under way in this context; wait for it first");
+    checkIdle();
     if (count > 0 && !queries) throw Error(ErrorCode::bad_argument, "the queries are a null pointer");
     if (count >> 32) throw Error(ErrorCode::bad_argument, "a batch has at most 2^32 - 1 queries; split it");
     prepare(queries, count, query_options.estimator);
     QueryBackend& backend = choose();
     backend.start(prepared, query_options.want);
     under_way = &backend;
+  }
+
+  void sweep(const PairQuery& pair, const Poses& poses, const QueryOptions& query_options,
+             Overlap* overlaps) {
+    checkIdle();
+    if (poses.count == 0) return;
+    if (!overlaps || (!poses.matrices && !(poses.positions && poses.quaternions)))
+      throw Error(ErrorCode::bad_argument, "an array of poses or overlaps is a null pointer");
+    PairQuery at_origin = pair;
+    at_origin.placement_b.rotation = Placement().rotation;
+    at_origin.placement_b.translation = pair.placement_a.translation;
+    KnownGrids grids;
+    const PreparedQuery first = innersphere::prepare(at_origin, 0, query_options.estimator, grids);
+    const core::Setup& setup = first.setup;
+    const Sweep sweep{{{setup.a, setup.frame.matrix_a, setup.frame.scale_a, setup.frame.margin_a},
+                       {setup.b, setup.frame.matrix_b, setup.frame.scale_b, setup.frame.margin_b},
+                       pair.placement_a.translation},
+                      first.grid_a,
+                      first.grid_b,
+                      poses,
+                      wantsPairs(query_options.want) ? Want::wrench : query_options.want};
+    chooseFor(sweep, overlaps).sweep(sweep, overlaps);
+  }
+
+  QueryBackend& chooseFor(const Sweep& sweep, const Overlap* overlaps) {
+    const void* const arrays[] = {sweep.poses.matrices, sweep.poses.positions, sweep.poses.quaternions,
+                                  overlaps};
+    const bool given_on_device = std::any_of(std::begin(arrays), std::end(arrays),
+                                             [](const void* p) { return p && isOnCudaDevice(p); });
+    if (given_on_device && options.backend == Backend::cpu)
+      throw Error(ErrorCode::bad_argument,
+                  "an array is in the memory of a device, and the CPU was asked for");
+    const bool on_device =
+        options.backend == Backend::cuda ||
+        (options.backend == Backend::automatic &&
+         (given_on_device || sweep.clusters() * sweep.poses.count >= kDeviceClusters) && findDevice());
+    last = on_device ? Backend::cuda : Backend::cpu;
+    return on_device ? *cuda : static_cast<QueryBackend&>(cpu);
   }
 
   void finish(QueryResult& result) {
@@ -97,6 +146,10 @@ struct QueryContext::Impl {
   QueryResult single;
 };
 
+int cudaDeviceCount() {
+  return cudaDevices();
+}
+
 bool cudaAvailable() {
   return cudaDeviceAnswers();
 }
@@ -106,6 +159,8 @@ QueryContext::QueryContext(const QueryContextOptions& options) {
     throw Error(ErrorCode::bad_argument,
                 "threads is " + std::to_string(options.threads) + "; it must be 0 (all cores) or more");
   }
+  if (options.device < kAllDevices)
+    throw Error(ErrorCode::bad_argument, "there is no CUDA device " + std::to_string(options.device));
   impl_ = std::make_unique<Impl>(options);
 }
 QueryContext::~QueryContext() = default;
@@ -144,6 +199,12 @@ void QueryContext::wait(QueryResult& result) {
   if (!impl_->under_way)
     throw Error(ErrorCode::bad_argument, "no query is under way; start one before waiting");
   impl_->finish(result);
+}
+
+void QueryContext::sweep(const PairQuery& pair, const Poses& poses, const QueryOptions& options,
+                         Overlap* overlaps) {
+  if (impl_->failed) std::rethrow_exception(std::exchange(impl_->failed, nullptr));
+  impl_->sweep(pair, poses, options, overlaps);
 }
 
 Overlap QueryContext::overlap(const PairQuery& query, const QueryOptions& options) {

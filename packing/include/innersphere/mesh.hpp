@@ -32,6 +32,8 @@ struct MeshReport {
   std::size_t vertices = 0;    ///< The number of vertices after equal positions were welded.
   std::size_t triangles = 0;   ///< The number of triangles without the degenerate ones.
   std::size_t degenerate = 0;  ///< The number of triangles with two equal corners, which were removed.
+  /// The number of triangles with the corners of an earlier one, which were removed.
+  std::size_t duplicates = 0;
   std::size_t open_edges = 0;  ///< The number of edges that only one triangle uses.
   std::size_t open_loops = 0;  ///< The number of connected chains of open edges.
   Vec3d open_at{};             ///< A corner of the longest chain of open edges [m].
@@ -47,7 +49,8 @@ struct MeshReport {
 
 /// Reads a mesh and welds equal positions. The ending of the path names the format. OBJ, STL, PLY and OFF, as
 /// text or binary, are read by checked readers of the project, in double: memory and time follow from the
-/// size of the file, whatever it says. All other formats (glTF, ...) go through assimp, with node transforms
+/// size of the file, whatever it says. They may be compressed by gzip (.obj.gz), to at most 1 GiB. All
+/// other formats (glTF, ...) go through assimp, with node transforms
 /// applied in double; assimp keeps coordinates in single precision: what is far from its origin is read
 /// coarsely, and makeSolid() notes it. Polygons are cut into triangles along their dents. Throws Error, with
 /// the line or the byte where the file has one: file_not_found, bad_format, empty_input, not_finite (also for
@@ -56,9 +59,9 @@ Mesh readMesh(const std::string& path, const MeshOptions& options = {});
 
 /// Judges a mesh and makes it a solid with exact distances. It mends what is safe and notes it: it welds
 /// equal positions, and those within 1e-7 of the diagonal if the mesh is open without that; it drops
-/// degenerate triangles, winds triangles like their neighbours, turns shells that are inside-out, and drops
-/// shells inside solid material that face outwards. A shell inside another that faces inwards stays: a
-/// cavity. Shells may cut themselves and each other: inside is where the winding number exceeds 1/2, mass
+/// degenerate triangles and those that are there twice, winds triangles like their neighbours, turns shells
+/// that are inside-out, and drops shells inside solid material that face outwards. A shell inside another
+/// that faces inwards stays: a cavity. Shells may cut themselves and each other: inside is where the winding number exceeds 1/2, mass
 /// properties count each point once (by sampling 64 cells along the longest side), and distances are to the
 /// nearest triangle, so that spheres keep away from inner ones too.
 ///
@@ -67,5 +70,9 @@ Mesh readMesh(const std::string& path, const MeshOptions& options = {});
 /// is not there). `report` may be null; it is filled in also when not_a_solid is thrown.
 std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshOptions& options = {},
                                  MeshReport* report = nullptr);
+
+/// Returns the bodies of a surface that a solid gives, in the order of their first triangles: each shell that
+/// faces outwards, with the cavities right inside it. A file with several bodies is so packed body by body.
+std::vector<Mesh> splitBodies(const Mesh& surface);
 
 }  // namespace innersphere

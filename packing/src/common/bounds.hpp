@@ -24,6 +24,14 @@ inline void extend(Bounds& box, const Vec3d& p) {
     box.max[k] = std::max(box.max[k], p[k]);
   }
 }
+/// Returns the box around the triangles.
+inline Bounds boundsOf(const Mesh& mesh) {
+  Bounds box = emptyBounds();
+  for (const auto& t : mesh.triangles) {
+    for (std::uint32_t v : t) extend(box, mesh.vertices[v]);
+  }
+  return box;
+}
 inline Vec3d centre(const Bounds& box) {
   return 0.5 * (box.min + box.max);
 }

@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "innersphere/error.hpp"
+#include "innersphere/replace_file.hpp"
 
 namespace innersphere {
 namespace {
@@ -31,21 +32,15 @@ bool exists(const std::string& path) {
   return fs::exists(fs::symlink_status(path, error));
 }
 
-// The file that a symbolic link leads to, there or not; the path itself if it is none.
-std::string linkTarget(const std::string& path) {
-  constexpr int kMostLinks = 40;  // as many as Linux follows
-  fs::path target = path;
-  std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
-    target = target.parent_path() / fs::read_symlink(target, error);
-  }
-  return target.string();
+[[noreturn]] void failToWrite(const std::string& path, int code) {
+  throw Error(ErrorCode::write_failed, "cannot write " + path + " (" + std::strerror(code) +
+                                           "); check the folder and the free space");
 }
 
 // Gives a new file the permissions of the one that it will replace.
-bool keepMode(const std::string& replaced, FILE* file) {
+bool keepMode(const std::string& replaced, const std::string& file) {
   struct stat old {};
-  return stat(replaced.c_str(), &old) != 0 || fchmod(fileno(file), old.st_mode & 07777) == 0;
+  return stat(replaced.c_str(), &old) != 0 || chmod(file.c_str(), old.st_mode & 07777) == 0;
 }
 
 }  // namespace
@@ -81,7 +76,18 @@ std::string readFile(const std::string& path) {
   return bytes;
 }
 
-void writeFile(const std::string& path, const std::string& bytes, bool overwrite) {
+std::string linkTarget(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  fs::path target = path;
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
+    target = target.parent_path() / fs::read_symlink(target, error);
+  }
+  return target.string();
+}
+
+void replaceFile(const std::string& path, bool overwrite,
+                 const std::function<void(const std::string& temporary)>& write) {
   if (!overwrite && exists(path)) {
     throw Error(ErrorCode::file_exists, path + " exists already; choose another name or ask for overwriting");
   }
@@ -89,23 +95,26 @@ void writeFile(const std::string& path, const std::string& bytes, bool overwrite
   const std::string target = linkTarget(path);
   const std::string temporary =
       target + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
-  const auto fail = [&](int code) {
-    throw Error(ErrorCode::write_failed, "cannot write " + path + " (" + std::strerror(code) +
-                                             "); check the folder and the free space");
-  };
-  FILE* file = std::fopen(temporary.c_str(), "wbx");
-  if (!file) fail(errno);
-  errno = 0;
-  const bool written =
-      keepMode(target, file) && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const bool closed = std::fclose(file) == 0;
-  int code = errno;
-  if (written && closed) {
-    if (std::rename(temporary.c_str(), target.c_str()) == 0) return;
-    code = errno;
+  try {
+    write(temporary);
+    if (!keepMode(target, temporary) || std::rename(temporary.c_str(), target.c_str()) != 0) {
+      failToWrite(path, errno);
+    }
+  } catch (...) {
+    std::remove(temporary.c_str());
+    throw;
   }
-  std::remove(temporary.c_str());
-  fail(code);
+}
+
+void writeFile(const std::string& path, const std::string& bytes, bool overwrite) {
+  replaceFile(path, overwrite, [&](const std::string& temporary) {
+    FILE* file = std::fopen(temporary.c_str(), "wbx");
+    if (!file) failToWrite(path, errno);
+    errno = 0;
+    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    const bool closed = std::fclose(file) == 0;
+    if (!written || !closed) failToWrite(path, errno);
+  });
 }
 
 }  // namespace innersphere

@@ -45,12 +45,8 @@ void Moments::add(const Moments& other) {
 // Each triangle and the origin span a tetrahedron with corners 0, a, b, c and signed volume det / 6, over
 // which the integral of x_i x_j is det / 120 (s_i s_j + a_i a_j + b_i b_j + c_i c_j), s = a + b + c.
 Moments momentsOf(const Mesh& mesh) {
-  Bounds box = emptyBounds();
-  for (const auto& t : mesh.triangles) {
-    for (std::uint32_t v : t) extend(box, mesh.vertices[v]);
-  }
   Moments sum;
-  sum.origin = centre(box);
+  sum.origin = centre(boundsOf(mesh));
   for (const auto& t : mesh.triangles) {
     const Vec3d a = mesh.vertices[t[0]] - sum.origin;
     const Vec3d b = mesh.vertices[t[1]] - sum.origin;

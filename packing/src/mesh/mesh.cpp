@@ -44,6 +44,25 @@ void mendOpenEdges(Mesh& mesh, Topology& topology, MeshReport& report) {
   keepIfBetter(std::move(without_flat), counted(flat, "triangle") + " without area removed");
 }
 
+// A triangle that is there twice counts twice. Two with the same corners that face away from each other count
+// as nothing, and are as good as a wall; where every triangle has such a twin, the mesh was exported for both
+// sides to be seen.
+void dropDuplicates(Mesh& mesh, MeshReport& report) {
+  report.duplicates = dropRepeated(mesh);
+  if (report.duplicates > 0) {
+    report.notes.push_back(counted(report.duplicates, "triangle") + " removed that are there more than once");
+  }
+  Mesh one_sided = mesh;
+  const std::size_t twins = dropTwins(one_sided);
+  if (2 * twins != mesh.triangles.size()) return;
+  orientAlike(one_sided);
+  if (!topologyOf(one_sided).unbalanced.empty()) return;
+  mesh = std::move(one_sided);
+  report.duplicates += twins;
+  report.notes.push_back("every triangle had a twin that faces the other way: " + counted(twins, "twin") +
+                         " removed");
+}
+
 // Closes each loop of unbalanced edges with a fan around its middle, so that no sphere bulges far through a
 // hole and the winding number is an integer everywhere.
 std::size_t closeLoops(Mesh& mesh, const Topology& topology) {
@@ -143,6 +162,7 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
   if (report.degenerate > 0) {
     report.notes.push_back(counted(report.degenerate, "triangle") + " with two equal corners removed");
   }
+  dropDuplicates(mesh, report);
   Topology topology = topologyOf(mesh);
   if (!topology.unbalanced.empty()) mendOpenEdges(mesh, topology, report);
   report.flipped_edges = topology.flipped_edges;
@@ -170,7 +190,7 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
   const ShellsReport shells = orderShells(mesh, topology);
   noteShells(shells, report);
   noteCuts(findCuts(mesh), report);
-  const bool may_overlap = report.cuts > 0 || shells.boxes_meet;
+  const bool may_overlap = report.cuts > 0 || shells.boxes_meet || report.non_manifold_edges > 0;
 
   auto solid = std::make_unique<MeshSolid>(std::move(mesh), name, may_overlap);
   const double size = diagonal(solid->bounds());

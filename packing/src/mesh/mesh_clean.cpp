@@ -1,8 +1,10 @@
 #include "mesh/mesh_clean.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "common/bounds.hpp"
 
@@ -30,6 +32,30 @@ struct HashCell {
     return h;
   }
 };
+
+// Corners from the lowest on, in the triangle's sense or sorted.
+std::array<std::uint32_t, 3> fromLowest(std::array<std::uint32_t, 3> t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  return t;
+}
+std::array<std::uint32_t, 3> sorted(std::array<std::uint32_t, 3> t) {
+  std::sort(t.begin(), t.end());
+  return t;
+}
+
+struct HashCorners {
+  std::size_t operator()(const std::array<std::uint32_t, 3>& t) const {
+    return mix(mix(mix(0, t[0]), t[1]), t[2]);
+  }
+};
+
+// Removes triangles with the same key as an earlier one.
+template <class Key>
+std::size_t dropEqual(Mesh& mesh, const Key& key) {
+  std::unordered_set<std::array<std::uint32_t, 3>, HashCorners> seen;
+  seen.reserve(mesh.triangles.size());
+  return std::erase_if(mesh.triangles, [&](const auto& t) { return !seen.insert(key(t)).second; });
+}
 
 bool collapsed(const std::array<std::uint32_t, 3>& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
@@ -91,6 +117,14 @@ std::size_t weldClose(Mesh& mesh, double tolerance) {
 
 std::size_t dropCollapsed(Mesh& mesh) {
   return std::erase_if(mesh.triangles, collapsed);
+}
+
+std::size_t dropRepeated(Mesh& mesh) {
+  return dropEqual(mesh, fromLowest);
+}
+
+std::size_t dropTwins(Mesh& mesh) {
+  return dropEqual(mesh, sorted);
 }
 
 std::size_t dropFlat(Mesh& mesh) {

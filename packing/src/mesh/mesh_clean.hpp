@@ -19,6 +19,12 @@ std::size_t dropCollapsed(Mesh& mesh);
 /// Removes triangles with three different corners and no area. Returns how many went.
 std::size_t dropFlat(Mesh& mesh);
 
+/// Removes triangles with the same corners, in the same sense, as an earlier one. Returns how many went.
+std::size_t dropRepeated(Mesh& mesh);
+
+/// Removes the second triangle of each two with the same corners in opposite senses. Returns how many went.
+std::size_t dropTwins(Mesh& mesh);
+
 /// Turns a triangle over.
 void flip(std::array<std::uint32_t, 3>& triangle);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/bounds.hpp"
 #include "mesh/mass_properties.hpp"
@@ -65,7 +66,39 @@ bool boxesMeet(const std::vector<Shell>& shells) {
   return false;
 }
 
+/// The smallest of the shells that face outwards around this one; none if there is none.
+std::optional<std::size_t> hostOf(const std::vector<Shell>& shells, std::size_t cavity) {
+  std::optional<std::size_t> host;
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    if (shells[i].facing < 0 || (host && !holds(shells[*host].box, shells[i].box))) continue;
+    if (isInside(shells[cavity], shells[i])) host = i;
+  }
+  return host;
+}
+
+void append(Mesh& mesh, const Mesh& more) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const auto& t : more.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
 }  // namespace
+
+std::vector<Mesh> splitBodies(const Mesh& surface) {
+  const std::vector<Shell> shells = splitShells(surface, topologyOf(surface));
+  std::vector<Mesh> bodies;
+  std::vector<std::size_t> number(shells.size());
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    if (shells[i].facing < 0) continue;
+    number[i] = bodies.size();
+    bodies.push_back(shells[i].mesh);
+  }
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    if (shells[i].facing > 0) continue;
+    if (const auto host = hostOf(shells, i)) append(bodies[number[*host]], shells[i].mesh);
+  }
+  return bodies;
+}
 
 ShellsReport orderShells(Mesh& mesh, const Topology& topology) {
   std::vector<Shell> shells = splitShells(mesh, topology);

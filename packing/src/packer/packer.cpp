@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "innersphere/error.hpp"
+#include "mesh/mesh_report.hpp"
 #include "packer/ball.hpp"
 #include "packer/cell_volumes.hpp"
 #include "packer/container.hpp"
@@ -83,6 +84,19 @@ struct Problem {
   SurfaceSamples samples;
   double volume, enough, gap, smallest;
 };
+
+/// Says at once of a sheet what the search for spheres would find out in minutes. A little less than the
+/// smallest radius, because a ball of just the largest radius touches the surface at few points.
+void requireThickness(const Problem& problem) {
+  const SurfaceSamples& samples = problem.samples;
+  if (samples.empty() || samples.touchedByBall(problem.container, 0.9 * problem.smallest)) return;
+  throw Error(ErrorCode::no_sphere_fits,
+              "no sphere of the smallest allowed radius, " +
+                  text(problem.smallest * problem.container.side()) + " m, fits into '" +
+                  problem.container.solid().name() +
+                  "': it is a sheet, thinner than that everywhere; give it a thickness, or ask for a smaller "
+                  "min_radius");
+}
 
 /// Calls the user back, and ends the work if the user wants that.
 class Reporter {
@@ -210,6 +224,7 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   require(options.gap == 0 || !problem.samples.empty(),
           "a gap can only be asked for if the solid has a surface");
 
+  requireThickness(problem);
   const Reporter report(progress, solid.name());
   tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
   const Chosen chosen = choose(problem, place(problem, arena, report));

@@ -23,11 +23,13 @@ SurfaceSamples::SurfaceSamples(const Mesh& surface, const Container& container) 
     return container.fromWorld(surface.vertices[surface.triangles[triangle][k]]);
   };
   std::vector<double> area(surface.triangles.size());
+  std::vector<Point> inwards(area.size());
   for (std::size_t t = 0; t < area.size(); ++t) {
     const Point a = corner(t, 0), ab = corner(t, 1) - a, ac = corner(t, 2) - a;
     const Point cross(ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
                       ab[0] * ac[1] - ab[1] * ac[0]);
     area[t] = cross.norm() / 2;
+    if (area[t] > 0) inwards[t] = -cross / (2 * area[t]);
   }
   const double total = std::accumulate(area.begin(), area.end(), 0.0);
   if (!(total > 0)) return;
@@ -44,7 +46,17 @@ SurfaceSamples::SurfaceSamples(const Mesh& surface, const Container& container) 
     }
     const Point a = corner(triangle, 0);
     points_.push_back(a + u * (corner(triangle, 1) - a) + v * (corner(triangle, 2) - a));
+    inwards_.push_back(inwards[triangle]);
   }
+}
+
+bool SurfaceSamples::touchedByBall(const Container& container, double radius) const {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point centre = points_[i] + radius * inwards_[i];
+    const double empty = radius * (1 - 1e-6);
+    if (std::isinf(container.closest(centre, empty).distance) && container.contains(centre)) return true;
+  }
+  return false;
 }
 
 bool SurfaceSamples::covered(const SphereGrid& grid, double gap, std::size_t& first) const {

@@ -18,6 +18,9 @@ class SurfaceSamples {
 
   bool empty() const { return points_.empty(); }
 
+  /// Returns true if a ball of this radius lies in the solid and touches its surface at one of the points.
+  bool touchedByBall(const Container& container, double radius) const;
+
   /// Returns true if no point is farther than `gap` from a ball. Starts at point `first` and moves it to the
   /// first that is too far, so that asking again after more balls were added costs little.
   bool covered(const SphereGrid& grid, double gap, std::size_t& first) const;
@@ -32,6 +35,7 @@ class SurfaceSamples {
 
  private:
   std::vector<Point> points_;
+  std::vector<Point> inwards_;  // unit normals
 };
 
 }  // namespace innersphere

@@ -1,9 +1,11 @@
 // Overlap queries: arrays of poses in, structured arrays out, without the GIL in between.
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
 
 #include <cstddef>
 #include <mutex>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "bindings.hpp"
@@ -71,15 +73,16 @@ nb::tuple ranges(QueryResult::Ranges<T>&& found, nb::handle type) {
 /// Runs queries for Python. One at a time: a second thread waits for the first.
 class Query {
  public:
-  Query(const std::string& backend, int threads)
-      : context_(QueryContextOptions{parseWord("backend", backend, kBackends), threads, false}) {}
+  Query(const std::string& backend, int threads, std::variant<std::monostate, int, std::string> device)
+      : context_(QueryContextOptions{parseWord("backend", backend, kBackends), threads, false,
+                                     deviceOf(device)}) {}
 
   nb::object overlap(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b,
                      const std::string& want, const std::string& estimator, double margin) {
     const Batch batch(a, b, pose_a, pose_b, margin);
-    std::vector<Overlap> overlaps =
-        run(batch, {parseWord("want", want, kWants), parseWord("estimator", estimator, kEstimators)})
-            .overlaps;
+    const QueryOptions options{parseWord("want", want, kWants),
+                               parseWord("estimator", estimator, kEstimators)};
+    std::vector<Overlap> overlaps = batch.isSweep() ? sweep(batch, options) : run(batch, options).overlaps;
     const nb::object array = structuredArray(std::move(overlaps), types.overlap);
     if (batch.shape.empty()) return array[0];
     if (batch.shape.size() == 1) return array;
@@ -118,28 +121,61 @@ class Query {
     double margin;
     std::vector<std::size_t> shape;
     std::size_t count = 1;
+    bool a_stands = false;  ///< in one pose
 
     Batch(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b, double margin)
         : a(a), b(b), poses_a(pose_a, "pose_a"), poses_b(pose_b, "pose_b"), margin(margin) {
       shape = commonShape(poses_a.shape(), poses_b.shape(), "pose_a and pose_b");
+      a_stands = poses_a.isSingle();
       poses_a.broadcast(shape);
       poses_b.broadcast(shape);
       for (const std::size_t n : shape) count *= n;
     }
+
+    /// Whether the arrays can be read as they are: A stands still, and no frame differs from its solid's.
+    bool isSweep() const {
+      return a_stands && !shape.empty() && a.packing().origin == Vec3d{} && b.packing().origin == Vec3d{} &&
+             poses_b.inPlace().count > 0;
+    }
   };
 
-  QueryResult run(const Batch& batch, const QueryOptions& options) {
-    const nb::gil_scoped_release release;
-    const std::lock_guard lock(mutex_);
-    const Packing& a = batch.a.packing();
-    const Packing& b = batch.b.packing();
+  static int deviceOf(const std::variant<std::monostate, int, std::string>& device) {
+    if (std::holds_alternative<std::monostate>(device)) return kCurrentDevice;
+    if (const int* number = std::get_if<int>(&device)) {
+      if (*number < 0) throw nb::value_error("device is negative; the first one is 0");
+      return *number;
+    }
+    if (std::get<std::string>(device) != "all")
+      throw nb::value_error("device must be a number, \"all\" or None");
+    return kAllDevices;
+  }
+
+  static PairQuery pairOf(const Batch& batch) {
     PairQuery query;
     query.a = batch.a.model.get();
     query.b = batch.b.model.get();
     query.prefix_a = batch.a.count;
     query.prefix_b = batch.b.count;
     query.margin = batch.margin;
-    queries_.assign(batch.count, query);
+    return query;
+  }
+
+  std::vector<Overlap> sweep(const Batch& batch, const QueryOptions& options) {
+    const nb::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
+    PairQuery pair = pairOf(batch);
+    batch.poses_a.forEach(1, [&](std::size_t, const Placement& pose) { pair.placement_a = pose; });
+    std::vector<Overlap> overlaps(batch.count);
+    context_.sweep(pair, batch.poses_b.inPlace(), options, overlaps.data());
+    return overlaps;
+  }
+
+  QueryResult run(const Batch& batch, const QueryOptions& options) {
+    const nb::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
+    const Packing& a = batch.a.packing();
+    const Packing& b = batch.b.packing();
+    queries_.assign(batch.count, pairOf(batch));
     batch.poses_a.forEach(batch.count, [&](std::size_t i, const Placement& pose) {
       queries_[i].placement_a = placed(a, pose);
     });
@@ -223,11 +259,17 @@ void bindOverlaps(nb::module_& module) {
 backend: "auto" (the CPU or, if there is enough work and a device, CUDA; both give the same bits), "cpu", or "cuda",
     which raises NoDeviceError where there is none.
 threads: of the CPU; 0 are all cores. Results do not depend on it.
+device: the CUDA device, from 0 on; "all": they share the poses of a query; None: the current one, as a rule 0. Results
+    do not depend on it.
+
+A query is fastest where A stands still and the poses of B are one array of doubles in C's order, of matrices or of
+positions and quaternions: it is then read in place, by a device, too.
 
 The GIL is free while a query runs. One object runs one query at a time: give each thread its own.)")
-      .def(nb::init<const std::string&, int>(), "backend"_a = "auto", "threads"_a = 0,
+      .def(nb::init<const std::string&, int, std::variant<std::monostate, int, std::string>>(),
+           "backend"_a = "auto", "threads"_a = 0, "device"_a.none() = nb::none(),
            nb::sig("def __init__(self, backend: typing.Literal['auto', 'cpu', 'cuda'] = 'auto', threads: int "
-                   "= 0) -> None"))
+                   "= 0, device: int | typing.Literal['all'] | None = None) -> None"))
       .def(
           "overlap", &Query::overlap, "a"_a, "b"_a, "pose_a"_a.none() = nb::none(),
           "pose_b"_a.none() = nb::none(), nb::kw_only(), "want"_a = "wrench", "estimator"_a = "volume_true",
@@ -294,6 +336,7 @@ area        sum of the areas of their rims, along the lines from A's centres to 
       .def_prop_ro("last_backend", &Query::lastBackend,
                    nb::sig("def last_backend(self) -> typing.Literal['cpu', 'cuda']"),
                    "Where the last query ran: cpu or cuda; cpu before the first.");
+  module.def("cuda_device_count", &cudaDeviceCount, "The number of CUDA devices that answer.");
   module.def("cuda_available", &cudaAvailable, "Whether CUDA is built in and a device answers.");
 }
 

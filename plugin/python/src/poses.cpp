@@ -52,6 +52,20 @@ void Poses::Operand::broadcast(const std::vector<std::size_t>& to) {
   strides = std::move(wide);
 }
 
+/// Whether all elements lie one after the other, in C's order.
+bool Poses::Operand::isInRow() const {
+  std::int64_t next = 1;
+  for (std::size_t k = inner.size(); k-- > 0;) {
+    if (inner[k] != next) return false;
+    next *= static_cast<std::int64_t>(array.shape(array.ndim() - inner.size() + k));
+  }
+  for (std::size_t k = shape.size(); k-- > 0;) {
+    if (shape[k] != 1 && strides[k] != next) return false;
+    next *= static_cast<std::int64_t>(shape[k]);
+  }
+  return true;
+}
+
 Poses::Operand Poses::operand(nb::handle object, const std::vector<std::size_t>& inner_shape,
                               const std::string& name) {
   Operand one;
@@ -97,6 +111,23 @@ Poses::Poses(nb::handle poses, const std::string& name) : name_(name) {
 void Poses::broadcast(const std::vector<std::size_t>& shape) {
   for (Operand& one : operands_) one.broadcast(shape);
   shape_ = shape;
+}
+
+innersphere::Poses Poses::inPlace() const {
+  innersphere::Poses poses;
+  if (operands_.empty()) return poses;
+  for (const Operand& one : operands_) {
+    if (!one.isInRow()) return poses;
+  }
+  poses.count = 1;
+  for (const std::size_t n : shape_) poses.count *= n;
+  if (operands_.size() == 1) {
+    poses.matrices = operands_[0].array.data();
+  } else {
+    poses.positions = operands_[0].array.data();
+    poses.quaternions = operands_[1].array.data();
+  }
+  return poses;
 }
 
 Placement Poses::placement(std::size_t number, const std::vector<std::size_t>& at) const {

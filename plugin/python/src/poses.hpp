@@ -7,6 +7,7 @@
 
 #include "bindings.hpp"
 #include "innersphere/placement.hpp"
+#include "innersphere/poses.hpp"
 
 namespace innersphere::python {
 
@@ -23,6 +24,12 @@ class Poses {
 
   /// Makes all() give a pose for each element of `shape`, to which its own shape can be broadcast.
   void broadcast(const std::vector<std::size_t>& shape);
+
+  /// Returns whether there is one pose only, and not a shape of them.
+  bool isSingle() const { return shape_.empty(); }
+
+  /// Returns the numbers as they lie in memory, one pose after the other, if they do; else null arrays.
+  innersphere::Poses inPlace() const;
 
   /// Calls `use(i, placement)` for each element of the shape, in C's order. Does not need the GIL. Throws
   /// Error bad_argument, which names the element, for a matrix whose last row is not 0 0 0 1.
@@ -48,6 +55,7 @@ class Poses {
     std::vector<std::int64_t> inner;    ///< the strides of a single pose
     const double* at(const std::vector<std::size_t>& index) const;
     void broadcast(const std::vector<std::size_t>& to);
+    bool isInRow() const;
   };
 
   Operand operand(nb::handle array, const std::vector<std::size_t>& inner_shape, const std::string& name);

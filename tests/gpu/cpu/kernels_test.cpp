@@ -68,10 +68,10 @@ Recorder record(const CpuKernels& kernels, const PreparedQuery& query) {
   Recorder recorder(kernels, query.setup);
   Candidates candidates;
   const core::Traversal traversal = core::traversalOf(query.setup, true);
-  for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
+  for (std::uint32_t c = 0; c < query.setup.clusters[0]; ++c)
     recorder.balls.push_back(kernels.ballsMeeting(traversal, query.grid_b->onCpu().occupancy(),
                                                   &traversal.own.clusters[c].ball, 1));
-  for (std::uint32_t c = 0; c < query.setup.a.clusters; ++c)
+  for (std::uint32_t c = 0; c < query.setup.clusters[0]; ++c)
     EXPECT_TRUE(
         kernels.traverse(traversal, query.grid_b->onCpu().listedSpheres(), &c, 1, candidates, recorder));
   recorder.take(candidates);

@@ -1,6 +1,9 @@
 // What is wrong with a mesh: found, named, mended where that is safe, refused where not.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "innersphere/error.hpp"
 #include "innersphere/mesh.hpp"
 #include "mesh_oracles.hpp"
@@ -200,6 +203,69 @@ TEST(MeshJudge, DegenerateTrianglesGo) {
   EXPECT_EQ(report.triangles, 12u);
   EXPECT_EQ(report.vertices, 8u);
   EXPECT_NEAR(solid->massProperties().volume, 1, 1e-14);
+}
+
+TEST(MeshJudge, TrianglesThatAreThereTwiceCountOnce) {
+  Mesh twice = boxMesh();
+  append(twice, boxMesh());  // with vertices of their own
+  for (std::size_t t = 12; t < 24; ++t) {
+    auto& corners = twice.triangles[t];
+    std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+  }
+  MeshReport report;
+  const auto solid = makeSolid(twice, "box", {}, &report);
+  EXPECT_EQ(report.duplicates, 12u);
+  EXPECT_NE(joined(report).find("12 triangles removed that are there more than once"), std::string::npos)
+      << joined(report);
+  EXPECT_NEAR(solid->massProperties().volume, 1, 1e-14);
+}
+
+TEST(MeshJudge, MeshesForBothSidesLoseOne) {
+  Mesh both = boxMesh();
+  append(both, inverted(boxMesh()));
+  std::mt19937 random(33);
+  std::shuffle(both.triangles.begin(), both.triangles.end(), random);
+  MeshReport report;
+  const auto solid = makeSolid(both, "box", {}, &report);
+  EXPECT_EQ(report.duplicates, 12u);
+  EXPECT_NE(joined(report).find("faces the other way"), std::string::npos) << joined(report);
+  EXPECT_NEAR(solid->massProperties().volume, 1, 1e-14);
+  EXPECT_TRUE(solid->contains({0, 0, 0}));
+}
+
+// The same surface twice, cut into triangles along the other diagonals: no triangle is there twice.
+TEST(MeshJudge, SurfacesThatAreThereTwiceCountOnce) {
+  Mesh twice = boxMesh(), other = boxMesh();
+  for (std::size_t t = 0; t < 12; t += 2) {
+    auto &a = other.triangles[t], &b = other.triangles[t + 1];
+    std::set<std::uint32_t> corners(a.begin(), a.end());
+    corners.insert(b.begin(), b.end());
+    std::uint32_t apex_a = 0, apex_b = 0;
+    for (std::uint32_t v : corners) {
+      if (std::find(a.begin(), a.end(), v) == a.end()) apex_b = v;
+      if (std::find(b.begin(), b.end(), v) == b.end()) apex_a = v;
+    }
+    while (a[0] != apex_a) std::rotate(a.begin(), a.begin() + 1, a.end());
+    const std::uint32_t from = a[1], to = a[2];
+    a = {apex_a, from, apex_b};
+    b = {apex_a, apex_b, to};
+  }
+  append(twice, other);
+  const auto solid = makeSolid(twice, "box");
+  EXPECT_NEAR(solid->massProperties().volume, 1, 0.05);
+}
+
+TEST(MeshJudge, BodiesAreSplitWithTheirCavities) {
+  Mesh mesh = boxMesh({0, 0, 0}, {1, 1, 1});
+  append(mesh, inverted(boxMesh({5.25, 0.25, 0.25}, {5.75, 0.75, 0.75})));
+  append(mesh, boxMesh({5, 0, 0}, {6, 1, 1}));
+  append(mesh, boxMesh({5.4, 0.4, 0.4}, {5.6, 0.6, 0.6}));  // loose in the hollow
+  const auto bodies = splitBodies(makeSolid(mesh, "three")->surface());
+  ASSERT_EQ(bodies.size(), 3u);
+  EXPECT_NEAR(volumeOf(bodies[0]), 1, 1e-12);
+  EXPECT_NEAR(volumeOf(bodies[1]), 1 - 0.125, 1e-12);
+  EXPECT_NEAR(volumeOf(bodies[2]), 0.008, 1e-12);
+  for (const Mesh& body : bodies) EXPECT_TRUE(isClosedManifold(body));
 }
 
 // Corners that differ in the last digits are welded only because the mesh is open otherwise.

@@ -23,41 +23,11 @@ Escape leastEscape(const TestWorld& world) {
       Cubes{world.bodies[count - 1]->getWorldTransform(), world.bodies[count - 2]->getWorldTransform()});
 }
 
-class CrossingEdges : public testing::TestWithParam<std::string> {
- protected:
-  static ContactOptions rigid() {
-    ContactOptions options;
-    options.response = Response::rigid;  // its contacts have their true depths
-    return options;
-  }
-};
+class CrossingEdges : public testing::TestWithParam<std::string> {};
 
 TEST_P(CrossingEdges, PushOneWayThatIsTheLeast) {
   const auto shape = makeCube(GetParam());
-  const btTransform turn(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(0.7)));
-  int count = 0;
-  for (const Crossing& crossing : crossings()) {
-    Cubes cubes = place(crossing);
-    cubes = {turn * cubes.upper, turn * cubes.lower};
-    const Escape escape = leastEscape(cubes);
-    if (!escape.between_edges || escape.next < 1.2 * escape.depth) continue;
-    SCOPED_TRACE(describe(crossing));
-    ++count;
-    TestWorld world(rigid());
-    world.add(shape, 0, cubes.lower.getOrigin(), cubes.lower.getRotation());
-    world.add(shape, 1, cubes.upper.getOrigin(), cubes.upper.getRotation());
-    world.world.performDiscreteCollisionDetection();
-    const auto points = world.contactsOfLast();
-    ASSERT_GE(points.size(), 1u);
-    EXPECT_NEAR(-points[0].getDistance(), escape.depth, 1e-4);
-    const btVector3& normal = points[0].m_normalWorldOnB;
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(normal[i], escape.direction[i], 1e-3);
-    // What else touches pushes the same way, or not at all.
-    for (const btManifoldPoint& point : points) {
-      EXPECT_TRUE(point.getDistance() > 0 || point.m_normalWorldOnB.dot(normal) > btScalar(0.95));
-    }
-  }
-  EXPECT_GT(count, 400);
+  EXPECT_GT(expectLeastPushes(shape, shape, 1), 400);
 }
 
 /// The corner of a cube in the face of another, where no faces lie on each other.
@@ -80,7 +50,7 @@ TEST_P(CrossingEdges, LeaveCornersToTheFacesTheyAreIn) {
           if (escape.between_edges || escape.next < 1.2 * escape.depth) continue;
           SCOPED_TRACE(testing::Message() << lean << ' ' << turn << ' ' << x << ' ' << depth);
           ++count;
-          TestWorld world(rigid());
+          TestWorld world(rigidContacts());
           world.add(shape, 0, cubes.lower.getOrigin());
           world.add(shape, 1, cubes.upper.getOrigin(), cubes.upper.getRotation());
           world.world.performDiscreteCollisionDetection();
@@ -96,41 +66,15 @@ TEST_P(CrossingEdges, LeaveCornersToTheFacesTheyAreIn) {
 }
 
 TEST_P(CrossingEdges, GrowWithScaleAndMargin) {
-  constexpr double kScale = 2, kMargin = 0.01;
+  constexpr double kMargin = 0.01;
   const auto shape = makeCube(GetParam());
-  shape->setLocalScaling(btVector3(1, 1, 1) * btScalar(kScale));
   shape->setMargin(btScalar(kMargin));
-  for (const double depth : {-0.005, 0.02, 0.1}) {
-    const Cubes cubes = place({depth, 1.3, 0.1, -0.2, 0.1, 0.05});
-    TestWorld world(rigid());
-    world.add(shape, 0, cubes.lower.getOrigin() * btScalar(kScale), cubes.lower.getRotation());
-    world.add(shape, 1, cubes.upper.getOrigin() * btScalar(kScale), cubes.upper.getRotation());
-    world.world.performDiscreteCollisionDetection();
-    const auto points = world.contactsOfLast();
-    ASSERT_GE(points.size(), 1u) << depth;
-    EXPECT_NEAR(-points[0].getDistance(), depth * kScale + 2 * kMargin, 1e-4);
-    EXPECT_GT(points[0].m_normalWorldOnB.z(), 0.9999) << depth;
-  }
+  expectDepthsOfTwiceTheSize(shape, shape, 2 * kMargin);
 }
 
 TEST_P(CrossingEdges, CarryACubeThatIsGuided) {
   const auto shape = makeCube(GetParam());
-  for (const double lean : {0.0, 0.2}) {
-    const Cubes cubes = place({-0.05, 1.3, lean, -lean, 0.1, 0.05});
-    TestWorld world;
-    world.add(shape, 0, cubes.lower.getOrigin(), cubes.lower.getRotation());
-    btRigidBody& cube = world.add(shape, 1, cubes.upper.getOrigin(), cubes.upper.getRotation());
-    cube.setLinearFactor(btVector3(0, 0, 1));
-    cube.setAngularFactor(0);
-    double deepest = 0;
-    for (int i = 0; i < 480; ++i) {
-      world.run(1.0 / 240, 1.0 / 240);
-      deepest = std::max(deepest, leastEscape(world).depth);
-    }
-    EXPECT_LT(deepest, 0.01);
-    EXPECT_NEAR(leastEscape(world).depth, 0, 0.002);
-    EXPECT_NEAR(cube.getLinearVelocity().z(), 0, 1e-3);
-  }
+  expectGuidedCubeIsCarried(shape, shape);
 }
 
 TEST_P(CrossingEdges, LetACubeTipToItsHeavySide) {
@@ -197,7 +141,7 @@ class CrossingEdgesOfAnAngle : public CrossingEdges {
                            one.z(), other.z());
     btQuaternion turn;
     axes.getRotation(turn);
-    TestWorld world(rigid());
+    TestWorld world(rigidContacts());
     world.add(makeShape(latticeAngle()), 0, btVector3(0, 0, 0));
     world.add(makeCube(GetParam()), 1, place + axes * btVector3(0, btScalar(0.5), btScalar(0.5)), turn);
     world.world.performDiscreteCollisionDetection();

@@ -21,11 +21,6 @@ using Kinds = std::tuple<std::string, std::string, bool>;
 
 class CrossingShapes : public testing::TestWithParam<Kinds> {
  protected:
-  static ContactOptions rigid() {
-    ContactOptions options;
-    options.response = Response::rigid;  // its contacts have their true depths
-    return options;
-  }
   const std::shared_ptr<btCollisionShape> packing = makeCube(std::get<0>(GetParam()));
   BulletCube other{std::get<1>(GetParam())};
   const std::shared_ptr<btCollisionShape> upper = std::get<2>(GetParam()) ? packing : other.shape;
@@ -33,74 +28,23 @@ class CrossingShapes : public testing::TestWithParam<Kinds> {
 };
 
 TEST_P(CrossingShapes, PushOneWayThatIsTheLeast) {
-  const btTransform turn(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(0.7)));
   // Spheres that have gone through a mesh do not see it.
   const double deepest = other.shape->isConcave() ? 0.1 : 0.25;
-  int count = 0;
-  for (const Crossing& crossing : crossings()) {
-    Cubes cubes = place(crossing);
-    cubes = {turn * cubes.upper, turn * cubes.lower};
-    const Escape escape = leastEscape(cubes);
-    if (!escape.between_edges || escape.next < 1.2 * escape.depth || crossing.depth > deepest) continue;
-    SCOPED_TRACE(describe(crossing));
-    ++count;
-    TestWorld world(rigid());
-    world.add(lower, 0, cubes.lower.getOrigin(), cubes.lower.getRotation());
-    world.add(upper, 1, cubes.upper.getOrigin(), cubes.upper.getRotation());
-    world.world.performDiscreteCollisionDetection();
-    const auto points = world.contactsOfLast();
-    ASSERT_GE(points.size(), 1u);
-    EXPECT_NEAR(-points[0].getDistance(), escape.depth, 1e-4);
-    const btVector3& normal = points[0].m_normalWorldOnB;
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(normal[i], escape.direction[i], 1e-3);
-    // What else touches pushes the same way, or not at all.
-    for (const btManifoldPoint& point : points) {
-      EXPECT_TRUE(point.getDistance() > 0 || point.m_normalWorldOnB.dot(normal) > btScalar(0.95));
-    }
-  }
-  EXPECT_GT(count, deepest > 0.2 ? 400 : 300);
+  EXPECT_GT(expectLeastPushes(upper, lower, deepest), deepest > 0.2 ? 400 : 300);
 }
 
 TEST_P(CrossingShapes, GrowWithScaleAndMargin) {
-  constexpr double kScale = 2, kMargin = 0.01;
+  constexpr double kMargin = 0.01;
   const bool rounded = std::get<1>(GetParam()) == "hull";  // of the others it is part of the size, or none
   packing->setMargin(btScalar(kMargin));
   if (rounded) other.shape->setMargin(btScalar(kMargin));
-  for (const auto& shape : {packing, other.shape})
-    shape->setLocalScaling(btVector3(1, 1, 1) * btScalar(kScale));
-  for (const double depth : {-0.005, 0.02, 0.1}) {
-    const Cubes cubes = place({depth, 1.3, 0.1, -0.2, 0.1, 0.05});
-    TestWorld world(rigid());
-    world.add(lower, 0, cubes.lower.getOrigin() * btScalar(kScale), cubes.lower.getRotation());
-    world.add(upper, 1, cubes.upper.getOrigin() * btScalar(kScale), cubes.upper.getRotation());
-    world.world.performDiscreteCollisionDetection();
-    const auto points = world.contactsOfLast();
-    ASSERT_GE(points.size(), 1u) << depth;
-    EXPECT_NEAR(-points[0].getDistance(), depth * kScale + (rounded ? 2 : 1) * kMargin, 1e-4);
-    EXPECT_GT(points[0].m_normalWorldOnB.z(), 0.9999) << depth;
-  }
+  expectDepthsOfTwiceTheSize(upper, lower, (rounded ? 2 : 1) * kMargin);
 }
 
 class CrossingShapesThatMove : public CrossingShapes {};
 
 TEST_P(CrossingShapesThatMove, CarryACubeThatIsGuided) {
-  for (const double lean : {0.0, 0.2}) {
-    const Cubes cubes = place({-0.05, 1.3, lean, -lean, 0.1, 0.05});
-    TestWorld world;
-    world.add(lower, 0, cubes.lower.getOrigin(), cubes.lower.getRotation());
-    btRigidBody& cube = world.add(upper, 1, cubes.upper.getOrigin(), cubes.upper.getRotation());
-    cube.setLinearFactor(btVector3(0, 0, 1));
-    cube.setAngularFactor(0);
-    const auto escape = [&] { return leastEscape(Cubes{cube.getWorldTransform(), cubes.lower}); };
-    double deepest = 0;
-    for (int i = 0; i < 480; ++i) {
-      world.run(1.0 / 240, 1.0 / 240);
-      deepest = std::max(deepest, escape().depth);
-    }
-    EXPECT_LT(deepest, 0.01);
-    EXPECT_NEAR(escape().depth, 0, 0.002);
-    EXPECT_NEAR(cube.getLinearVelocity().z(), 0, 1e-3);
-  }
+  expectGuidedCubeIsCarried(upper, lower);
 }
 
 class CrossingRidges : public testing::TestWithParam<std::string> {};

@@ -6,6 +6,7 @@
 #include "file/file_io.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/mesh.hpp"
+#include "mesh/import/gunzip.hpp"
 #include "mesh/import/read_apart.hpp"
 #include "mesh/import/read_assimp.hpp"
 #include "mesh/import/readers.hpp"
@@ -40,6 +41,19 @@ Reader readerOf(const std::string& ending) {
   return nullptr;
 }
 
+Mesh readAny(const std::string& path, bool own_process) {
+  const bool compressed = endingOf(path) == "gz";
+  const std::string ending = endingOf(compressed ? path.substr(0, path.size() - 3) : path);
+  if (const Reader reader = readerOf(ending)) {
+    return reader(compressed ? gunzip(readFile(path), path) : readFile(path), path);
+  }
+  if (compressed) {
+    throw Error(ErrorCode::bad_format,
+                path + " cannot be read: only .obj, .stl, .ply and .off may be compressed; unpack it");
+  }
+  return own_process ? readApart(readAssimp, path) : readAssimp(path);
+}
+
 void scaleBy(double scale, Mesh& mesh, const std::string& path) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     Vec3d& v = mesh.vertices[i];
@@ -59,11 +73,7 @@ Mesh readMesh(const std::string& path, const MeshOptions& options) {
                 "the scale of a mesh has to be a number over 0, not " + text(options.scale));
   }
   requireReadableFile(path);
-  const Reader reader = readerOf(endingOf(path));
-  const auto read_other = [&] {
-    return options.own_process ? readApart(readAssimp, path) : readAssimp(path);
-  };
-  Mesh mesh = reader ? reader(readFile(path), path) : read_other();
+  Mesh mesh = readAny(path, options.own_process);
   if (mesh.triangles.empty()) {
     throw Error(ErrorCode::empty_input, path + " has no triangles; export the surface, not points or curves");
   }
