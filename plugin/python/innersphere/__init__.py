@@ -19,6 +19,7 @@ from ._core import (
     cuda_device_count,
     overlap_dtype,
     pair_dtype,
+    solid,
     sphere_contact_dtype,
 )
 from ._distances import surface_of
@@ -73,6 +74,7 @@ __all__ = [
     "pair_dtype",
     "random_poses",
     "read",
+    "solid",
     "sphere_contact_dtype",
     "surface_of",
     "sweep",

@@ -17,6 +17,7 @@
 #include "innersphere/mesh.hpp"
 #include "innersphere/pack_mesh.hpp"
 #include "innersphere/packing_file.hpp"
+#include "innersphere/solids.hpp"
 
 namespace innersphere::python {
 namespace {
@@ -70,6 +71,22 @@ Mesh meshOf(const Vertices& vertices, const Faces& faces) {
     }
   }
   return meshFrom(vertices.data(), vertices.shape(0), faces.data(), faces.shape(0));
+}
+
+/// Vertices and faces of a named solid.
+nb::tuple surfaceOfSolid(const std::string& name) {
+  const Mesh mesh = makeNamedSolid(name)->surface();
+  auto* vertices = new std::vector<Vec3d>(mesh.vertices);
+  auto* faces = new std::vector<std::array<std::uint32_t, 3>>(mesh.triangles.begin(), mesh.triangles.end());
+  const nb::capsule vertex_owner(vertices,
+                                 [](void* p) noexcept { delete static_cast<std::vector<Vec3d>*>(p); });
+  const nb::capsule face_owner(
+      faces, [](void* p) noexcept { delete static_cast<std::vector<std::array<std::uint32_t, 3>>*>(p); });
+  static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+  return nb::make_tuple(
+      nb::ndarray<nb::numpy, double>(reinterpret_cast<double*>(vertices->data()), {vertices->size(), 3},
+                                     vertex_owner),
+      nb::ndarray<nb::numpy, std::uint32_t>(faces->data()->data(), {faces->size(), 3}, face_owner));
 }
 
 Mesh readScaledMesh(const std::filesystem::path& path, double scale) {
@@ -319,6 +336,14 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
 
   nb::class_<Mesh>(module, "Mesh", "Triangles that pack() takes.");
   module.def("read_mesh", &readScaledMesh, "path"_a, "scale"_a);
+  module.def(
+      "solid", &surfaceOfSolid, "name"_a,
+      nb::sig("def solid(name: str) -> tuple[numpy.typing.NDArray[numpy.float64], "
+              "numpy.typing.NDArray[numpy.uint32]]"),
+      R"(The surface of a solid to try things with: vertices (n, 3) [m] and faces (m, 3), as pack() takes them.
+
+name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, chazelle or tray; about 1 m in size. Nut and
+bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for another name.)");
   module.def("mesh_of", &meshOf, "vertices"_a, "faces"_a);
   module.def("pack", &packWith, "mesh"_a, "name"_a, "spheres"_a, "min_radius"_a, "density"_a, "gap"_a,
              "delta"_a, "overlap_errors"_a, "threads"_a, "repair"_a, "cache"_a, "progress"_a.none());
