@@ -99,3 +99,12 @@ def test_heat_map(run):
 def test_mujoco_forces(run):
     pytest.importorskip("mujoco")
     assert run("mujoco_forces")["data"].xpos[-1, 2] == pytest.approx(-3 * 0.94, abs=0.05)
+
+
+def test_autograd(run):
+    pytest.importorskip("torch")
+    found = run("autograd")
+    # Teeth in gaps: nearer than tip to tip, and no nearer than tip to root, the smallest radius of the rim.
+    radius = np.linalg.norm(found["gear"].vertices[:, :2], axis=1)
+    assert radius.max() + radius[radius > 0.3].min() - 0.02 < found["apart"] < 2 * radius.max() - 0.05
+    assert found["share"] < 1e-3

@@ -2,6 +2,7 @@
 
 import functools
 import importlib.util
+import multiprocessing
 import os
 import shutil
 import signal
@@ -134,7 +135,8 @@ def test_any_split_gives_the_same_bytes(block, packing, whole, tmp_path):
 def test_executors_of_the_user(tmp_path):
     with ThreadPoolExecutor(2) as pool:
         np.testing.assert_array_equal(innersphere.sweep(squares, 100, block=7, engine=pool), np.arange(100) ** 2)
-    with ProcessPoolExecutor(1) as pool, pytest.raises(innersphere.SweepError, match="a worker died while rows"):
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, mp_context=spawn) as pool, pytest.raises(innersphere.SweepError, match="a worker died while rows"):
         innersphere.sweep(deadly, 100, block=30, engine=pool)
 
 

@@ -50,7 +50,8 @@ def _parts(pose: Any) -> tuple[Array, Array]:
 
 def _turned(q: Array, v: Array) -> Array:
     u, w = q[..., :3], q[..., 3:]
-    return (w * w - (u * u).sum(-1, keepdims=True)) * v + 2 * ((u @ v)[..., None] * u + w * np.cross(u, v))
+    turned: Array = (w * w - (u * u).sum(-1, keepdims=True)) * v + 2 * ((u @ v)[..., None] * u + w * np.cross(u, v))
+    return turned
 
 
 def _torque_of_area(
