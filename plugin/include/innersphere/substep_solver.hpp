@@ -59,6 +59,7 @@ class SubstepSolver : public btConstraintSolver {
   SubstepSolver(const SubstepSolver&) = delete;
   SubstepSolver& operator=(const SubstepSolver&) = delete;
 
+  /// Returns the options of the next step.
   const SubstepOptions& options() const;
   /// Replaces the options from the next step on. Throws Error bad_argument if one is out of range.
   void setOptions(const SubstepOptions& options);

@@ -14,7 +14,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// Fastest push, in sizes of the smaller body per second, and in depths per second for what is deeper.
-constexpr btScalar kFastest = btScalar(0.5), kLeaving = 3;
+constexpr btScalar kFastestPush = btScalar(0.5), kLeavingRate = 3;
 
 /// Bullet's anisotropic friction: how far each axis of a body counts.
 btVector3 scaledByAnisotropy(const btCollisionObject& body, const btVector3& way) {
@@ -199,7 +199,7 @@ void ContactRows::fillSoftness(PointLanes& lanes, int lane, const btManifoldPoin
   const bool both_move = bodies.isMovable(pair.b);
   const btScalar size = both_move ? std::min(bodies.size(pair.a), bodies.size(pair.b)) : bodies.size(pair.a);
   Softness soft = both_move ? soft_ : soft_on_fixed_;
-  lanes.fastest[lane] = std::max(kFastest * size, -kLeaving * point.getDistance());
+  lanes.fastest[lane] = std::max(kFastestPush * size, -kLeavingRate * point.getDistance());
   if (const auto spring = springOf(point, substep_ * substeps_)) {
     soft = Softness::ofSpring(spring->stiffness, spring->damping, lanes.mass[lane], substep_);
     lanes.spring[lane] = 1;

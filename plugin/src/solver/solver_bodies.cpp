@@ -31,7 +31,7 @@ btVector3 changeBy(const btQuaternion& rotation, const btVector3& v) {
   return (across * rotation.w() + axis.cross(across)) * 2;
 }
 
-bool isUsable(const btRigidBody& body) {
+bool hasNumbers(const btRigidBody& body) {
   // Squares of velocities are formed: they have to be finite, too.
   return isFinite(body.getWorldTransform()) && std::isfinite(body.getLinearVelocity().length2()) &&
          std::isfinite(body.getAngularVelocity().length2()) && isFinite(body.getTotalForce()) &&
@@ -57,7 +57,7 @@ void SolverBodies::begin(btCollisionObject** objects, int count) {
   for (int i = 0; i < count; ++i) {
     btRigidBody* rigid = btRigidBody::upcast(objects[i]);
     if (rigid == nullptr || !canBeMoved(*rigid)) continue;
-    if (isUsable(*rigid)) {
+    if (hasNumbers(*rigid)) {
       add(*rigid);
       continue;
     }

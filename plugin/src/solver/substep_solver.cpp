@@ -20,7 +20,7 @@ namespace {
 /// Parts that a thread takes at once, and what makes a thread worth calling.
 constexpr int kBlocks = 4, kJoints = 8, kBodies = 32, kPointsForThread = 512;
 
-void check(const SubstepOptions& options) {
+void checkSubsteps(const SubstepOptions& options) {
   constexpr int kMost = 1000;
   if (options.substeps < 0 || options.substeps > kMost)
     throw Error(ErrorCode::bad_argument, "SubstepOptions::substeps is 0, or from 1 to 1000.");
@@ -162,7 +162,7 @@ const SubstepOptions& SubstepSolver::options() const {
 }
 
 void SubstepSolver::setOptions(const SubstepOptions& options) {
-  check(options);
+  checkSubsteps(options);
   impl_->options = options;
 }
 
