@@ -20,12 +20,12 @@ constexpr btScalar kSlack = btScalar(2e-3);
 constexpr btScalar kWideGaps = 2;
 
 /// This is a place of the surface.
-struct Place {
+struct CoveredPlace {
   btVector3 at;
   std::size_t sphere;  ///< the nearest
   btScalar gap;        ///< to it [m], negative inside
 };
-using Piece = std::array<Place, 3>;  ///< a triangle
+using Piece = std::array<CoveredPlace, 3>;  ///< a triangle
 
 /// Enlarges spheres, piece by piece of the surface.
 class Cover {
@@ -33,7 +33,7 @@ class Cover {
   Cover(const std::vector<Sphere>& spheres, std::size_t count, btScalar slack)
       : spheres_(spheres), tree_(spheres, count), slack_(slack), excess_(count, 0) {}
 
-  Place placeAt(const btVector3& at);
+  CoveredPlace placeAt(const btVector3& at);
   /// Enlarges a sphere until it holds the piece, or does that with both halves of the piece.
   void add(const Piece& piece);
   /// Enlarges all spheres alike, if there are wide gaps between them: balls much larger than the spheres that
@@ -56,8 +56,8 @@ class Cover {
   std::size_t last_ = 0;  ///< nearest to the last place, and mostly near the next
 };
 
-Place Cover::placeAt(const btVector3& at) {
-  Place place{at, last_, gap(at, last_)};
+CoveredPlace Cover::placeAt(const btVector3& at) {
+  CoveredPlace place{at, last_, gap(at, last_)};
   const auto isNear = [&](const btVector3& min, const btVector3& max) {
     btVector3 beyond = min - at;
     beyond.setMax(at - max);
@@ -75,10 +75,10 @@ Place Cover::placeAt(const btVector3& at) {
 void Cover::add(const Piece& piece) {
   std::size_t best = 0;
   btScalar least = BT_LARGE_FLOAT, slack = 0;
-  for (const Place& corner : piece) {
+  for (const CoveredPlace& corner : piece) {
     // The distance from a centre is convex: on a triangle it is largest at a corner.
     btScalar needed = 0, beyond_nearest = 0;
-    for (const Place& place : piece) {
+    for (const CoveredPlace& place : piece) {
       const btScalar here = gap(place.at, corner.sphere);
       needed = btMax(needed, here);
       beyond_nearest = btMax(beyond_nearest, here - place.gap);
@@ -97,7 +97,7 @@ bool Cover::addHalves(const Piece& piece) {
     if (here > length2) longest = k, length2 = here;
   }
   const std::size_t next = (longest + 1) % 3;
-  const Place middle = placeAt((piece[longest].at + piece[next].at) / 2);
+  const CoveredPlace middle = placeAt((piece[longest].at + piece[next].at) / 2);
   if (middle.at == piece[longest].at || middle.at == piece[next].at) return false;
   for (const std::size_t replaced : {next, longest}) {
     Piece half = piece;
@@ -124,7 +124,7 @@ void Cover::closeWideGaps() {
 std::vector<Sphere> searchSpheres(const Packing& packing, std::size_t count) {
   const Surface& surface = packing.surface;
   Cover cover(packing.spheres, count, kSlack * diagonalOf(surface));
-  std::vector<Place> corners;
+  std::vector<CoveredPlace> corners;
   corners.reserve(surface.vertices.size());
   for (const auto& vertex : surface.vertices) corners.push_back(cover.placeAt(toBullet(vertex)));
   for (const auto& t : surface.triangles) cover.add({corners[t[0]], corners[t[1]], corners[t[2]]});
