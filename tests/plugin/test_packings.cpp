@@ -49,7 +49,11 @@ Packing singleBall(double radius) {
   p.solid.volume = 4.0 / 3.0 * M_PI * std::pow(radius, 3);
   for (int i = 0; i < 3; ++i) p.solid.inertia[4 * i] = 0.4 * radius * radius * p.solid.volume;
   constexpr std::uint32_t kRings = 64, kSegments = 128;
-  for (std::uint32_t i = 0; i <= kRings; ++i) {
+  const auto vertex = [](std::uint32_t ring, std::uint32_t segment) {
+    return ring == 0 ? 0 : ring == kRings ? 1 : 2 + (ring - 1) * kSegments + segment % kSegments;
+  };
+  p.surface.vertices = {{0, 0, static_cast<float>(radius)}, {0, 0, static_cast<float>(-radius)}};
+  for (std::uint32_t i = 1; i < kRings; ++i) {
     for (std::uint32_t j = 0; j < kSegments; ++j) {
       const double polar = M_PI * i / kRings, azimuth = 2 * M_PI * j / kSegments;
       p.surface.vertices.push_back({static_cast<float>(radius * std::sin(polar) * std::cos(azimuth)),
@@ -59,9 +63,10 @@ Packing singleBall(double radius) {
   }
   for (std::uint32_t i = 0; i < kRings; ++i) {
     for (std::uint32_t j = 0; j < kSegments; ++j) {
-      const std::uint32_t a = i * kSegments + j, b = i * kSegments + (j + 1) % kSegments;
-      if (i > 0) p.surface.triangles.push_back({a, a + kSegments, b});
-      if (i + 1 < kRings) p.surface.triangles.push_back({b, a + kSegments, b + kSegments});
+      const std::uint32_t a = vertex(i, j), b = vertex(i, j + 1), c = vertex(i + 1, j),
+                          d = vertex(i + 1, j + 1);
+      if (i > 0) p.surface.triangles.push_back({a, c, b});
+      if (i + 1 < kRings) p.surface.triangles.push_back({b, c, d});
     }
   }
   return p;

@@ -231,12 +231,14 @@ class PatchContactPoints {
     const Kind kind = faces ? Kind::faces : probe_.isOnFaceOfB(points) ? Kind::edge : Kind::line;
     if (!add(points, normal, sample.id, kind)) return;
     WeightedPoint& point = found_.back();
-    const SurfaceProbe::Bends bends = surfaces_.bends(points, Across(normal));
+    const Across axes(normal);
+    const SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
     point.point.bend_a = bends.a;
     point.point.bend_b = bends.b;
-    point.point.below_top = sample.below_top;
     point.bends = !points.areFlat();
     point.slope = points.normal_b - points.normal_a;
+    const Hill hill(bends.a, bends.b, point.point.depth, axes);
+    point.point.below_top = point.slope.dot(hill.toTop(point.slope)) / 2;
     point.is_top = sample.is_top;
   }
 

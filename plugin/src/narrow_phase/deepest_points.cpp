@@ -141,7 +141,6 @@ class Tops {
     top = start;
     top.id = kDeepestId - static_cast<std::uint64_t>(count_++);
     ascend(probe, BT_LARGE_FLOAT, kAscentSteps, top);
-    guessTop(probe, top);
     hills_[count_ - 1] = hillAt(probe, top);
   }
 
@@ -198,9 +197,7 @@ void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::ve
 
 void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples) {
   for (std::size_t i = 0; i < count; ++i) {
-    if (!isUsable(samples[i])) continue;
-    ascend(probe, kSlopeBeside, kAscentStepsBeside, samples[i]);
-    guessTop(probe, samples[i]);
+    if (isUsable(samples[i])) ascend(probe, kSlopeBeside, kAscentStepsBeside, samples[i]);
   }
 }
 

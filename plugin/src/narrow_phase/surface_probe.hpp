@@ -45,8 +45,8 @@ struct ProbedSample {
   std::uint64_t id = 0;          ///< of the sphere
   bool starts_ascent = false;    ///< an ascent to a deepest point began here
   bool is_top = false;           ///< an ascent ended here, at the top of its hill
-  /// How much deeper the surfaces are at the top of the hill that it is on, by their slope and bend [m]. 0
-  /// where that is not known: where faces are flat or fit together, or far away.
+  /// How much deeper the surfaces are at the top of the hill that an ascent from here would reach, by their
+  /// slope and bend [m]. 0 where that is not known: where faces are flat, fit together, or are steep.
   btScalar below_top = 0;
 };
 
