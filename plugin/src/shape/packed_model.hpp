@@ -37,6 +37,9 @@ class Prefix {
   /// Returns the tree of the spheres and, counted on from there, the feelers.
   const SphereBvh& feelingTree() const;
 
+  /// Tells the log, once, if parts of the surface have no sphere near them. For spheres that a user chose.
+  void warnOnce() const;
+
   const std::size_t count;
   const VolumeTrueRadii* const volume_true;  ///< the longest list that is not longer, or null
   const btScalar largest_overshoot;          ///< largest of them minus the sphere's own radius; 0 if none
@@ -48,6 +51,7 @@ class Prefix {
   Lazy<btScalar> inset_;
   Lazy<Feelers> feelers_;
   Lazy<SphereBvh> feeling_tree_;
+  mutable std::once_flag warned_;
 };
 
 /// Holds what a model's shapes share. Trees are built when they are first asked for. Const members are safe
