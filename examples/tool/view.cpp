@@ -72,6 +72,7 @@ void run(Arguments& arguments) {
     pictures.png = stem + ".png";
     pictures.html = stem + ".html";
   }
+  if (arguments.colour == Colouring::coverage) pictures.render.view = demo::View::surface;
   checkPictures(pictures, arguments.force);
   const Packing packing = loadOrPack(arguments.source, arguments.spheres);
   say(arguments.y_up ? "the y axis points up; --up z turns that" : "the z axis points up; --up y turns that");

@@ -44,7 +44,7 @@ TEST_F(PackingCommands, PacksAMeshFileAtAScale) {
 TEST_F(PackingCommands, TheAccuracySetsTheNumberOfSpheres) {
   const Outcome outcome = run("pack box --accuracy 0.04 --json -o box.json");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_NE(outcome.err.find("4 % of the diagonal"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("4.00 % of the diagonal"), std::string::npos) << outcome.err;
   const auto summary = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(summary["order"], "coverage");
   EXPECT_LE(summary["gap_max"].get<double>(), 0.04 * std::sqrt(3.0));
