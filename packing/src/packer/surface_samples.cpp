@@ -9,7 +9,7 @@
 namespace innersphere {
 namespace {
 
-constexpr std::size_t kSamples = 50000;
+constexpr std::size_t kSurfacePoints = 50000;
 
 // Steps of the two-dimensional sequence with the most even spread known (Roberts' R2): 1/p and 1/p^2, where
 // p^3 = p + 1.
@@ -35,8 +35,8 @@ SurfaceSamples::SurfaceSamples(const Mesh& surface, const Container& container) 
   if (!(total > 0)) return;
   std::size_t triangle = 0;
   double before = 0;
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    const double target = (static_cast<double>(i) + 0.5) / kSamples * total;
+  for (std::size_t i = 0; i < kSurfacePoints; ++i) {
+    const double target = (static_cast<double>(i) + 0.5) / kSurfacePoints * total;
     while (triangle + 1 < area.size() && before + area[triangle] < target) before += area[triangle++];
     double u = std::fmod(static_cast<double>(i + 1) * kStepU, 1.0),
            v = std::fmod(static_cast<double>(i + 1) * kStepV, 1.0);
