@@ -35,7 +35,7 @@ struct ContactMark {
 struct Shape {
   std::string name;
   Surface surface;
-  std::vector<Sphere> spheres;  ///< by falling radius
+  std::vector<Sphere> spheres;
 };
 
 /// A shape with a colour of its own.

@@ -27,8 +27,10 @@ std::string cssColour(const Colour& colour) {
 }
 
 std::string rampIndices(const std::vector<Sphere>& spheres) {
-  const float largest = std::log(spheres.front().radius);
-  const float range = std::max(largest - std::log(spheres.back().radius), 1e-6f);
+  const auto [least, most] = std::minmax_element(
+      spheres.begin(), spheres.end(), [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+  const float largest = std::log(most->radius);
+  const float range = std::max(largest - std::log(least->radius), 1e-6f);
   std::vector<std::uint8_t> indices;
   for (const Sphere& s : spheres) {
     const float value = 1 - (largest - std::log(s.radius)) / range;

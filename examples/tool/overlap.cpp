@@ -231,7 +231,7 @@ Command overlapCommand() {
   poses.withFile().required = true;
   Option& output = command.text("-o,--output", arguments->output, "CSV file to write; -: to stdout");
   output.withFile().required = true;
-  command.count("--spheres", arguments->spheres, kNotNegative, "Use the largest ones only; 0: all");
+  command.count("--spheres", arguments->spheres, kNotNegative, "Use the first ones only; 0: all");
   addEstimatorOption(command, arguments->query.estimator);
   addBackendOption(command, arguments->context.backend);
   command.text("--device", arguments->device, "Number of the CUDA device; all: they share the poses")

@@ -10,22 +10,41 @@
 #include "inputs.hpp"
 #include "outputs.hpp"
 #include "packing_report.hpp"
+#include "report.hpp"
 #include "terminal.hpp"
 
 namespace innersphere::tool {
 namespace {
 
+enum class Order { unsaid, radius, coverage };
+
 struct Arguments {
   SolidArguments solid;
   PackOptions pack;
   PackingOutput output;
+  double accuracy = 0.01;
+  Order order = Order::unsaid;
   bool split = false;
   bool json = false;
 };
 
+// Without any other limit as many spheres as the accuracy asks for. Walls then get theirs before the middle
+// is filled, unless the user wants another order.
+PackOptions limitsFor(const Solid& solid, const Arguments& arguments) {
+  PackOptions options = arguments.pack;
+  if (arguments.order == Order::coverage) options.order = SphereOrder::coverage;
+  if (options.spheres > 0 || options.density > 0 || options.gap > 0) return options;
+  const Bounds box = solid.bounds();
+  options.gap = arguments.accuracy * norm(box.max - box.min);
+  if (arguments.order == Order::unsaid) options.order = SphereOrder::coverage;
+  say("as many spheres as come within " + percent(arguments.accuracy) + " of the diagonal, " +
+      number(options.gap, "m") + ", everywhere on the surface; --accuracy, --spheres choose others");
+  return options;
+}
+
 void packInto(const PackingOutput& output, bool say_where, const Solid& solid, const Arguments& arguments) {
   checkPackingOutput(output);
-  const Packing packing = pack(solid, arguments.pack, progressBar());
+  const Packing packing = pack(solid, limitsFor(solid, arguments), progressBar());
   clearProgressBar();
   writePackingOutput(packing, output);
   if (say_where) say("wrote " + output.path);
@@ -82,13 +101,25 @@ Command packCommand() {
             "Packing file to write: .json, .cbor, .ply or .xyzr; -: to stdout")
       .withFile()
       .withDefault("SOLID.cbor in this folder");
-  command.count("--spheres", options.spheres, kNotNegative, "Stop at exactly this many spheres; 0: no limit");
+  options.spheres = 0;
+  command.count("--spheres", options.spheres, kNotNegative, "Stop at exactly this many spheres; 0: no limit")
+      .withDefault("as --accuracy asks for");
+  command.number(
+      "--accuracy", arguments->accuracy, {0, 1, true},
+      "Without --spheres, --density and --gap: the fewest spheres of which one is within this part of "
+      "the diagonal of every point of the surface");
   command.number("--min-radius", options.min_radius, kNotNegative,
                  "Place no smaller sphere [m]; 0: 1e-4 of the diagonal");
   command.number("--density", options.density, {0, 1},
                  "Stop when this fraction of the volume is filled; 0: no limit");
   command.number("--gap", options.gap, kNotNegative,
                  "Stop when no surface point is farther from a sphere [m]; 0: no limit");
+  command
+      .choice<Order>(
+          "--order", arguments->order, {{"radius", Order::radius}, {"coverage", Order::coverage}},
+          "What the first spheres are chosen for: to fill the solid, or to be near all of its surface, "
+          "also where it is thin")
+      .withDefault("radius; coverage where --accuracy sets the number");
   command.number("--delta", options.delta, kPositive,
                  "Greediness: each radius is at least 1/(1+delta) of the largest possible");
   command.count("--threads", options.threads, kNotNegative, "0: all cores; the result does not depend on it");

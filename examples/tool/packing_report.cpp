@@ -53,6 +53,31 @@ void addOverlapErrors(const OverlapErrors& errors, Report& report) {
   report.addLine("  its sampling error", line(errors.sampling_error));
 }
 
+void addCoverage(const Packing& packing, double diagonal, Report& report) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const Coverage& c : packing.coverage) {
+    rows.push_back({{"count", c.count},
+                    {"mean", c.mean},
+                    {"p95", c.p95},
+                    {"max", c.max},
+                    {"farthest", c.farthest},
+                    {"uncovered", c.uncovered}});
+  }
+  report.add("order", "order", packing.order == SphereOrder::coverage ? "coverage" : "radius");
+  report.add("coverage", "", rows, "");
+  if (packing.coverage.empty() || !(diagonal > 0)) return;
+  report.addLine("coverage by spheres",
+                 "  mean gap   95 %    max, % of the diagonal; without a sphere within 1 %");
+  const std::size_t all = packing.coverage.size();
+  for (std::size_t i = all - std::min(all, kPrefixesShown); i < all; ++i) {
+    const Coverage& c = packing.coverage[i];
+    char line[96];
+    std::snprintf(line, sizeof line, "%10.2f %6.2f %6.2f;  %.2f %% of the surface", 100 * c.mean / diagonal,
+                  100 * c.p95 / diagonal, 100 * c.max / diagonal, 100 * c.uncovered);
+    report.addLine("  " + std::to_string(c.count), line);
+  }
+}
+
 void addMassWeights(const std::vector<float>& weights, Report& report) {
   if (weights.empty()) {
     report.add("mass_weights", "mass weights", nullptr, "none");
@@ -75,8 +100,10 @@ Report describe(const Packing& packing) {
   report.add("version", packing.provenance.version.empty() ? "" : "written by", packing.provenance.version,
              "InnerSphere " + packing.provenance.version);
   report.add("spheres", "spheres", packing.spheres.size());
-  const double largest = packing.spheres.front().radius;
-  const double smallest = packing.spheres.back().radius;
+  const auto [least, most] =
+      std::minmax_element(packing.spheres.begin(), packing.spheres.end(),
+                          [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+  const double largest = most->radius, smallest = least->radius;
   report.add("largest_radius", "largest radius", largest, number(largest, "m"));
   report.add("smallest_radius", "smallest radius", smallest, number(smallest, "m"));
   // An import says nothing of its solid.
@@ -91,6 +118,7 @@ Report describe(const Packing& packing) {
   report.add("gap_mean", "surface gap, mean", quality.gap_mean, gap(quality.gap_mean));
   report.add("gap_p95", "surface gap, p95", quality.gap_p95, gap(quality.gap_p95));
   report.add("gap_max", "surface gap, max", quality.gap_max, gap(quality.gap_max));
+  addCoverage(packing, diagonal, report);
   const Certificate& certificate = packing.certificate;
   report.add("delta", "certified greedy", certificate.delta,
              certificate.delta > 0

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "coverage_film.hpp"
 #include "exit_codes.hpp"
 #include "film/palette.hpp"
 #include "innersphere/solids.hpp"
@@ -17,10 +18,13 @@
 namespace innersphere::tool {
 namespace {
 
+enum class Colouring { radius, coverage };
+
 struct Arguments {
   std::string source;
   std::size_t spheres = 2000;
   bool y_up = false;
+  Colouring colour = Colouring::radius;
   PictureArguments pictures;
   bool force = false;
 };
@@ -32,21 +36,28 @@ std::string titleOf(const std::string& source) {
   return title;
 }
 
-demo::Film filmOf(const Packing& packing, const std::string& title, bool y_up) {
+demo::Film filmOf(const Packing& packing, const std::string& title, bool y_up, Colouring colour) {
   demo::Film film;
   film.title = title;
   film.caption = std::to_string(packing.spheres.size()) + " spheres fill " +
-                 percent(packing.quality.density) + " of it. Colours show the radius, " +
-                 number(packing.spheres.back().radius) + " to " +
-                 number(packing.spheres.front().radius, "m") + ".";
-  film.colour_by_radius = true;
-  film.shapes.push_back({title, packing.surface, packing.spheres});
-  film.actors.push_back({0, demo::paletteColour(1)});
+                 percent(packing.quality.density) + " of it. ";
+  if (colour == Colouring::coverage) {
+    film.caption += addCoverage(packing, film);
+  } else {
+    const auto [least, most] =
+        std::minmax_element(packing.spheres.begin(), packing.spheres.end(),
+                            [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+    film.caption +=
+        "Colours show the radius, " + number(least->radius) + " to " + number(most->radius, "m") + ".";
+    film.colour_by_radius = true;
+    film.shapes.push_back({title, packing.surface, packing.spheres});
+    film.actors.push_back({0, demo::paletteColour(1)});
+  }
   // A quarter turn about x takes y to z.
   const float half = std::sqrt(0.5f);
   demo::Pose pose;
   if (y_up) pose.rotation = {half, 0, 0, half};
-  film.poses.push_back(pose);
+  film.poses.assign(film.actors.size(), pose);
   const auto height = [y_up](float y, float z) { return y_up ? y : z; };
   film.ground = std::numeric_limits<float>::max();
   for (const Sphere& s : packing.spheres) film.ground = std::min(film.ground, height(s.y, s.z) - s.radius);
@@ -61,10 +72,12 @@ void run(Arguments& arguments) {
     pictures.png = stem + ".png";
     pictures.html = stem + ".html";
   }
+  if (arguments.colour == Colouring::coverage) pictures.render.view = demo::View::surface;
   checkPictures(pictures, arguments.force);
   const Packing packing = loadOrPack(arguments.source, arguments.spheres);
   say(arguments.y_up ? "the y axis points up; --up z turns that" : "the z axis points up; --up y turns that");
-  writePictures(filmOf(packing, titleOf(arguments.source), arguments.y_up), pictures, arguments.force);
+  writePictures(filmOf(packing, titleOf(arguments.source), arguments.y_up, arguments.colour), pictures,
+                arguments.force);
 }
 
 }  // namespace
@@ -79,10 +92,14 @@ Command viewCommand() {
       .withSuggestions(namedSolids());
   command.count("--spheres", arguments->spheres, {1}, "Of what is packed first");
   command.choice<bool>("--up", arguments->y_up, {{"y", true}, {"z", false}}, "Axis that points up");
+  command.choice<Colouring>("--colour", arguments->colour,
+                            {{"radius", Colouring::radius}, {"coverage", Colouring::coverage}},
+                            "Spheres by their radius, or the surface by its distance to the nearest sphere");
   addPictureOptions(command, arguments->pictures);
   command.flag("--force", arguments->force, "Replace existing outputs");
   command.notes = "Without --png and --html both are written to the current folder, named after FILE.";
-  command.examples = {"innersphere view bunny.cbor --up y", "innersphere view gear --html gear.html"};
+  command.examples = {"innersphere view bunny.cbor --up y", "innersphere view gear --html gear.html",
+                      "innersphere view cup.cbor --colour coverage --png cup.png"};
   command.run = [arguments] {
     run(*arguments);
     return kOk;

@@ -1,6 +1,7 @@
 // pack, info, check and convert.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <sstream>
@@ -38,6 +39,22 @@ TEST_F(PackingCommands, PacksAMeshFileAtAScale) {
   // are not.
   const Outcome outcome = run("check tetra.cbor --mesh tetra.obj --scale 0.0005");
   EXPECT_EQ(outcome.exit_code, 1);
+}
+
+TEST_F(PackingCommands, TheAccuracySetsTheNumberOfSpheres) {
+  const Outcome outcome = run("pack box --accuracy 0.04 --json -o box.json");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.err.find("4.00 % of the diagonal"), std::string::npos) << outcome.err;
+  const auto summary = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(summary["order"], "coverage");
+  EXPECT_LE(summary["gap_max"].get<double>(), 0.04 * std::sqrt(3.0));
+  const auto spheres = summary["spheres"].get<std::size_t>();
+  EXPECT_EQ(summary["coverage"].back()["count"], spheres);
+  const auto fewer =
+      json("pack box --order coverage --spheres " + std::to_string(spheres - 1) + " -o few.json");
+  EXPECT_GT(fewer["gap_max"].get<double>(), 0.04 * std::sqrt(3.0));
+  EXPECT_EQ(json("check few.json --mesh box")["valid"], true);
+  EXPECT_EQ(json("pack box --spheres 50 -o fifty.json")["order"], "radius");
 }
 
 TEST_F(PackingCommands, PacksTheBodiesOfAFileForThemselves) {

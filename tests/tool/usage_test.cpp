@@ -25,10 +25,10 @@ TEST_F(Usage, HelpExplainsTheExitStatus) {
 
 TEST_F(Usage, HelpShowsTheDefaultsOfTheLibrary) {
   const std::string help = succeed("pack --help").out;
-  const std::size_t begin = help.find("--spheres");
+  const std::size_t begin = help.find("--delta");
   ASSERT_NE(begin, std::string::npos) << help;
   const std::string line = help.substr(begin, help.find('\n', begin) - begin);
-  EXPECT_NE(line.find(std::to_string(PackOptions().spheres)), std::string::npos) << line;
+  EXPECT_NE(line.find(nlohmann::json(PackOptions().delta).dump()), std::string::npos) << line;
 }
 
 TEST_F(Usage, Version) {

@@ -22,6 +22,10 @@ struct PackOptions {
   double density = 0;
   /// The packer stops when no point of the surface is farther than this from a sphere [m]. 0: no limit.
   double gap = 0;
+  /// What the first spheres are chosen for. SphereOrder::coverage places a few of the largest spheres, then
+  /// spheres all over the surface until no point of it is farther than a hundredth of the diagonal from one,
+  /// and then again the largest. It needs a surface.
+  SphereOrder order = SphereOrder::radius;
   /// Each sphere has at least 1/(1+delta) of the largest radius possible when it is placed, 0.001 to 1. A
   /// smaller delta is denser and slower: 0.1 costs 0.1 points of density against 0.01 and is four times
   /// faster. The first 300 spheres decide most and are placed with 0.01 in any case, unless many maxima are

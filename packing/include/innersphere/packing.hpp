@@ -32,6 +32,12 @@ struct Certificate {
   double largest_missing_radius = 0;
 };
 
+/// Tells what the first spheres of a packing are chosen for.
+enum class SphereOrder {
+  radius,   ///< The largest spheres come first: prefixes fill most of the solid.
+  coverage  ///< After the first few, spheres come first where the surface is farthest from all before.
+};
+
 /// Tells how well the packing fills its solid.
 struct Quality {
   double density = 0;   ///< The volume of the spheres over the volume of the solid, 0 to 1.
@@ -39,6 +45,22 @@ struct Quality {
   double gap_p95 = 0;   ///< The 95th percentile of that distance [m].
   double gap_max = 0;  ///< The largest sampled distance [m]: the covering radius, by which a contact is late.
 };
+
+/// Tells how near the first spheres of a packing come to the surface. What is far from all of them is not
+/// felt by other packings.
+struct Coverage {
+  std::uint32_t count = 0;  ///< The number of spheres.
+  double mean = 0;          ///< The mean distance from the surface to the nearest of them [m].
+  double p95 = 0;           ///< The 95th percentile of that distance [m].
+  double max = 0;           ///< The largest sampled distance [m].
+  Vec3d farthest{};         ///< Where that is [m].
+  /// The part of the surface, 0 to 1, that is farther from them than kCoverageDistance.
+  double uncovered = 0;
+};
+
+/// This is the distance, relative to the diagonal of the solid's bounding box, beyond which a point of the
+/// surface counts as not covered.
+inline constexpr double kCoverageDistance = 0.01;
 
 /// These are depths of overlaps, as volumes relative to the solid's. Errors are given for the four bins
 /// between two depths.
@@ -68,7 +90,7 @@ struct Provenance {
   std::string version;      ///< The version of InnerSphere that wrote it.
 };
 
-/// Holds spheres inside a solid that do not overlap each other, sorted by falling radius: the first n of them
+/// Holds spheres inside a solid that do not overlap each other, the most important first: the first n of them
 /// are a valid, coarser packing. A packing is immutable by convention once made; share it with
 /// std::shared_ptr<const Packing>. All places are in the packing's own frame, which is the solid's, moved to
 /// `origin`.
@@ -76,13 +98,17 @@ struct Packing {
   /// Where the frame of the packing is in the solid's coordinates [m]: x_solid = origin + x. Zero unless the
   /// solid is farther than eight of its sizes away, where single precision would coarsen the spheres.
   Vec3d origin{};
-  std::vector<Sphere> spheres;  ///< The spheres by falling radius.
+  std::vector<Sphere> spheres;              ///< The spheres, in this order:
+  SphereOrder order = SphereOrder::radius;  ///< What the first spheres are chosen for.
   /// The volume-true radii by rising count: 64, 128, 256, ..., spheres.size(). May be empty.
   std::vector<VolumeTrueRadii> volume_true;
-  MassProperties solid;          ///< The exact mass properties of the solid, not of the spheres.
-  Surface surface;               ///< The surface of the solid. May be empty.
-  Certificate certificate;       ///< What the packer guarantees. Its delta is 0 if nothing is certified.
-  Quality quality;               ///< How well the spheres fill the solid.
+  MassProperties solid;     ///< The exact mass properties of the solid, not of the spheres.
+  Surface surface;          ///< The surface of the solid. May be empty.
+  Certificate certificate;  ///< What the packer guarantees. Its delta is 0 if nothing is certified.
+  Quality quality;          ///< How well the spheres fill the solid.
+  /// How near prefixes come to the surface, by rising count: 64, 128, 256, ..., spheres.size(). Empty if the
+  /// solid has no surface.
+  std::vector<Coverage> coverage;
   OverlapErrors overlap_errors;  ///< How far off overlap volumes are. May be empty.
   /// Densities relative to the solid's, one for each sphere. Spheres of these densities have the volume,
   /// centre of mass and inertia of the solid, to 1e-6 of each. Empty if the spheres cannot have them, or if
@@ -97,9 +123,19 @@ struct Packing {
 /// there is none.
 const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count);
 
+/// Returns the coverage of the longest measured prefix that is not longer than `count`, or null if there is
+/// none.
+const Coverage* coverageOf(const Packing& packing, std::size_t count);
+
+/// Returns a sentence for a user if a twentieth of the surface is farther from the first `count` spheres than
+/// a twentieth of the diagonal: thin walls and slender parts without spheres. Other packings go through them.
+/// Empty if not, or if nothing was measured.
+std::string bareSurface(const Packing& packing, std::size_t count);
+
 /// Throws Error if a caller could not use the packing: no spheres, non-finite numbers, radii that are not
-/// positive or not sorted, volume-true radii or mass weights of the wrong length, surface triangles without
-/// their vertices. It does not look for overlaps; see check.hpp for that.
+/// positive or not sorted though the order is SphereOrder::radius, volume-true radii or mass weights of the
+/// wrong length, surface triangles without their vertices. It does not look for overlaps; see check.hpp for
+/// that.
 void validate(const Packing& packing);
 
 }  // namespace innersphere

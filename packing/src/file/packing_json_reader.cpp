@@ -122,6 +122,21 @@ void requireVersion(const Entry& document) {
   if (version != 1 && version != kPackingFormatVersion) damaged("'version' is not a version");
 }
 
+SphereOrder orderOf(const Entry& entry) {
+  const std::string name = entry.text();
+  if (name != "radius" && name != "coverage") damaged("'order' is not one that this version knows");
+  return name == "coverage" ? SphereOrder::coverage : SphereOrder::radius;
+}
+
+std::vector<Coverage> coverageOf(const Entry& entry) {
+  std::vector<Coverage> prefixes;
+  for (const Entry& prefix : entry.items()) {
+    prefixes.push_back({prefix["count"].index(), prefix["mean"].number(), prefix["p95"].number(),
+                        prefix["max"].number(), prefix["farthest"].vector(), prefix["uncovered"].number()});
+  }
+  return prefixes;
+}
+
 OverlapErrors overlapErrorsOf(const Entry& entry) {
   if (entry["bins"].numbers<kOverlapBins.size()>() != kOverlapBins) {
     damaged("'overlap_errors.bins' are not the ones that this version knows");
@@ -164,6 +179,8 @@ Packing packingOf(const json& value) {
   packing.surface = surfaceOf(document["surface"]);
   // Entries that came later than the first files.
   if (document.has("origin")) packing.origin = document["origin"].vector();
+  if (document.has("order")) packing.order = orderOf(document["order"]);
+  if (document.has("coverage")) packing.coverage = coverageOf(document["coverage"]);
   if (document.has("overlap_errors")) packing.overlap_errors = overlapErrorsOf(document["overlap_errors"]);
   if (document.has("mass_weights")) packing.mass_weights = document["mass_weights"].floats(1);
   if (document.has("warnings")) {

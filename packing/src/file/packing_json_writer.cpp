@@ -62,6 +62,19 @@ json volumeTrueEntry(const std::vector<VolumeTrueRadii>& prefixes, Encoding enco
   return array;
 }
 
+json coverageEntry(const std::vector<Coverage>& prefixes) {
+  json array = json::array();
+  for (const Coverage& c : prefixes) {
+    array.push_back({{"count", c.count},
+                     {"mean", c.mean},
+                     {"p95", c.p95},
+                     {"max", c.max},
+                     {"farthest", c.farthest},
+                     {"uncovered", c.uncovered}});
+  }
+  return array;
+}
+
 json overlapErrorsEntry(const OverlapErrors& errors) {
   json prefixes = json::array();
   for (const OverlapErrors::Prefix& prefix : errors.prefixes) {
@@ -97,10 +110,12 @@ Entries entriesOf(const Packing& packing, Encoding encoding) {
       {"certificate", {{"delta", c.delta}, {"largest_missing_radius", c.largest_missing_radius}}},
       {"quality",
        {{"density", q.density}, {"gap_mean", q.gap_mean}, {"gap_p95", q.gap_p95}, {"gap_max", q.gap_max}}},
+      {"coverage", coverageEntry(packing.coverage)},
       {"overlap_errors", overlapErrorsEntry(packing.overlap_errors)},
       {"warnings", packing.warnings},
       {"solid", {{"volume", m.volume}, {"centre_of_mass", m.centre_of_mass}, {"inertia", m.inertia}}},
       {"origin", packing.origin},
+      {"order", packing.order == SphereOrder::coverage ? "coverage" : "radius"},
       {"spheres", sphereEntry(packing.spheres, encoding)},
       {"volume_true", volumeTrueEntry(packing.volume_true, encoding)},
       {"mass_weights", floats(packing.mass_weights, encoding)},

@@ -95,7 +95,7 @@ Bounds ClosestTriangle::unitBox(const Mesh& mesh, std::size_t triangle) const {
   return box;
 }
 
-ClosestPoint ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
+ClosestTriangle::Hit ClosestTriangle::find(const Vec3d& p, double cutoff) const {
   const Vec3d q = to_unit_ * (p - centre_);
   const double reach = std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])});
   Query query{&triangles_, p, to_unit_, kFloatSlack * (1 + reach)};
@@ -110,7 +110,19 @@ ClosestPoint ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
   rtcInitPointQueryContext(&context);
   rtcPointQuery(scene_.get(), &ball, &context, visitTriangle, &query);
 
-  ClosestPoint result{std::sqrt(query.best2), query.point};
+  return {query.best2, query.best, query.point};
+}
+
+int ClosestTriangle::sideOf(const Vec3d& p) const {
+  const Hit hit = find(p, std::numeric_limits<double>::infinity());
+  const double front = triangles_[hit.triangle].inFront(p);
+  const double rounding = 1e-10 * (1 / to_unit_ + norm(p));
+  return std::abs(front) <= rounding ? 0 : front > 0 ? 1 : -1;
+}
+
+ClosestPoint ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
+  const Hit hit = find(p, cutoff);
+  ClosestPoint result{std::sqrt(hit.distance2), hit.point};
   if (!(result.distance <= cutoff)) result = {std::numeric_limits<double>::infinity(), {}};
   return result;
 }

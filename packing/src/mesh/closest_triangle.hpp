@@ -21,6 +21,9 @@ class ClosestTriangle {
   explicit ClosestTriangle(const Mesh& mesh);
   /// Returns the nearest point; beyond `cutoff` [m] the distance is infinity.
   ClosestPoint closest(const Vec3d& p, double cutoff) const;
+  /// Returns 1 in front of the nearest triangle and -1 behind it, if the nearest point is clearly inside of
+  /// it and farther than rounding; else 0.
+  int sideOf(const Vec3d& p) const;
 
  private:
   struct Release {
@@ -28,6 +31,13 @@ class ClosestTriangle {
     void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
   };
 
+  struct Hit {
+    double distance2 = std::numeric_limits<double>::infinity();
+    unsigned triangle = 0;
+    Vec3d point{};
+  };
+
+  Hit find(const Vec3d& p, double cutoff) const;
   Bounds unitBox(const Mesh& mesh, std::size_t triangle) const;
 
   std::vector<Triangle> triangles_;

@@ -26,6 +26,7 @@ class MeshSolid : public Solid {
  private:
   Mesh mesh_;
   std::string name_;
+  bool count_once_;
   Bounds bounds_;
   ClosestTriangle tree_;
   WindingTree winding_;

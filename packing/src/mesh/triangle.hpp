@@ -58,6 +58,17 @@ class Triangle {
     return best2;
   }
 
+  /// Returns how far p is in front of the triangle [m], if the nearest point of the triangle is clearly
+  /// inside of it, away from its edges; else 0.
+  double inFront(const Vec3d& p) const {
+    constexpr double kClear = 1e-9;
+    const Vec3d ap = p - a_;
+    const double s = dot(to_s_, ap), t = dot(to_t_, ap);
+    if (thin_ || !(s > kClear && t > kClear && s + t < 1 - kClear)) return 0;
+    const Vec3d n = cross(ab_, ac_);
+    return dot(n, ap) / norm(n);
+  }
+
  private:
   static double clamp01(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 

@@ -15,10 +15,10 @@ namespace innersphere {
 namespace {
 
 // Samples in the gaps for each sphere, on average.
-constexpr double kSamples = 16;
+constexpr double kGapSamples = 16;
 
 // A block is the smallest cube that is looked at as a whole: 4 x 4 x 4 samples.
-constexpr int kBlock = 4;
+constexpr int kSampleBlock = 4;
 
 // The samples are dealt into two halves, whose difference tells the sampling error.
 using Counts = std::vector<std::array<std::atomic<std::uint32_t>, 2>>;
@@ -46,7 +46,7 @@ class Sampler {
         inside = true;
       }
     }
-    if (lattice == kBlock) {
+    if (lattice == kSampleBlock) {
       sampleBlock(at, centre, half, inside);
       return;
     }
@@ -82,9 +82,10 @@ class Sampler {
   void sampleBlock(const std::array<std::uint32_t, 3>& block, const Point& centre, double half, bool inside) {
     gather(centre, half);
     clearances_ = ClearanceCache(container_.margin());
-    for (std::uint32_t k = 0; k < kBlock * kBlock * kBlock; ++k) {
-      const std::array<std::uint32_t, 3> at{block[0] + k % kBlock, block[1] + k / kBlock % kBlock,
-                                            block[2] + k / (kBlock * kBlock)};
+    for (std::uint32_t k = 0; k < kSampleBlock * kSampleBlock * kSampleBlock; ++k) {
+      const std::array<std::uint32_t, 3> at{block[0] + k % kSampleBlock,
+                                            block[1] + k / kSampleBlock % kSampleBlock,
+                                            block[2] + k / (kSampleBlock * kSampleBlock)};
       const Point x = Point(at[0] + jitter(at, 0), at[1] + jitter(at, 1), at[2] + jitter(at, 2)) * spacing_;
       SphereGrid::Nearest hit = nearest(x);
       if (hit.distance <= 0 || (!inside && !clearances_.contains(container_, x, half))) continue;
@@ -106,9 +107,9 @@ void sample(const Container& container, const SphereGrid& grid, double spacing, 
             Counts& counts) {
   // The lattice covers the unit cube with a power of two of blocks along an edge; enough tasks for any
   // machine.
-  std::uint32_t lattice = kBlock;
+  std::uint32_t lattice = kSampleBlock;
   while (lattice * spacing < 1) lattice *= 2;
-  const std::uint32_t tasks = std::min<std::uint32_t>(8, lattice / kBlock);
+  const std::uint32_t tasks = std::min<std::uint32_t>(8, lattice / kSampleBlock);
   tbb::parallel_for(0u, tasks * tasks * tasks, [&](std::uint32_t task) {
     const std::uint32_t size = lattice / tasks;
     Sampler(container, grid, spacing, reach, counts)
@@ -129,7 +130,7 @@ CellVolumes findCellVolumes(const Container& container, std::span<const Ball> ba
   // Where the spheres fill nearly everything there is no use in a finer lattice.
   const double gaps = std::max(volume - filled, 1e-2 * volume);
   Counts counts(balls.size());
-  sample(container, SphereGrid(balls), std::cbrt(gaps / (kSamples * count)), 2 * smallest, counts);
+  sample(container, SphereGrid(balls), std::cbrt(gaps / (kGapSamples * count)), 2 * smallest, counts);
 
   double sum = 0, difference = 0;
   for (const auto& c : counts) {

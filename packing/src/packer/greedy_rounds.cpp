@@ -81,19 +81,20 @@ std::vector<CellSearch::Result> GreedyRounds::search(std::vector<Active>& active
 }
 
 bool GreedyRounds::insert(const std::vector<CellSearch::Candidate>& candidates, float top, const Stop& stop,
-                          Placed& placed) const {
+                          const Add& add, Placed& placed) const {
   for (const CellSearch::Candidate& candidate : candidates) {
     const Ball& ball = candidate.ball;
     if (placed.grid.nearest(ball.centre, ball.radius).distance < ball.radius) continue;
     placed.grid.insert(ball);
     placed.rounded.push_back(container_.rounded(ball));
     placed.top.push_back(top);
-    if (stop(placed)) return true;
+    if (stop(placed) || (add && add(placed, top))) return true;
   }
   return false;
 }
 
-GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop, const Pause& pause) const {
+GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop, const Pause& pause,
+                                       const Add& add) const {
   // The steps of the radius schedule are the bounds of rounds with the tight delta; a round with a larger
   // delta takes several at once.
   const double tight = std::min(kTightDelta, delta_);
@@ -131,7 +132,7 @@ GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop,
         candidates.insert(candidates.end(), result.candidates.begin(), result.candidates.end());
       }
       sortCandidates(candidates);
-      if (insert(candidates, top, stop, placed)) return placed;
+      if (insert(candidates, top, stop, add, placed)) return placed;
     }
     placed.largest_missing = bound;
   }

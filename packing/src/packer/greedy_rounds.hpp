@@ -30,11 +30,13 @@ class GreedyRounds {
 
   using Stop = std::function<bool(const Placed&)>;
   using Pause = std::function<bool(const Placed&, double)>;
+  using Add = std::function<bool(Placed&, double)>;
 
   /// Packs. `stop` is called after every sphere; `pause` is called with the bound between the parallel
-  /// searches, and it may throw. Both are called from this thread and end the packing by returning true. The
-  /// searches run in `arena`.
-  Placed run(tbb::task_arena& arena, const Stop& stop, const Pause& pause) const;
+  /// searches, and it may throw; `add`, which may be null, is called after every sphere with the radius that
+  /// none can exceed, and may insert spheres of its own. All are called from this thread and end the packing
+  /// by returning true. The searches run in `arena`.
+  Placed run(tbb::task_arena& arena, const Stop& stop, const Pause& pause, const Add& add) const;
 
   /// This is a cell to be searched, and the block of the octree that it is in.
   struct Active {
@@ -48,9 +50,10 @@ class GreedyRounds {
   /// Searches all active cells, which it sorts into blocks, in parallel.
   std::vector<CellSearch::Result> search(std::vector<Active>& active, const Round& round,
                                          const SphereGrid& grid) const;
-  /// Inserts the candidates that do not overlap what was placed before them. Returns true if `stop` says so.
+  /// Inserts the candidates that do not overlap what was placed before them. Returns true if `stop` or `add`
+  /// say so.
   bool insert(const std::vector<CellSearch::Candidate>& candidates, float top, const Stop& stop,
-              Placed& placed) const;
+              const Add& add, Placed& placed) const;
 
   const Container& container_;
   double delta_;

@@ -13,7 +13,7 @@
 namespace innersphere {
 namespace {
 
-constexpr double kSamples = 1 << 20;
+constexpr double kVoxels = 1 << 20;
 constexpr std::size_t kBins = kOverlapBins.size() - 1;
 constexpr std::size_t kPosesPerBin = 8;
 
@@ -129,7 +129,7 @@ std::size_t binOf(double fraction) {
 OverlapErrors findOverlapErrors(const Container& container, std::span<const Ball> balls,
                                 const std::vector<VolumeTrueRadii>& radii, double volume,
                                 const Point& centre_of_mass) {
-  const Voxels voxels(container, volume, kSamples);
+  const Voxels voxels(container, volume, kVoxels);
   std::vector<Trial> trials(kBins * kPosesPerBin);
   tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
     const std::size_t bin = i / kPosesPerBin;

@@ -6,12 +6,14 @@
 #include <charconv>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "innersphere/error.hpp"
 #include "mesh/mesh_report.hpp"
 #include "packer/ball.hpp"
 #include "packer/cell_volumes.hpp"
 #include "packer/container.hpp"
+#include "packer/cover.hpp"
 #include "packer/empty_parts.hpp"
 #include "packer/greedy_rounds.hpp"
 #include "packer/mass_weights.hpp"
@@ -25,6 +27,13 @@ namespace {
 
 // A solid filled to this fraction counts as full: a ball, after its first sphere.
 constexpr double kFull = 1 - 1e-6;
+
+// SphereOrder::coverage leaves no larger gaps than this many of the largest radii that still fit. So far
+// apart are surface and largest spheres in solids without thin parts, where it changes little.
+constexpr double kCovered = 2.5;
+
+// After so many spheres that cover the surface the user may cancel.
+constexpr std::size_t kPause = 256;
 
 // The first prefix with volume-true radii of its own; the next ones double.
 constexpr std::size_t kFirstPrefix = 64;
@@ -54,6 +63,7 @@ std::string commandLine(const PackOptions& options) {
   if (options.density > 0) add(" --density ", options.density);
   if (options.gap > 0) add(" --gap ", options.gap);
   add(" --delta ", options.delta);
+  if (options.order == SphereOrder::coverage) line += " --order coverage";
   return line;
 }
 
@@ -72,17 +82,16 @@ struct Problem {
     enough = std::min(options.density > 0 ? options.density : 1.0, kFull) * volume;
     gap = options.gap / side - 2 * container.coarseness();
     const Bounds box = solid.bounds();
-    const double diagonal =
-        std::hypot(box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]);
-    const double asked = options.min_radius > 0 ? options.min_radius : 1e-4 * diagonal;
+    diagonal = norm(box.max - box.min) / side;
+    const double asked = options.min_radius > 0 ? options.min_radius / side : 1e-4 * diagonal;
     // Rounding makes a sphere smaller, and gaps larger.
-    smallest = std::max((1 + 1e-6) * asked / side + container.coarseness(), 1e-5);
+    smallest = std::max((1 + 1e-6) * asked + container.coarseness(), 1e-5);
   }
 
   Container container;
   const PackOptions& options;
   SurfaceSamples samples;
-  double volume, enough, gap, smallest;
+  double volume, enough, gap, diagonal, smallest;
 };
 
 /// Says at once of a sheet what the search for spheres would find out in minutes. A little less than the
@@ -130,7 +139,19 @@ GreedyRounds::Placed place(const Problem& problem, tbb::task_arena& arena, const
     report("packing", std::max({by_radius, by_count, by_density}));
     return options.gap > 0 && problem.samples.covered(now.grid, problem.gap, uncovered);
   };
-  return GreedyRounds(problem.container, options.delta, problem.smallest).run(arena, stop, pause);
+  std::optional<Cover> cover;
+  const auto add = [&](GreedyRounds::Placed& now, double bound) {
+    if (!cover) cover.emplace(problem.container, problem.samples, now.grid, problem.smallest);
+    return cover->upTo(kCovered * bound, [&](const Ball& ball) {
+      now.grid.insert(ball);
+      now.rounded.push_back(problem.container.rounded(ball));
+      now.top.push_back(static_cast<float>(bound));
+      return stop(now) || (now.top.size() % kPause == 0 && pause(now, bound));
+    });
+  };
+  const bool covers = options.order == SphereOrder::coverage;
+  return GreedyRounds(problem.container, options.delta, problem.smallest)
+      .run(arena, stop, pause, covers ? add : GreedyRounds::Add());
 }
 
 /// The spheres by falling radius, as many as the limits ask for, and what is certain about them.
@@ -145,8 +166,11 @@ Chosen choose(const Problem& problem, const GreedyRounds::Placed& placed) {
   std::vector<std::size_t> order(placed.top.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::vector<Ball>& balls = placed.rounded;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return balls[a].radius > balls[b].radius; });
+  const bool by_radius = problem.options.order == SphereOrder::radius;
+  if (by_radius) {
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return balls[a].radius > balls[b].radius; });
+  }
   // A sphere's bound holds once everything that was placed before it is there, wherever sorting has put that.
   std::vector<double> top(order.size() + 1, placed.largest_missing);
   for (std::size_t i = order.size(); i-- > 0;) top[i] = std::max<double>(top[i + 1], placed.top[order[i]]);
@@ -159,7 +183,7 @@ Chosen choose(const Problem& problem, const GreedyRounds::Placed& placed) {
   }
   std::size_t count = 0;
   while (count < chosen.balls.size() && chosen.filled < problem.enough) {
-    chosen.delta = std::max(chosen.delta, top[count] / chosen.balls[count].radius - 1);
+    if (by_radius) chosen.delta = std::max(chosen.delta, top[count] / chosen.balls[count].radius - 1);
     chosen.filled += volumeOf(chosen.balls[count++]);
   }
   chosen.balls.resize(count);
@@ -168,15 +192,47 @@ Chosen choose(const Problem& problem, const GreedyRounds::Placed& placed) {
   return chosen;
 }
 
-Quality qualityOf(const Problem& problem, const Chosen& chosen, tbb::task_arena& arena) {
-  Quality quality;
-  arena.execute([&] { quality = problem.samples.measure(SphereGrid(chosen.balls)); });
+/// The lengths of prefixes of which more is known: 64, 128, ..., all.
+std::vector<std::size_t> prefixesOf(std::size_t count) {
+  std::vector<std::size_t> prefixes;
+  for (std::size_t prefix = kFirstPrefix; prefix < count; prefix *= 2) prefixes.push_back(prefix);
+  prefixes.push_back(count);
+  return prefixes;
+}
+
+/// Adds how well the spheres fill the solid and come near to its surface.
+void addQuality(const Problem& problem, const Chosen& chosen, tbb::task_arena& arena, Packing& packing) {
   const double side = problem.container.side();
-  quality.density = chosen.filled / problem.volume;
-  quality.gap_mean *= side;
-  quality.gap_p95 *= side;
-  quality.gap_max *= side;
-  return quality;
+  arena.execute([&] {
+    packing.coverage = problem.samples.coverage(chosen.balls, prefixesOf(chosen.balls.size()),
+                                                kCoverageDistance * problem.diagonal);
+  });
+  for (Coverage& c : packing.coverage) {
+    const Point farthest(c.farthest[0], c.farthest[1], c.farthest[2]);
+    c.farthest = problem.container.toWorld(farthest) - packing.origin;
+    for (double* length : {&c.mean, &c.p95, &c.max}) *length *= side;
+  }
+  packing.quality.density = chosen.filled / problem.volume;
+  if (packing.coverage.empty()) return;
+  const Coverage& all = packing.coverage.back();
+  packing.quality.gap_mean = all.mean;
+  packing.quality.gap_p95 = all.p95;
+  packing.quality.gap_max = all.max;
+}
+
+/// Warns if parts of the surface have no sphere near them, with the number of spheres that would do.
+void warnOfBareSurface(const Problem& problem, const Chosen& chosen, Packing& packing) {
+  const std::string bare = bareSurface(packing, chosen.balls.size());
+  if (bare.empty()) return;
+  SphereGrid grid(chosen.balls);
+  Cover(problem.container, problem.samples, grid, problem.smallest)
+      .upTo(kCoverageDistance * problem.diagonal, [&](const Ball& ball) {
+        grid.insert(ball);
+        return false;
+      });
+  packing.warnings.push_back(bare + "; about " + text(static_cast<double>(grid.balls().size())) +
+                             " in the order of coverage would come within " + text(100 * kCoverageDistance) +
+                             " % everywhere");
 }
 
 /// Adds the volume-true radii of all prefixes. Returns the volumes of the cells of all spheres [m^3].
@@ -184,14 +240,13 @@ std::vector<double> addVolumeTrueRadii(const Problem& problem, const Chosen& cho
                                        const Reporter& report, Packing& packing) {
   const std::size_t count = chosen.balls.size();
   CellVolumes cells;
-  for (std::size_t prefix = std::min(kFirstPrefix, count);; prefix = std::min(2 * prefix, count)) {
+  for (std::size_t prefix : prefixesOf(count)) {
     report("cell volumes", static_cast<double>(prefix) / static_cast<double>(2 * count));
     const auto balls = std::span(chosen.balls).first(prefix);
     arena.execute([&] {
       cells = findCellVolumes(problem.container, balls, problem.volume);
       packing.volume_true.push_back(volumeTrueRadii(problem.container, balls, cells));
     });
-    if (prefix == count) break;
   }
   const double side = problem.container.side();
   for (double& volume : cells.volumes) volume *= side * side * side;
@@ -223,6 +278,8 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   const Problem problem(solid, options, packing.solid, surface);
   require(options.gap == 0 || !problem.samples.empty(),
           "a gap can only be asked for if the solid has a surface");
+  require(options.order == SphereOrder::radius || !problem.samples.empty(),
+          "spheres can only be ordered by coverage if the solid has a surface");
 
   requireThickness(problem);
   const Reporter report(progress, solid.name());
@@ -232,13 +289,15 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
     throw Error(ErrorCode::no_sphere_fits, "no sphere of the smallest allowed radius fits into '" +
                                                solid.name() + "'; ask for a smaller min_radius");
   }
+  packing.order = options.order;
   packing.origin = problem.container.origin();
   packing.surface = problem.container.toSurface(surface);
   for (const Ball& ball : chosen.balls) packing.spheres.push_back(problem.container.toSphere(ball));
   packing.certificate = {chosen.delta, problem.container.side() * chosen.largest_missing};
 
   report("quality", 0);
-  packing.quality = qualityOf(problem, chosen, arena);
+  addQuality(problem, chosen, arena, packing);
+  warnOfBareSurface(problem, chosen, packing);
   const std::vector<double> cell_volumes = addVolumeTrueRadii(problem, chosen, arena, report, packing);
   report("measuring", 0);
   if (options.overlap_errors) {

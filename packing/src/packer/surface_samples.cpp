@@ -9,7 +9,7 @@
 namespace innersphere {
 namespace {
 
-constexpr std::size_t kSamples = 50000;
+constexpr std::size_t kSurfacePoints = 50000;
 
 // Steps of the two-dimensional sequence with the most even spread known (Roberts' R2): 1/p and 1/p^2, where
 // p^3 = p + 1.
@@ -35,8 +35,8 @@ SurfaceSamples::SurfaceSamples(const Mesh& surface, const Container& container) 
   if (!(total > 0)) return;
   std::size_t triangle = 0;
   double before = 0;
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    const double target = (static_cast<double>(i) + 0.5) / kSamples * total;
+  for (std::size_t i = 0; i < kSurfacePoints; ++i) {
+    const double target = (static_cast<double>(i) + 0.5) / kSurfacePoints * total;
     while (triangle + 1 < area.size() && before + area[triangle] < target) before += area[triangle++];
     double u = std::fmod(static_cast<double>(i + 1) * kStepU, 1.0),
            v = std::fmod(static_cast<double>(i + 1) * kStepV, 1.0);
@@ -77,20 +77,34 @@ std::optional<std::size_t> SurfaceSamples::prefixWithin(const SphereGrid& grid, 
   return prefix;
 }
 
-Quality SurfaceSamples::measure(const SphereGrid& grid) const {
-  Quality quality;
-  if (points_.empty()) return quality;
-  std::vector<double> gaps(points_.size());
-  const double guess = 2 * grid.balls().back().radius;
-  tbb::parallel_for(std::size_t{0}, gaps.size(), [&](std::size_t i) {
-    gaps[i] = std::max(0.0, grid.nearestOfAll(points_[i], guess).distance);
-  });
-  quality.gap_mean = std::accumulate(gaps.begin(), gaps.end(), 0.0) / static_cast<double>(gaps.size());
-  const auto p95 = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() * 95 / 100);
-  std::nth_element(gaps.begin(), p95, gaps.end());
-  quality.gap_p95 = *p95;
-  quality.gap_max = *std::max_element(p95, gaps.end());
-  return quality;
+std::vector<Coverage> SurfaceSamples::coverage(std::span<const Ball> balls,
+                                               std::span<const std::size_t> counts, double distance) const {
+  std::vector<Coverage> prefixes;
+  if (points_.empty()) return prefixes;
+  std::vector<double> gaps(points_.size(), 2);  // farther than anything in the unit cube
+  std::size_t known = 0;
+  for (std::size_t count : counts) {
+    const SphereGrid grid(balls.subspan(known, count - known));
+    known = count;
+    tbb::parallel_for(std::size_t{0}, gaps.size(), [&](std::size_t i) {
+      gaps[i] = std::min(gaps[i], std::max(0.0, grid.nearest(points_[i], gaps[i]).distance));
+    });
+    const auto size = static_cast<double>(gaps.size());
+    Coverage& now = prefixes.emplace_back();
+    now.count = static_cast<std::uint32_t>(count);
+    now.mean = std::accumulate(gaps.begin(), gaps.end(), 0.0) / size;
+    const auto farthest = std::max_element(gaps.begin(), gaps.end());
+    now.max = *farthest;
+    const Point& at = points_[static_cast<std::size_t>(farthest - gaps.begin())];
+    now.farthest = {at[0], at[1], at[2]};
+    const auto beyond = std::count_if(gaps.begin(), gaps.end(), [&](double gap) { return gap > distance; });
+    now.uncovered = static_cast<double>(beyond) / size;
+    std::vector<double> ranked = gaps;
+    const auto p95 = ranked.begin() + static_cast<std::ptrdiff_t>(ranked.size() * 95 / 100);
+    std::nth_element(ranked.begin(), p95, ranked.end());
+    now.p95 = *p95;
+  }
+  return prefixes;
 }
 
 }  // namespace innersphere

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "innersphere/packing.hpp"
@@ -17,6 +18,8 @@ class SurfaceSamples {
   SurfaceSamples(const Mesh& surface, const Container& container);
 
   bool empty() const { return points_.empty(); }
+  const std::vector<Point>& points() const { return points_; }
+  const std::vector<Point>& inwards() const { return inwards_; }  ///< unit normals at the points
 
   /// Returns true if a ball of this radius lies in the solid and touches its surface at one of the points.
   bool touchedByBall(const Container& container, double radius) const;
@@ -29,13 +32,15 @@ class SurfaceSamples {
   /// together do not.
   std::optional<std::size_t> prefixWithin(const SphereGrid& grid, double gap) const;
 
-  /// Returns the distances' mean, 95th percentile and maximum, in units of the unit cube. Runs in the current
-  /// TBB arena.
-  Quality measure(const SphereGrid& grid) const;
+  /// Returns how near prefixes of the balls come to the points, in units of the unit cube: for each of
+  /// `counts`, which rise, the distances' mean, 95th percentile and maximum, and the part of the points that
+  /// is farther than `distance`. Runs in the current TBB arena.
+  std::vector<Coverage> coverage(std::span<const Ball> balls, std::span<const std::size_t> counts,
+                                 double distance) const;
 
  private:
   std::vector<Point> points_;
-  std::vector<Point> inwards_;  // unit normals
+  std::vector<Point> inwards_;
 };
 
 }  // namespace innersphere

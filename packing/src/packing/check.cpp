@@ -72,7 +72,7 @@ CheckReport check(const Packing& packing, const Solid* solid) {
       report.sorted = false;
       return report;
     }
-    if (i > 0 && spheres[i].radius > spheres[i - 1].radius) report.sorted = false;
+    if (packing.order == SphereOrder::radius && i > 0 && spheres[i].radius > spheres[i - 1].radius) report.sorted = false;
   }
   findWorstOverlap(spheres, report);
   if (solid) findWorstProtrusion(packing, *solid, report);

@@ -1,8 +1,10 @@
 #include "innersphere/packing.hpp"
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
+#include "common/bounds.hpp"
 #include "innersphere/error.hpp"
 
 namespace innersphere {
@@ -15,13 +17,35 @@ const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count
   return best;
 }
 
+const Coverage* coverageOf(const Packing& packing, std::size_t count) {
+  const Coverage* best = nullptr;
+  for (const Coverage& coverage : packing.coverage) {
+    if (coverage.count <= count && (!best || coverage.count > best->count)) best = &coverage;
+  }
+  return best;
+}
+
+std::string bareSurface(const Packing& packing, std::size_t count) {
+  constexpr double kFar = 0.05;
+  const Coverage* coverage = coverageOf(packing, count);
+  Bounds box = emptyBounds();
+  for (const auto& v : packing.surface.vertices) extend(box, {v[0], v[1], v[2]});
+  if (!coverage || packing.surface.vertices.empty() || !(coverage->p95 > kFar * diagonal(box))) return {};
+  std::ostringstream sentence;
+  sentence.precision(3);
+  sentence << "5 % of the surface is more than " << coverage->p95 << " m, "
+           << 100 * coverage->p95 / diagonal(box) << " % of the diagonal, from the nearest of "
+           << coverage->count << " spheres: other packings go through it there";
+  return sentence.str();
+}
+
 namespace {
 
 [[noreturn]] void notFinite(const std::string& what) {
   throw Error(ErrorCode::not_finite, what + " is not finite");
 }
 
-void validateSpheres(const std::vector<Sphere>& spheres) {
+void validateSpheres(const std::vector<Sphere>& spheres, SphereOrder order) {
   if (spheres.empty()) throw Error(ErrorCode::empty_input, "the packing has no spheres");
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const Sphere& s = spheres[i];
@@ -30,7 +54,7 @@ void validateSpheres(const std::vector<Sphere>& spheres) {
       notFinite(where());
     }
     if (!(s.radius > 0)) throw Error(ErrorCode::bad_argument, where() + " has a radius that is not positive");
-    if (i > 0 && s.radius > spheres[i - 1].radius) {
+    if (order == SphereOrder::radius && i > 0 && s.radius > spheres[i - 1].radius) {
       throw Error(ErrorCode::bad_argument,
                   where() + " is larger than the one before it; spheres must be sorted by falling radius");
     }
@@ -67,6 +91,11 @@ void validateMeasures(const Packing& packing) {
       if (!std::isfinite(x)) notFinite("a number of the overlap errors");
     }
   };
+  for (const Coverage& c : packing.coverage) {
+    for (double x : {c.mean, c.p95, c.max, c.farthest[0], c.farthest[1], c.farthest[2], c.uncovered}) {
+      if (!std::isfinite(x)) notFinite("a number of the coverage");
+    }
+  }
   requireFinite(packing.overlap_errors.sampling_error);
   for (const OverlapErrors::Prefix& prefix : packing.overlap_errors.prefixes) {
     requireFinite(prefix.raw);
@@ -112,7 +141,7 @@ void validateNumbers(const Packing& packing) {
 }  // namespace
 
 void validate(const Packing& packing) {
-  validateSpheres(packing.spheres);
+  validateSpheres(packing.spheres, packing.order);
   validateRadii(packing.volume_true, packing.spheres.size());
   validateSurface(packing.surface);
   validateNumbers(packing);

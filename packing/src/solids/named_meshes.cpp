@@ -9,13 +9,13 @@
 namespace innersphere {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 // A circle of n points in the plane of `side` and `up`.
 Ring tubeRing(const Vec3d& centre, const Vec3d& side, const Vec3d& up, double radius, int n) {
   Ring ring;
   for (int i = 0; i < n; ++i) {
-    const double angle = 2 * kPi * i / n;
+    const double angle = 2 * kHalfTurn * i / n;
     ring.push_back(centre + radius * std::cos(angle) * side + radius * std::sin(angle) * up);
   }
   return ring;
@@ -31,7 +31,7 @@ Mesh linkMesh() {
   std::vector<Ring> rings;
   for (const double end : {1.0, -1.0}) {
     for (int i = 0; i <= kBendSteps; ++i) {
-      const double angle = kPi * i / kBendSteps + (end > 0 ? -kPi / 2 : kPi / 2);
+      const double angle = kHalfTurn * i / kBendSteps + (end > 0 ? -kHalfTurn / 2 : kHalfTurn / 2);
       const Vec3d out{std::cos(angle), std::sin(angle), 0};
       rings.push_back(
           tubeRing(Vec3d{end * kHalfStraight, 0, 0} + kBend * out, out, {0, 0, 1}, kTube, kAround));
@@ -47,15 +47,15 @@ Mesh bowlMesh() {
   constexpr int kAround = 64, kArc = 20, kRimSteps = 8;
   std::vector<Ring> rings{{{0, 0, -kOuter}}};
   for (int i = 1; i <= kArc; ++i) {
-    const double angle = kPi / 2 * i / kArc;
+    const double angle = kHalfTurn / 2 * i / kArc;
     rings.push_back(circle(kOuter * std::sin(angle), -kOuter * std::cos(angle), kAround));
   }
   for (int i = 1; i < kRimSteps; ++i) {
-    const double angle = kPi * i / kRimSteps;
+    const double angle = kHalfTurn * i / kRimSteps;
     rings.push_back(circle(kOuter - kRim + kRim * std::cos(angle), kRim * std::sin(angle), kAround));
   }
   for (int i = kArc; i >= 1; --i) {
-    const double angle = kPi / 2 * i / kArc;
+    const double angle = kHalfTurn / 2 * i / kArc;
     rings.push_back(circle(kInner * std::sin(angle), -kInner * std::cos(angle), kAround));
   }
   rings.push_back({{0, 0, -kInner}});
@@ -69,7 +69,7 @@ Mesh gearMesh() {
   Polygon outer, bore;
   for (int tooth = 0; tooth < kTeeth; ++tooth) {
     const auto add = [&](double fraction, double radius) {
-      const double angle = 2 * kPi * (tooth + fraction) / kTeeth;
+      const double angle = 2 * kHalfTurn * (tooth + fraction) / kTeeth;
       outer.push_back({radius * std::cos(angle), radius * std::sin(angle)});
       bore.push_back({kBore * std::cos(angle), kBore * std::sin(angle)});
     };
@@ -105,7 +105,7 @@ Mesh knotMesh() {
   };
   std::vector<Ring> rings;
   for (int i = 0; i < kAlong; ++i) {
-    const double t = 2 * kPi * i / kAlong;
+    const double t = 2 * kHalfTurn * i / kAlong;
     const double step = 1e-4;
     Vec3d along = onTorus(t + step, kWinding) - onTorus(t - step, kWinding);
     along = (1 / norm(along)) * along;

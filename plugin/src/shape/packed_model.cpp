@@ -1,8 +1,10 @@
 #include "shape/packed_model.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "common/bullet_vectors.hpp"
+#include "common/log.hpp"
 #include "shape/search_spheres.hpp"
 
 namespace innersphere {
@@ -41,14 +43,33 @@ btScalar largestOvershoot(const Packing& packing, const VolumeTrueRadii* radii) 
   return overshoot;
 }
 
+/// Of spheres in any order.
+btScalar medianRadius(const Packing& packing, std::size_t count) {
+  std::vector<float> radii;
+  for (std::size_t i = 0; i < count; ++i) radii.push_back(packing.spheres[i].radius);
+  const auto median = radii.begin() + std::ptrdiff_t(count / 2);
+  std::nth_element(radii.begin(), median, radii.end(), std::greater<float>());
+  return btScalar(*median);
+}
+
 }  // namespace
 
 Prefix::Prefix(const PackedModel& model, std::size_t sphere_count)
     : count(sphere_count),
       volume_true(volumeTrueRadii(model.packing(), sphere_count)),
       largest_overshoot(largestOvershoot(model.packing(), volume_true)),
-      median_radius(btScalar(model.packing().spheres[sphere_count / 2].radius)),
+      median_radius(medianRadius(model.packing(), sphere_count)),
       model_(model) {}
+
+void Prefix::warnOnce() const {
+  std::call_once(warned_, [this] {
+    const Packing& packing = model_.packing();
+    const std::string bare = bareSurface(packing, count);
+    if (bare.empty()) return;
+    log("The packing of \"" + packing.provenance.source + "\" leaves parts of its solid out: " + bare +
+        ". Use more of its spheres, or pack it anew, in the order of coverage.");
+  });
+}
 
 const SphereBvh& Prefix::tree() const {
   return tree_.get([this] { return std::make_unique<SphereBvh>(model_.packing().spheres, count); });
@@ -79,6 +100,7 @@ const CollisionModel& Prefix::searchModel() const {
   return search_model_.get([this] {
     const std::vector<Sphere>& all = model_.packing().spheres;
     auto first = std::make_shared<Packing>();
+    first->order = model_.packing().order;
     first->spheres.assign(all.begin(), all.begin() + std::ptrdiff_t(count));
     auto model = std::make_unique<CollisionModel>(std::move(first));
     const std::vector<Sphere> enlarged = searchSpheres(model_.packing(), count);

@@ -41,6 +41,9 @@ class Prefix {
   /// packing has a surface.
   const CollisionModel& searchModel() const;
 
+  /// Tells the log, once, if parts of the surface have no sphere near them. For spheres that a user chose.
+  void warnOnce() const;
+
   const std::size_t count;
   const VolumeTrueRadii* const volume_true;  ///< the longest list that is not longer, or null
   const btScalar largest_overshoot;          ///< largest of them minus the sphere's own radius; 0 if none
@@ -53,6 +56,7 @@ class Prefix {
   Lazy<Feelers> feelers_;
   Lazy<SphereBvh> feeling_tree_;
   Lazy<CollisionModel> search_model_;
+  mutable std::once_flag warned_;
 };
 
 /// Holds what a model's shapes share. Trees are built when they are first asked for. Const members are safe

@@ -63,12 +63,16 @@ btTransform translation(const btVector3& by) {
 PackingShape::Impl::Impl(std::shared_ptr<const PackedModel> packed_solid)
     : solid(std::move(packed_solid)),
       frame(solid->in_principal),
-      prefix(&solid->prefix(packing().spheres.size())) {}
+      prefix(&solid->prefix(packing().spheres.size())) {
+  prefix->warnOnce();
+}
 
 PackingShape::Impl::Impl(std::shared_ptr<const PackedModel> packed_solid, const btTransform& mesh_to_body)
     : solid(std::move(packed_solid)),
       frame(packing(), mesh_to_body * translation(toBullet(packing().origin))),
-      prefix(&solid->prefix(packing().spheres.size())) {}
+      prefix(&solid->prefix(packing().spheres.size())) {
+  prefix->warnOnce();
+}
 
 btTransform PackingShape::Impl::toWorld(const btTransform& body) const {
   const btTransform& local = frame.from_packing;
@@ -134,6 +138,7 @@ const PackingShape* PackingShape::from(const btCollisionShape* shape) {
 void PackingShape::setSphereCount(std::size_t count) {
   const std::size_t all = impl_->packing().spheres.size();
   impl_->prefix = &impl_->solid->prefix(count == 0 ? all : std::min(count, all));
+  impl_->prefix->warnOnce();
   noteChange();
 }
 

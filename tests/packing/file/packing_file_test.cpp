@@ -39,6 +39,7 @@ Packing somePacking(std::size_t n, unsigned seed = 1) {
   packing.surface.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   packing.certificate = {0.1, 0.00123};
   packing.quality = {0.8, 0.01, 0.02, 0.1 + 0.2};
+  packing.coverage = {{2, 0.1, 0.2, 1.0 / 3, {1, -2, 1e-17}, 0.25}, {5, 0.01, 0.02, 0.03, {}, 0}};
   packing.overlap_errors = {
       {8, 7, 6, 0}, {0.1, 0.02, 1.0 / 3, 0}, {{2, {0.5, 0.4, 0.3, 0.2}, {0.1, 0.01, 1e-3, 1e-17}}}};
   for (std::size_t i = 0; i < n; ++i) packing.mass_weights.push_back(1 + 1 / static_cast<float>(i + 3));
@@ -73,6 +74,13 @@ void expectSame(const Packing& a, const Packing& b) {
   EXPECT_EQ(a.quality.gap_mean, b.quality.gap_mean);
   EXPECT_EQ(a.quality.gap_p95, b.quality.gap_p95);
   EXPECT_EQ(a.quality.gap_max, b.quality.gap_max);
+  EXPECT_EQ(a.order, b.order);
+  ASSERT_EQ(a.coverage.size(), b.coverage.size());
+  for (std::size_t i = 0; i < a.coverage.size(); ++i) {
+    const Coverage &c = a.coverage[i], &d = b.coverage[i];
+    EXPECT_EQ(std::tie(c.count, c.mean, c.p95, c.max, c.farthest, c.uncovered),
+              std::tie(d.count, d.mean, d.p95, d.max, d.farthest, d.uncovered));
+  }
   EXPECT_EQ(a.mass_weights, b.mass_weights);
   EXPECT_EQ(a.warnings, b.warnings);
   EXPECT_EQ(a.overlap_errors.poses, b.overlap_errors.poses);
@@ -145,11 +153,12 @@ TEST(FilePacking, EmptySurfaceAndPrefixesAreFine) {
 TEST(FilePacking, FilesWithoutTheLaterEntriesAreFine) {
   Packing packing = somePacking(3);
   nlohmann::json document = nlohmann::json::parse(toJson(packing));
-  for (const char* key : {"origin", "overlap_errors", "mass_weights", "warnings"}) {
+  for (const char* key : {"origin", "order", "coverage", "overlap_errors", "mass_weights", "warnings"}) {
     EXPECT_EQ(document.erase(key), 1u);
   }
   document["version"] = 1;
   packing.origin = {};
+  packing.coverage = {};
   packing.overlap_errors = {};
   packing.mass_weights.clear();
   packing.warnings.clear();
@@ -172,6 +181,10 @@ TEST(FilePacking, BadMeasuresAreRefused) {
   refused("/mass_weights", {1.0, 1e99, 1.0});
   refused("/warnings", {1});
   refused("/warnings", "text");
+  refused("/order", "size");
+  refused("/coverage", 1);
+  refused("/coverage/0/count", -1);
+  refused("/coverage/0/farthest", {1, 2});
   refused("/overlap_errors", 1);
   refused("/overlap_errors/bins", {0.0, 0.1, 0.2, 0.3, 1.0});
   refused("/overlap_errors/poses", {1, 2, 3});
