@@ -59,9 +59,9 @@ struct ContactOptions {
   /// s of the smaller body, a radius about its centre of mass that holds all of it, and on the pair's reduced
   /// mass m:
   ///
-  /// Response::compliant is as stiff as ten iterations of Bullet's solver bring to rest, which is 16 m / dt^2
+  /// Response::compliant is as stiff as ten iterations of Bullet's solver bring to rest, which is 18 m / dt^2
   /// (1 + depth / (0.002 s)), divided among the points that push the same way. A body that lies still sinks
-  /// by 0.2 mm at 60 Hz, whatever its mass. Depth is measured on the solids' surfaces, so bodies meet where
+  /// by 0.15 mm at 60 Hz, whatever its mass. Depth is measured on the solids' surfaces, so bodies meet where
   /// they are drawn.
   ///
   /// Response::penalty has m / (dt^2 pi s^2), which the step dt resolves: a body at rest sinks by g dt^2 pi

@@ -11,7 +11,7 @@ namespace {
 /// chain of 20 never rests, less damped, a stack sways: ten iterations of Bullet's solver do not bring all
 /// contacts to rest. Softer, chains sink into each other and give back more energy
 /// (tests/benchmarks/results/contact-law.md).
-constexpr btScalar kStiffness = 16, kDamping = 4;
+constexpr btScalar kStiffness = 18, kDamping = 4;
 /// Depth at which that stiffness has doubled, in sizes of the smaller body: what carries many times its own
 /// mass needs more than what lies still.
 constexpr btScalar kStiffening = btScalar(0.002);

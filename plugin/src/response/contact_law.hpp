@@ -30,9 +30,9 @@ struct PointLaw {
 ///
 /// With m the reduced mass of the pair, dt the step, and T = sum A max(0, n n') the area that pushes along n:
 ///   stiffness along n   K = options.stiffness T;
-///                       default: K = 16 m / dt^2 (1 + d / (0.002 s)) at the depth d, s the size of the
+///                       default: K = 18 m / dt^2 (1 + d / (0.002 s)) at the depth d, s the size of the
 ///                       smaller body, for which a body that lies on a fixed one under gravity g sinks by
-///                       g dt^2 / 16 (0.17 mm at 1/60 s), whatever its size and mass;
+///                       g dt^2 / 18 (0.15 mm at 1/60 s), whatever its size and mass;
 ///   damping along n     C = options.damping 2 sqrt(K m), four times that by default.
 /// Each patch takes the share A / T of both and divides it among its points. The default law drives bodies
 /// that are inside each other apart no faster than half the size of the smaller one, or three times the depth
