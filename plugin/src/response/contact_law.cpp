@@ -133,6 +133,7 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     law.depth = law_->solver_.deepest_spring;
   }
   law.push = btMax(law.depth, btScalar(0)) * rate();
+  law.held_back = law.depth != depth;
   law.bears = law_->time_step_ * law.stiffness * btMax(law.depth, btScalar(0));
   return law;
 }

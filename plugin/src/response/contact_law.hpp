@@ -22,6 +22,7 @@ struct PointLaw {
   btScalar push = 0;       ///< speed at which the spring alone would drive the bodies apart [m/s]
   btScalar rolling = 0;    ///< how far ahead the load of bodies that roll lies [m]
   btScalar bears = 0;      ///< impulse of the spring in a step at rest [N s]
+  bool held_back = false;  ///< the spring counts less than the depth, so that nothing is thrown
   btScalar time_step = 0;  ///< [s]
 };
 
