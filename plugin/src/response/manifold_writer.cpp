@@ -30,7 +30,8 @@ struct NewPoint {
   btVector3 slip{0, 0, 0};     ///< of A on B, that friction is to undo
   btVector3 aside{0, 0, 0};    ///< of the point on A from the one on B
   btScalar friction = 1;       ///< share of it
-  Curvatures curved;           ///< of both surfaces
+  btScalar curvature = 0;      ///< mean of both surfaces together [1/m]
+  Curvatures ahead;            ///< of each along the way that it goes
 };
 
 /// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.
@@ -110,8 +111,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     point.m_combinedRollingFriction = law.rolling;
   // Bullet reads the one only where there is the other.
   if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
-    point.m_combinedSpinningFriction =
-        point.m_combinedFriction * spinningLever(from.depth, from.curved.a + from.curved.b);
+    point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curvature);
   if (law.penalty) {
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
@@ -126,7 +126,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   const bool meets = depth + approach * law.time_step > 0;
   const bool bounces = point.m_combinedRestitution * approach > law.push;
   if (solver.substeps) {
-    setCurvatures(point, from.curved);
+    setCurvatures(point, from.ahead);
   } else {
     // The solver would begin the bounce before they touch, and brake them on their way.
     if (!meets) point.m_combinedRestitution = 0;
@@ -177,6 +177,20 @@ bool leavesItToTop(const ContactPatch& patch, int index) {
   return false;
 }
 
+/// The curvatures of both surfaces along the way that the place of contact goes [1/m], as normals turn: that
+/// in which the bodies slide or roll, whichever turns normals more. Their means if they do neither.
+Curvatures curvaturesAhead(const ContactPoint& point, const btVector3& sliding, const btVector3& spin) {
+  const Bend &a = point.bend_a, &b = point.bend_b;
+  const btScalar bend = btFabs(a.xx) + btFabs(a.yy) + btFabs(b.xx) + btFabs(b.yy);
+  const btVector3 slid = (sliding - point.normal * sliding.dot(point.normal)) * bend;
+  const btVector3 rolled = spin.cross(point.normal);
+  const btVector3& way = rolled.length2() > slid.length2() ? rolled : slid;
+  if (!(way.length2() > SIMD_EPSILON * SIMD_EPSILON)) return {a.mean(), b.mean()};
+  const Across axes(point.normal);
+  const btVector3 direction = way.normalized();
+  return {a.turn(direction, axes).dot(direction), b.turn(direction, axes).dot(direction)};
+}
+
 /// The points of one patch into the manifold that `result` holds.
 void writePatch(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
                 const btVector3& origin, const ContactPatch& patch, const ContactLaw::OfPatch& law,
@@ -191,8 +205,9 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
     if (-point.depth > manifold.getContactBreakingThreshold()) continue;
     if (solver.substeps && leavesItToTop(patch, i)) continue;
     point.normal = patch.points[i].normal;
-    point.curved = {patch.points[i].bend_a.mean(), patch.points[i].bend_b.mean()};
+    point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
     point.on_b = origin + patch.points[i].on_b;
+    point.ahead = curvaturesAhead(patch.points[i], motion.velocityAt(point.on_b), motion.spin());
     point.aside = patch.points[i].aside;
     point.local_a = a.getWorldTransform().invXform(point.on_b + point.normal * point.depth);
     ++count;
