@@ -169,7 +169,7 @@ TEST_F(SceneRun, PageSaysInPlainWordsWhatCameOut) {
     }
     return result;
   };
-  auto pile = notes("pile --spheres 30 --seconds 0.1 --dt 0.02 --mesh box");
+  auto pile = notes("pile --spheres 60 --seconds 0.1 --dt 0.02 --mesh box");
   const auto& fell = pile["Bodies that fell through the floor"];
   EXPECT_EQ(fell["holds"], true);
   EXPECT_EQ(fell["text"], "Bodies that fell through the floor: 0 (as it should be)");

@@ -56,6 +56,20 @@ btScalar inverseMass(const btCollisionObject& object) {
   return 0;
 }
 
+/// The speed at which bodies leave along `normal`, if they leave along the deepest of their patches [m/s]:
+/// those of several directions must not add up.
+btScalar leavingAlong(const btVector3& normal, const std::vector<ContactPatch>& patches) {
+  btScalar deepest = 0, speed = 0;
+  for (const ContactPatch& patch : patches) {
+    for (int i = 0; i < patch.count && !patch.by_volume; ++i) {
+      if (!(patch.points[i].depth > deepest)) continue;
+      deepest = patch.points[i].depth;
+      speed = kLeaving * deepest * btMax(btScalar(0), patch.normal.dot(normal));
+    }
+  }
+  return speed;
+}
+
 }  // namespace
 
 ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step,
@@ -85,7 +99,7 @@ ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std
   law.law_ = this;
   law.stiffness_ = stiffness * share;
   law.damping_ = damping_ratio_ * 2 * btSqrt(stiffness * mass_) * share;
-  law.leaving_ = patch.by_volume ? btScalar(0) : kLeaving;
+  law.leaving_ = patch.by_volume ? btScalar(0) : leavingAlong(patch.normal, patches);
   law.rolling_ = canRollOn(patch) ? kRolling * size_ : btScalar(0);
   return law;
 }
@@ -101,7 +115,7 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     law.damping = damping_;
     return law;
   }
-  const btScalar fastest = btMax(kFastest * law_->size_, leaving_ * depth);
+  const btScalar fastest = btMax(kFastest * law_->size_, btMin(leaving_, kLeaving * depth));
   if (law_->response_ == Response::rigid) {
     if (!(depth > law_->solver_.deepest_push))
       law.depth = btMin(depth, fastest * law.time_step / law_->solver_.erp);

@@ -37,8 +37,9 @@ struct PointLaw {
 ///   damping along n     C = options.damping 2 sqrt(K m), four times that by default.
 /// Each patch takes the share A / T of both and divides it among its points. The default law drives bodies
 /// that are inside each other apart no faster than half the size of the smaller one, or three times the depth
-/// that was measured on their surfaces, in a second. So does Response::rigid as far as the solver would give
-/// them a speed; what is deeper than the threshold of split impulses it moves apart at once.
+/// that was measured on their surfaces, in a second; where they touch in several directions, so fast along
+/// the deepest patch only. So does Response::rigid as far as the solver would give them a speed; what is
+/// deeper than the threshold of split impulses it moves apart at once.
 ///
 /// A SubstepSolver is told the measured depth, without a spring but for one that is given: it has its own.
 ///
@@ -65,7 +66,7 @@ class ContactLaw {
     const ContactLaw* law_;
     btScalar stiffness_;
     btScalar damping_;
-    btScalar leaving_;  ///< [1/s]
+    btScalar leaving_;  ///< how fast what is deep may be driven apart [m/s]
     btScalar rolling_;
   };
   /// Returns the law of patch `index`. All patches of the pair share its stiffness.
