@@ -103,11 +103,13 @@ build() {
   log=$(mktemp)
   say "Configuring ($preset) ..."
   # Off unless it is asked for: the folder remembers what was asked for last.
-  if ! cmake --preset "$preset" -DCMAKE_UNITY_BUILD=OFF "$@" >"$log" 2>&1; then
+  local show=/dev/null
+  [ ! -t 2 ] || show=/dev/stderr  # it may take 20 s on a busy machine
+  if ! cmake --preset "$preset" -DCMAKE_UNITY_BUILD=OFF "$@" 2>&1 | tee "$log" >"$show"; then
     tail -n 40 "$log" >&2
     exit 1
   fi
-  grep -A 6 '^-- InnerSphere ' "$log" | sed 's/^-- //' >&2
+  [ -t 2 ] || grep -A 6 '^-- InnerSphere ' "$log" | sed 's/^-- //' >&2
   rm -f "$log"
   steps=$(count_steps "$folder" "$target")
   [ "$steps" -gt 0 ] || return 0
