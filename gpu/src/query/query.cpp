@@ -63,7 +63,7 @@ struct QueryContext::Impl {
   }
 
   void checkIdle() const {
-    if (under_way)
+    if (under_way || sweeping)
       throw Error(ErrorCode::bad_argument, "a query is under way in this context; wait for it first");
   }
 
@@ -88,10 +88,8 @@ struct QueryContext::Impl {
     under_way = &backend;
   }
 
-  void sweep(const PairQuery& pair, const Poses& poses, const QueryOptions& query_options,
-             Overlap* overlaps) {
-    checkIdle();
-    if (poses.count == 0) return;
+  Sweep prepareSweep(const PairQuery& pair, const Poses& poses, const QueryOptions& query_options,
+                     const Overlap* overlaps) {
     if (!overlaps || (!poses.matrices && !(poses.positions && poses.quaternions)))
       throw Error(ErrorCode::bad_argument, "an array of poses or overlaps is a null pointer");
     PairQuery at_origin = pair;
@@ -100,17 +98,49 @@ struct QueryContext::Impl {
     KnownGrids grids;
     const PreparedQuery first = innersphere::prepare(at_origin, 0, query_options.estimator, grids);
     const core::Setup& setup = first.setup;
-    const Sweep sweep{{{setup.a, setup.frame.matrix_a, setup.frame.scale_a, setup.frame.margin_a},
-                       {setup.b, setup.frame.matrix_b, setup.frame.scale_b, setup.frame.margin_b},
-                       pair.placement_a.translation},
-                      first.grid_a,
-                      first.grid_b,
-                      poses,
-                      wantsPairs(query_options.want) ? Want::wrench : query_options.want};
-    chooseFor(sweep, overlaps).sweep(sweep, overlaps);
+    return {{{setup.a, setup.frame.matrix_a, setup.frame.scale_a, setup.frame.margin_a},
+             {setup.b, setup.frame.matrix_b, setup.frame.scale_b, setup.frame.margin_b},
+             pair.placement_a.translation},
+            first.grid_a,
+            first.grid_b,
+            poses,
+            wantsPairs(query_options.want) ? Want::wrench : query_options.want};
   }
 
-  QueryBackend& chooseFor(const Sweep& sweep, const Overlap* overlaps) {
+  void sweep(const PairQuery& pair, const Poses& poses, const QueryOptions& query_options,
+             Overlap* overlaps) {
+    checkIdle();
+    if (poses.count == 0) return;
+    const Sweep sweep = prepareSweep(pair, poses, query_options, overlaps);
+    const bool pays = sweep.clusters() * poses.count >= kDeviceClusters;
+    chooseFor(sweep, overlaps, pays).sweep(sweep, overlaps);
+  }
+
+  void startSweep(const PairQuery& pair, const Poses& poses, const QueryOptions& query_options,
+                  Overlap* overlaps, void* stream) {
+    if (!sweeping) checkIdle();
+    if (poses.count == 0) return;
+    const Sweep sweep = prepareSweep(pair, poses, query_options, overlaps);
+    QueryBackend& backend = chooseFor(sweep, overlaps, stream != nullptr);
+    if (sweeping && sweeping != &backend)
+      throw Error(ErrorCode::bad_argument, "sweeps are under way elsewhere; wait for them first");
+    sweeping = &backend;
+    backend.startSweep(sweep, overlaps, stream);
+  }
+
+  void waitSweep() {
+    QueryBackend* const backend = std::exchange(sweeping, nullptr);
+    std::exception_ptr first = std::exchange(failed, nullptr);
+    try {
+      if (backend) backend->finishSweeps();  // also where a later one could not be started
+    } catch (...) {
+      first = std::current_exception();
+    }
+    if (first) std::rethrow_exception(first);
+  }
+
+  /// `pays`: on a device, where the choice is free.
+  QueryBackend& chooseFor(const Sweep& sweep, const Overlap* overlaps, bool pays) {
     const void* const arrays[] = {sweep.poses.matrices, sweep.poses.positions, sweep.poses.quaternions,
                                   overlaps};
     const bool given_on_device = std::any_of(std::begin(arrays), std::end(arrays),
@@ -118,10 +148,8 @@ struct QueryContext::Impl {
     if (given_on_device && options.backend == Backend::cpu)
       throw Error(ErrorCode::bad_argument,
                   "an array is in the memory of a device, and the CPU was asked for");
-    const bool on_device =
-        options.backend == Backend::cuda ||
-        (options.backend == Backend::automatic &&
-         (given_on_device || sweep.clusters() * sweep.poses.count >= kDeviceClusters) && findDevice());
+    const bool on_device = options.backend == Backend::cuda || (options.backend == Backend::automatic &&
+                                                                (given_on_device || pays) && findDevice());
     last = on_device ? Backend::cuda : Backend::cpu;
     return on_device ? *cuda : static_cast<QueryBackend&>(cpu);
   }
@@ -139,7 +167,8 @@ struct QueryContext::Impl {
   bool looked_for_device = false;
   Backend last = Backend::cpu;
   QueryBackend* under_way = nullptr;
-  std::exception_ptr failed;  ///< what start() met, for wait()
+  QueryBackend* sweeping = nullptr;  ///< what has sweeps under way, in a stream of the user's
+  std::exception_ptr failed;         ///< what start() met, for wait()
 
   // Scratch, kept from run to run.
   std::vector<PreparedQuery> prepared;
@@ -205,6 +234,20 @@ void QueryContext::sweep(const PairQuery& pair, const Poses& poses, const QueryO
                          Overlap* overlaps) {
   if (impl_->failed) std::rethrow_exception(std::exchange(impl_->failed, nullptr));
   impl_->sweep(pair, poses, options, overlaps);
+}
+
+void QueryContext::startSweep(const PairQuery& pair, const Poses& poses, const QueryOptions& options,
+                              Overlap* overlaps, void* stream) {
+  if (impl_->failed) return;  // the first error is the one to report
+  try {
+    impl_->startSweep(pair, poses, options, overlaps, stream);
+  } catch (...) {
+    impl_->failed = std::current_exception();
+  }
+}
+
+void QueryContext::waitSweep() {
+  impl_->waitSweep();
 }
 
 Overlap QueryContext::overlap(const PairQuery& query, const QueryOptions& options) {
