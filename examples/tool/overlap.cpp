@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -132,6 +133,13 @@ std::shared_ptr<const CollisionModel> modelOf(const std::string& source, std::si
   return std::make_shared<CollisionModel>(std::make_shared<Packing>(loadOrPack(source, to_pack)));
 }
 
+// 64-bit FNV-1a (Fowler, Noll, Vo): std::hash may differ between builds, and shards of one job come from many machines.
+std::uint64_t digest(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3;
+  return hash;
+}
+
 // All that the numbers of the table depend on, as 16 hexadecimal digits.
 std::string jobOf(const PairQuery& query, const QueryOptions& options, const std::vector<NamedPose>& poses) {
   std::string all = encodePacking(query.a->packing()) + encodePacking(query.b->packing());
@@ -144,7 +152,7 @@ std::string jobOf(const PairQuery& query, const QueryOptions& options, const std
     all.append(reinterpret_cast<const char*>(&pose.placement), sizeof pose.placement);
   }
   char text[20];
-  std::snprintf(text, sizeof text, "%016zx", std::hash<std::string_view>()(all));
+  std::snprintf(text, sizeof text, "%016" PRIx64, digest(all));
   return text;
 }
 
