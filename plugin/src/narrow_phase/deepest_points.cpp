@@ -125,7 +125,8 @@ void ascend(const SurfaceProbe& probe, ProbedSample& sample) {
   const OpposedPoints& points = sample.points;
   const btVector3 normal = (points.normal_a + points.normal_b).normalized();
   const btVector3 apart = points.on_a - points.on_b;
-  if (!sample.is_top || (apart - normal * apart.dot(normal)).length2() < kReached * kReached * apart.length2())
+  if (!sample.is_top ||
+      (apart - normal * apart.dot(normal)).length2() < kReached * kReached * apart.length2())
     return;
   const btVector3 middle = (points.on_a + points.on_b) / 2 - probe.lineStart(sample.index);
   const btVector3 shift = middle - normal * middle.dot(normal);
@@ -214,8 +215,7 @@ void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::ve
 
 void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples) {
   for (std::size_t i = 0; i < count; ++i) {
-    if (isUsable(samples[i]))
-      climb(probe, kSlopeBeside, kAscentStepsBeside, btVector3(0, 0, 0), samples[i]);
+    if (isUsable(samples[i])) climb(probe, kSlopeBeside, kAscentStepsBeside, btVector3(0, 0, 0), samples[i]);
   }
 }
 

@@ -11,8 +11,8 @@ namespace {
 constexpr btScalar kSmooth = btScalar(0.866);  // cos 30 degrees
 /// Normals that differ by less are those of a flat face, but for rounding [rad].
 constexpr btScalar kFlat = btScalar(1e-4);
-/// How far beyond an edge, in weights, a line still meets a triangle, and a point is still over it: no rounding
-/// leaves a gap between two, or takes the bulge from a point on a rim.
+/// How far beyond an edge, in weights, a line still meets a triangle, and a point is still over it: no
+/// rounding leaves a gap between two, or takes the bulge from a point on a rim.
 constexpr btScalar kBeyond = btScalar(1e-4);
 /// Added to the triangle across a sharp edge. Instead of one across an edge that no other triangle shares.
 constexpr std::uint32_t kSharp = std::uint32_t(1) << 31, kSeam = kSharp - 1;
