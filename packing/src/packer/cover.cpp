@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "packer/pattern_search.hpp"
+
 namespace innersphere {
 namespace {
 
@@ -114,15 +116,7 @@ Ball Cover::largestNear(const Point& p, const Point& inwards, double reach) {
   while (step > kFinest * best.radius && step > kFinest * min_radius_) {
     const Point centre = best.centre;
     bool better = false;
-    for (int corner = 0; corner < 14; ++corner) {
-      Point way = Point::Zero();
-      if (corner < 6) {
-        way[corner / 2] = corner % 2 ? 1 : -1;
-      } else {
-        for (int k = 0; k < 3; ++k) way[k] = (corner - 6) >> k & 1 ? std::sqrt(1.0 / 3) : -std::sqrt(1.0 / 3);
-      }
-      better = look(centre + step * way) || better;
-    }
+    for (const Point& way : patternDirections()) better = look(centre + step * way) || better;
     if (!better) step /= 2;
   }
   return best;
