@@ -366,7 +366,7 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
               "numpy.typing.NDArray[numpy.uint32]]"),
       R"(The surface of a solid to try things with: vertices (n, 3) [m] and faces (m, 3), as pack() takes them.
 
-name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, chazelle or tray; about 1 m in size. Nut and
+name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, chazelle, tray, cup, pan, blade or horn; about 1 m in size. Nut and
 bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for another name.)");
   module.def("mesh_of", &meshOf, "vertices"_a, "faces"_a);
   module.def("pack", &packWith, "mesh"_a, "name"_a, "spheres"_a, "min_radius"_a, "density"_a, "gap"_a,
