@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "common/bounds.hpp"
+#include "common/steady_math.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/mesh.hpp"
 #include "packer/container.hpp"
@@ -51,7 +52,8 @@ struct Cube {
 /// Points of the surface and of the inside.
 std::vector<Point> pointsOf(const Solid& solid, const Container& container, std::size_t spheres) {
   std::vector<Point> points = SurfaceSamples(solid.surface(), container).points();
-  const double volume = solid.massProperties().volume / std::pow(container.side(), 3);
+  const double volume =
+      solid.massProperties().volume / (container.side() * container.side() * container.side());
   const double inner = std::max(kInnerPoints * static_cast<double>(spheres), kLeastInnerPoints);
   const int cells = static_cast<int>(std::ceil(std::cbrt(inner / volume)));
   for (int z = 0; z < cells; ++z) {
@@ -182,7 +184,8 @@ void addOverhang(const Container& container, const std::vector<Ball>& balls, Cov
     const double area = ball.radius * ball.radius;
     for (int k = 0; k < kOverhangPoints; ++k) {
       const double z = 1 - (2 * k + 1.0) / kOverhangPoints, r = std::sqrt(1 - z * z);
-      const Point x = ball.centre + ball.radius * Point(r * std::cos(k * turn), r * std::sin(k * turn), z);
+      const Point x =
+          ball.centre + ball.radius * Point(r * steady::cos(k * turn), r * steady::sin(k * turn), z);
       const auto holds = [&](const Ball& other) { return &other != &ball && other.distance(x) < 0; };
       if (std::any_of(balls.begin(), balls.end(), holds)) continue;
       const double out = container.closest(x, std::numeric_limits<double>::infinity()).distance;

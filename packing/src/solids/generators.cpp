@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "common/steady_math.hpp"
 #include "mesh/mesh_clean.hpp"
 
 namespace innersphere {
@@ -51,7 +52,7 @@ Ring circle(double radius, double z, int n) {
   Ring ring;
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * i / n;
-    ring.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+    ring.push_back({radius * steady::cos(angle), radius * steady::sin(angle), z});
   }
   return ring;
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/steady_math.hpp"
 #include "solids/generators.hpp"
 #include "solids/named_meshes.hpp"
 
@@ -55,14 +56,14 @@ Mesh hornMesh() {
   std::vector<Ring> rings;
   for (int i = 0; i < kSteps; ++i) {
     const double part = static_cast<double>(i) / kSteps, angle = kTurn * part;
-    const Vec3d side{std::cos(angle), 0, -std::sin(angle)};
+    const Vec3d side{steady::cos(angle), 0, -steady::sin(angle)};
     const Vec3d middle = Vec3d{kBend, 0, 0} - kBend * side;
     Ring ring;
     for (const Vec3d& p : circle(kWidest * (1 - part), 0, kSides))
       ring.push_back(middle + p[0] * side + Vec3d{0, p[1], 0});
     rings.push_back(ring);
   }
-  rings.push_back({{kBend - kBend * std::cos(kTurn), 0, kBend * std::sin(kTurn)}});
+  rings.push_back({{kBend - kBend * steady::cos(kTurn), 0, kBend * steady::sin(kTurn)}});
   return loft(rings, false);
 }
 
