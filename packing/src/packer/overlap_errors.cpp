@@ -38,12 +38,11 @@ Point evenly(std::size_t i) {
   return u;
 }
 
-Eigen::AngleAxisd rotation(const Point& u) {
+Eigen::Quaterniond rotation(const Point& u) {
   // Uniform in the space of rotations (Shoemake 1992).
   const double a = 2 * std::numbers::pi * u[1], b = 2 * std::numbers::pi * u[2];
   const double s = std::sqrt(1 - u[0]), c = std::sqrt(u[0]);
-  return Eigen::AngleAxisd(
-      Eigen::Quaterniond(c * steady::cos(b), s * steady::sin(a), s * steady::cos(a), c * steady::sin(b)));
+  return {c * steady::cos(b), s * steady::sin(a), s * steady::cos(a), c * steady::sin(b)};
 }
 
 Point direction(const Point& u) {
@@ -53,14 +52,18 @@ Point direction(const Point& u) {
 
 /// Turns the copy about `centre` and moves it away until the solids share the fraction `target`.
 Trial findTrial(const Voxels& voxels, const Point& centre, std::size_t number, double target) {
-  Eigen::AngleAxisd turn = rotation(evenly(2 * number));
+  Eigen::Quaterniond turn = rotation(evenly(2 * number));
+  if (turn.w() < 0) turn.coeffs() *= -1;
   const Point way = direction(evenly(2 * number + 1));
   const auto at = [&](double distance) {
     const Eigen::Matrix3d r = turn.toRotationMatrix();
     return Pose{r, centre - r * centre + distance * way};
   };
-  // A thin solid and its turned copy may share less than that wherever the copy is: turn it less.
-  while (turn.angle() > 1e-3 && voxels.shared(at(0), kStride).fraction < 1.2 * target) turn.angle() /= 2;
+  // A thin solid and its turned copy may share less than that wherever the copy is: turn it half as far.
+  while (turn.vec().norm() > 5e-4 && voxels.shared(at(0), kStride).fraction < 1.2 * target) {
+    turn.w() += 1;
+    turn.normalize();
+  }
   double near = 0, far = std::numbers::sqrt3;
   for (int step = 0; step < 12; ++step) {
     const double middle = (near + far) / 2;
