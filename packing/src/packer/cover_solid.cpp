@@ -31,14 +31,14 @@ constexpr int kSteps = 30;
 
 // A pattern search ends when its steps are this small a part of the radius, and takes those that win at least
 // this part of their length.
-constexpr double kFinest = 0.01;
+constexpr double kFinestFit = 0.01;
 constexpr double kWorthwhile = 0.01;
 
 // Points on each sphere at which the overhang is measured.
 constexpr int kOverhangPoints = 500;
 
 /// A cube of the octree.
-struct Cube {
+struct OctreeCube {
   Point centre;
   double half;
   double farthest(const Ball& ball) const {
@@ -83,7 +83,7 @@ Fit fitted(const Container& container, const Ball& start, const std::vector<Poin
   };
   Fit best = fitAt(start.centre);
   for (double step = (best.ball.radius + best.growth) / 4;
-       step > kFinest * (best.ball.radius + best.growth);) {
+       step > kFinestFit * (best.ball.radius + best.growth);) {
     const Point centre = best.ball.centre;
     bool better = false;
     for (const Point& way : patternDirections()) {
@@ -143,7 +143,7 @@ class Proof {
   const std::vector<double>& growth() const { return growth_; }
 
   /// Looks at a cube. `near` are the balls that may have to grow least for a part of it.
-  void visit(const Cube& cube, const std::vector<std::uint32_t>& near) {
+  void visit(const OctreeCube& cube, const std::vector<std::uint32_t>& near) {
     double least = std::numeric_limits<double>::infinity();
     std::uint32_t nearest = 0;
     for (std::uint32_t i : near) {
