@@ -6,7 +6,7 @@
 namespace innersphere::steady {
 
 // The C library has several versions of these functions for double and picks one by the processor: with fused
-// multiply-add they round otherwise. For long double it has one, which is exact enough to round to the nearest double.
+// multiply-add they round otherwise. For long double it has one, exact enough to round to the nearest double.
 
 inline double sin(double x) {
   return static_cast<double>(std::sin(static_cast<long double>(x)));
