@@ -139,6 +139,8 @@ struct QueryContext::Impl {
         const core::Fault fault =
             core::readPose(poses, first + i, rotation, queries[i].placement_b.translation);
         if (fault != core::Fault::none) failFor(fault, first + i, "B");
+        // As it was given: the query makes it orthonormal, once.
+        rotation = core::givenRotation(poses, first + i);
         std::copy(std::begin(rotation.m), std::end(rotation.m), queries[i].placement_b.rotation.begin());
       }
       start(queries.data(), queries.size(), sums_only);

@@ -22,7 +22,8 @@ PlacedSurface placedSurface(const CollisionModel& model, const Placement& placem
 }
 
 Vec3d middleOf(const PlacedSurface& surface) {
-  return surface.matrix * surface.tree.nodes()[0].centre + surface.translation;
+  return surface.matrix * (0.5 * (surface.tree.bounds().min + surface.tree.bounds().max)) +
+         surface.translation;
 }
 
 void refineOne(const PairQuery& query, bool volume_only, Overlap& overlap) {

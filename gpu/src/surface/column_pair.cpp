@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surface/box.hpp"
+
 namespace innersphere {
 
 namespace {
 
-/// A triangle whose normal has less of z than this is seen from its edge: its columns are as thin as rounding.
+/// A triangle whose normal has less of z than this is seen from its edge: its columns are as thin as
+/// rounding.
 constexpr double kEdgeOn = 1e-9;
 
 /// This is a corner of the columns that two triangles have in common.
@@ -23,36 +26,42 @@ Corner between(const Corner& a, const Corner& b, double of_b) {
           of_a * a.bottom + of_b * b.bottom};
 }
 
-/// This is a convex polygon: a triangle that was cut up to four times.
+constexpr int kMostCorners = 3 + 8;  ///< three sides, and one more for each cut
+
+/// This is a convex polygon: a triangle that was cut by the sides of another, by those of a box and by a
+/// plane.
 struct Polygon {
-  Corner corners[7];
-  int count = 0;
+  Corner corners[kMostCorners];
+  int count;
 };
 
 /// Keeps the part of the polygon where `height`, which is linear, is not negative.
 template <typename Height>
 void cut(Polygon& polygon, const Height& height) {
-  double heights[7];
-  bool any_below = false;
+  double heights[kMostCorners];
+  int below = 0;
   for (int i = 0; i < polygon.count; ++i) {
     heights[i] = height(polygon.corners[i]);
-    any_below = any_below || heights[i] < 0;
+    below += heights[i] < 0;
   }
-  if (!any_below) return;
-  const Polygon whole = polygon;
+  if (below == 0) return;
+  const int count = polygon.count;
   polygon.count = 0;
-  for (int i = 0; i < whole.count; ++i) {
-    const int next = i + 1 < whole.count ? i + 1 : 0;
-    if (heights[i] >= 0) polygon.corners[polygon.count++] = whole.corners[i];
+  if (below == count) return;
+  Corner corners[kMostCorners];
+  std::copy(polygon.corners, polygon.corners + count, corners);
+  for (int i = 0; i < count; ++i) {
+    const int next = i + 1 < count ? i + 1 : 0;
+    if (heights[i] >= 0) polygon.corners[polygon.count++] = corners[i];
     if ((heights[i] < 0) != (heights[next] < 0)) {
       polygon.corners[polygon.count++] =
-          between(whole.corners[i], whole.corners[next], heights[i] / (heights[i] - heights[next]));
+          between(corners[i], corners[next], heights[i] / (heights[i] - heights[next]));
     }
   }
 }
 
-/// Returns the columns that both triangles have in common, with t's heights.
-Polygon commonColumns(const ColumnTriangle& t, const ColumnTriangle& u) {
+/// Returns the columns of the box that both triangles have, with t's heights.
+Polygon commonColumns(const ColumnTriangle& t, const ColumnTriangle& u, const Bounds& box) {
   Polygon polygon;
   polygon.count = 3;
   for (int k = 0; k < 3; ++k) polygon.corners[k] = {t.corners[k].x, t.corners[k].y, t.corners[k].z, 0};
@@ -61,13 +70,20 @@ Polygon commonColumns(const ColumnTriangle& t, const ColumnTriangle& u) {
     const double dx = u.side * (b.x - a.x), dy = u.side * (b.y - a.y);
     cut(polygon, [&](const Corner& c) { return dx * (c.y - a.y) - dy * (c.x - a.x); });
   }
+  if (t.box.min.x >= box.min.x && t.box.max.x <= box.max.x && t.box.min.y >= box.min.y &&
+      t.box.max.y <= box.max.y)
+    return polygon;
+  cut(polygon, [&](const Corner& c) { return c.x - box.min.x; });
+  cut(polygon, [&](const Corner& c) { return box.max.x - c.x; });
+  cut(polygon, [&](const Corner& c) { return c.y - box.min.y; });
+  cut(polygon, [&](const Corner& c) { return box.max.y - c.y; });
   return polygon;
 }
 
 /// Holds integrals over a polygon.
 struct Integrals {
-  double area = 0, x = 0, y = 0, bottom = 0;                 ///< of 1, x, y and bottom
-  double depth = 0, depth_x = 0, depth_y = 0, depth_z = 0;   ///< of depth, times x, y and the middle height
+  double area = 0, x = 0, y = 0, bottom = 0;                ///< of 1, x, y and bottom
+  double depth = 0, depth_x = 0, depth_y = 0, depth_z = 0;  ///< of depth, times x, y and the middle height
 };
 
 Integrals integrate(const Polygon& polygon) {
@@ -95,26 +111,22 @@ Integrals integrate(const Polygon& polygon) {
 }  // namespace
 
 ColumnTriangle makeColumnTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  ColumnTriangle t{{a, b, c}, a, a, cross(b - a, c - a), 0};
-  for (const Vec3d& corner : {b, c}) {
-    for (int k = 0; k < 3; ++k) {
-      t.low[k] = std::min(t.low[k], corner[k]);
-      t.high[k] = std::max(t.high[k], corner[k]);
-    }
-  }
+  ColumnTriangle t{{a, b, c}, {a, a}, cross(b - a, c - a), 0};
+  include({b, b}, t.box);
+  include({c, c}, t.box);
   if (std::abs(t.normal.z) > kEdgeOn * norm(t.normal)) t.side = t.normal.z > 0 ? 1 : -1;
   return t;
 }
 
-void addColumnPair(const ColumnTriangle& t, const ColumnTriangle& u, SharedSums& sums) {
-  Polygon polygon = commonColumns(t, u);
+void addColumnPair(const ColumnTriangle& t, const ColumnTriangle& u, const Bounds& box, SharedSums& sums) {
+  Polygon polygon = commonColumns(t, u, box);
   if (polygon.count < 3) return;
   const Vec3d& place = u.corners[0];
   for (int k = 0; k < polygon.count; ++k) {
     Corner& c = polygon.corners[k];
     // Bounded, because the plane of a steep triangle is far from it already beside its edges.
     const double z = place.z - (u.normal.x * (c.x - place.x) + u.normal.y * (c.y - place.y)) / u.normal.z;
-    c.bottom = std::clamp(z, u.low.z, u.high.z);
+    c.bottom = std::clamp(z, u.box.min.z, u.box.max.z);
   }
   cut(polygon, [](const Corner& c) { return c.depth(); });
   if (polygon.count < 3) return;

@@ -1,16 +1,16 @@
 // Declares what two triangles that lie above each other contribute to the volume that two solids share.
 #pragma once
 
-#include "innersphere/vec3.hpp"
+#include "innersphere/geometry.hpp"
 
 namespace innersphere {
 
 /// This is a triangle in a frame whose z is the direction of columns.
 struct ColumnTriangle {
   Vec3d corners[3];
-  Vec3d low, high;  ///< of its bounding box
-  Vec3d normal;     ///< of twice its area
-  int side;         ///< 1: it faces up, -1: it faces down, 0: it is seen from its edge and has no columns
+  Bounds box;
+  Vec3d normal;  ///< of twice its area
+  int side;      ///< 1: it faces up, -1: it faces down, 0: it is seen from its edge and has no columns
 };
 
 /// Returns a triangle with all that follows from its corners.
@@ -26,7 +26,7 @@ struct SharedSums {
   double magnitude = 0;  ///< the sum of the volumes' absolute values, to tell rounding from volume
 };
 
-/// Adds what t and u contribute: where t is above u, all of the column between them.
-void addColumnPair(const ColumnTriangle& t, const ColumnTriangle& u, SharedSums& sums);
+/// Adds what t and u contribute in the columns of a box: where t is above u, all that is between them.
+void addColumnPair(const ColumnTriangle& t, const ColumnTriangle& u, const Bounds& box, SharedSums& sums);
 
 }  // namespace innersphere

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace innersphere {
 
@@ -12,10 +14,10 @@ using core::Mat3;
 /// Less than this, relative to the sum of absolute values, is what rounding leaves of no volume at all.
 constexpr double kRounding = 1e-12;
 
-/// Returns a frame whose z is near `up`. It leans by a few degrees in no special direction, so that the walls
+/// Returns a frame whose z is near `up`. It leans a little in no special direction, so that the walls
 /// of bodies that stand straight on each other are not seen from their edges.
 Mat3<double> columnFrame(const Vec3d& up) {
-  constexpr double kLean[] = {0.0713, 0.0457};
+  constexpr double kLean[] = {0.0113, 0.0071};
   const double length = norm(up);
   Vec3d z = length > 0 ? (1 / length) * up : Vec3d{0, 0, 1};
   const Vec3d other = std::abs(z.x) < 0.7 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
@@ -29,108 +31,127 @@ Mat3<double> columnFrame(const Vec3d& up) {
   return {{x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z}};
 }
 
-struct Box {
-  Vec3d low, high;
-};
+constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// This is a surface as seen in the frame of the columns.
-class View {
+/// Returns whether a column may reach from `a` down to `b`.
+bool isAbove(const Bounds& a, const Bounds& b) {
+  return b.min.z < a.max.z && b.min.x < a.max.x && a.min.x < b.max.x && b.min.y < a.max.y &&
+         a.min.y < b.max.y;
+}
+
+double width(const Bounds& box) {
+  return box.max.x - box.min.x + box.max.y - box.min.y;
+}
+
+/// Returns a box that holds all that A and B share: it loses on its sides what is outside of one of them, in
+/// turns, for as long as that makes it much smaller.
+Bounds sharedBox(const SurfaceView& a, const SurfaceView& b) {
+  constexpr double kMuchSmaller = 0.7;
+  Bounds box = common(a.bounds(), b.bounds());
+  for (double before = 2 * width(box); !isEmpty(box) && width(box) < kMuchSmaller * before;) {
+    before = width(box);
+    box = a.shrunk(box);
+    if (!isEmpty(box)) box = b.shrunk(box);
+  }
+  return box;
+}
+
+/// Sorts triangles into square cells, to find those that lie above or below another.
+class ColumnGrid {
  public:
-  View(const PlacedSurface& surface, const Mat3<double>& frame)
-      : tree_(surface.tree),
-        matrix_(core::product(frame, surface.matrix)),
-        translation_(frame * surface.translation) {
-    std::transform(std::begin(matrix_.m), std::end(matrix_.m), std::begin(absolute_.m),
-                   [](double x) { return std::abs(x); });
+  ColumnGrid(const std::vector<ColumnTriangle>& triangles, const Bounds& box) : box_(box) {
+    const double sizes[] = {box.max.x - box.min.x, box.max.y - box.min.y};
+    const auto count = static_cast<double>(triangles.size());
+    const double side = std::sqrt(sizes[0] * sizes[1] / count);
+    for (int k = 0; k < 2; ++k) {
+      count_[k] = side > 0 ? static_cast<int>(std::clamp(sizes[k] / side, 1.0, count)) : 1;
+      per_length_[k] = sizes[k] > 0 ? count_[k] / sizes[k] : 0;
+    }
+    first_.assign(static_cast<std::size_t>(count_[0]) * count_[1] + 1, 0);
+    for (const ColumnTriangle& t : triangles)
+      forCells(cellsOf(t.box), [&](std::size_t cell, int, int) { ++first_[cell]; });
+    std::uint32_t end = 0;
+    for (std::uint32_t& first : first_) first = end += first;
+    members_.resize(end);
+    for (std::size_t i = triangles.size(); i-- > 0;) {
+      const Cells cells = cellsOf(triangles[i].box);
+      forCells(cells, [&](std::size_t cell, int, int) {
+        members_[--first_[cell]] = {&triangles[i], cells.first[0], cells.first[1]};
+      });
+    }
   }
 
-  const SurfaceTree::Node& node(std::uint32_t index) const { return tree_.nodes()[index]; }
-
-  Box box(std::uint32_t index) const {
-    const Vec3d centre = matrix_ * node(index).centre + translation_, half = absolute_ * node(index).half;
-    return {centre - half, centre + half};
+  /// Calls f(triangle) once for each of those whose cells the box shares.
+  template <typename F>
+  void forNear(const Bounds& box, const F& f) const {
+    const Cells cells = cellsOf(box);
+    forCells(cells, [&](std::size_t cell, int x, int y) {
+      for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
+        const Member& m = members_[i];
+        const bool is_first = x == std::max(cells.first[0], m.x) && y == std::max(cells.first[1], m.y);
+        if (is_first) f(*m.triangle);
+      }
+    });
   }
 
-  struct Leaf {
-    const ColumnTriangle* begin() const { return triangles; }
-    const ColumnTriangle* end() const { return triangles + count; }
-    ColumnTriangle triangles[SurfaceTree::kLeafTriangles];
-    std::uint32_t count = 0;
+ private:
+  struct Cells {
+    int first[2], last[2];
+  };
+  struct Member {
+    const ColumnTriangle* triangle;
+    int x, y;  ///< its first cell
   };
 
-  /// Returns the triangles of a leaf, which stay until the next call.
-  const Leaf& leaf(std::uint32_t index) {
-    if (index == known_) return leaf_;
-    known_ = index;
-    leaf_.count = 0;
-    for (std::uint32_t i = 0; i < node(index).count; ++i) {
-      const SurfaceTree::Triangle& t = tree_.triangles()[node(index).first + i];
-      const ColumnTriangle seen = makeColumnTriangle(place(t[0]), place(t[1]), place(t[2]));
-      if (seen.side != 0) leaf_.triangles[leaf_.count++] = seen;
-    }
-    return leaf_;
+  Cells cellsOf(const Bounds& box) const {
+    const auto at = [&](int axis, double place) {
+      return static_cast<int>(
+          std::clamp((place - box_.min[axis]) * per_length_[axis], 0.0, count_[axis] - 1.0));
+    };
+    return {{at(0, box.min.x), at(1, box.min.y)}, {at(0, box.max.x), at(1, box.max.y)}};
   }
 
- private:
-  Vec3d place(const Vec3f& p) const { return matrix_ * Vec3d{p.x, p.y, p.z} + translation_; }
+  template <typename F>
+  void forCells(const Cells& cells, const F& f) const {
+    for (int y = cells.first[1]; y <= cells.last[1]; ++y) {
+      for (int x = cells.first[0]; x <= cells.last[0]; ++x)
+        f(static_cast<std::size_t>(y) * count_[0] + x, x, y);
+    }
+  }
 
-  const SurfaceTree& tree_;
-  Mat3<double> matrix_, absolute_;
-  Vec3d translation_;
-  std::uint32_t known_ = ~std::uint32_t{0};
-  Leaf leaf_;
+  Bounds box_;
+  int count_[2];
+  double per_length_[2];
+  std::vector<std::uint32_t> first_;
+  std::vector<Member> members_;
 };
 
-/// Returns whether a column of `a` may reach down to `b`.
-template <typename A, typename B>
-bool isAbove(const A& a, const B& b) {
-  return a.low.x < b.high.x && b.low.x < a.high.x && a.low.y < b.high.y && b.low.y < a.high.y &&
-         b.low.z < a.high.z;
+/// Sums over the columns of a box that holds all that is shared.
+SharedSums sumColumns(const SurfaceView& a, const SurfaceView& b, const Bounds& box) {
+  // What lies below the box in A, or above it in B, bounds nothing that is in the box.
+  Bounds up = box, down = box;
+  up.max.z = kFar;
+  down.min.z = -kFar;
+  const std::vector<ColumnTriangle> of_a = a.trianglesIn(up), of_b = b.trianglesIn(down);
+  SharedSums sums;
+  if (of_a.empty() || of_b.empty()) return sums;
+  const ColumnGrid grid(of_b, box);
+  for (const ColumnTriangle& t : of_a) {
+    grid.forNear(t.box, [&](const ColumnTriangle& u) {
+      if (isAbove(t.box, u.box)) addColumnPair(t, u, box, sums);
+    });
+  }
+  return sums;
 }
-
-double width(const Box& box) {
-  return box.high.x - box.low.x + box.high.y - box.low.y;
-}
-
-class Walk {
- public:
-  Walk(const PlacedSurface& a, const PlacedSurface& b, const Mat3<double>& frame)
-      : a_(a, frame), b_(b, frame) {}
-
-  SharedSums run() {
-    visit(0, a_.box(0), 0, b_.box(0));
-    return sums_;
-  }
-
- private:
-  void visit(std::uint32_t i, const Box& box_a, std::uint32_t j, const Box& box_b) {
-    if (!isAbove(box_a, box_b)) return;
-    const bool leaf_a = a_.node(i).isLeaf(), leaf_b = b_.node(j).isLeaf();
-    if (leaf_a && leaf_b) return addPairs(a_.leaf(i), b_.leaf(j));
-    if (leaf_b || (!leaf_a && width(box_a) >= width(box_b))) {
-      for (const std::uint32_t child : {i + 1, a_.node(i).first}) visit(child, a_.box(child), j, box_b);
-    } else {
-      for (const std::uint32_t child : {j + 1, b_.node(j).first}) visit(i, box_a, child, b_.box(child));
-    }
-  }
-
-  void addPairs(const View::Leaf& a, const View::Leaf& b) {
-    for (const ColumnTriangle& t : a) {
-      for (const ColumnTriangle& u : b) {
-        if (isAbove(t, u)) addColumnPair(t, u, sums_);
-      }
-    }
-  }
-
-  View a_, b_;
-  SharedSums sums_;
-};
 
 }  // namespace
 
 SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b, const Vec3d& up) {
   const Mat3<double> frame = columnFrame(up), back = core::transposed(frame);
-  SharedSums sums = Walk(a, b, frame).run();
+  const SurfaceView view_a(a, frame), view_b(b, frame);
+  const Bounds box = sharedBox(view_a, view_b);
+  if (isEmpty(box)) return {};
+  SharedSums sums = sumColumns(view_a, view_b, box);
   if (!(sums.volume > kRounding * sums.magnitude)) return {};
   for (Vec3d* vector : {&sums.moment, &sums.area, &sums.turning}) *vector = back * *vector;
   return sums;

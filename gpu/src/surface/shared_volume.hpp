@@ -1,18 +1,10 @@
 // Finds the volume that two solids share from the triangles of their surfaces.
 #pragma once
 
-#include "core/mat3.hpp"
 #include "surface/column_pair.hpp"
-#include "surface/surface_tree.hpp"
+#include "surface/surface_view.hpp"
 
 namespace innersphere {
-
-/// Says which surface it is, and where: x = matrix * x_of_the_surface + translation.
-struct PlacedSurface {
-  const SurfaceTree& tree;
-  core::Mat3<double> matrix;
-  Vec3d translation;
-};
 
 /// Returns the sums for the volume that A and B share. In the direction z, a point is in A as often as more
 /// triangles of A above it face up than down, and in B as often as more of B below it face down than up. So

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "innersphere/error.hpp"
+#include "surface/box.hpp"
 
 namespace innersphere {
 
@@ -55,43 +56,57 @@ SurfaceTree::SurfaceTree(const Surface& surface) {
       triangle[k] = {v[0], v[1], v[2]};
     }
   }
-  build(0, static_cast<std::uint32_t>(triangles_.size()));
+  const auto count = static_cast<std::uint32_t>(triangles_.size());
+  bounds_ = boundsOf(0, count);
+  build(0, count);
 }
 
 /// Appends the node of triangles [first, end) and all below it.
-void SurfaceTree::build(std::uint32_t first, std::uint32_t end) {
-  Vec3f low = triangles_[first][0], high = low;
-  for (std::uint32_t i = first; i < end; ++i) {
-    for (const Vec3f& v : triangles_[i]) {
-      for (int k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], v[k]);
-        high[k] = std::max(high[k], v[k]);
-      }
+std::uint32_t SurfaceTree::build(std::uint32_t first, std::uint32_t end) {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  const std::uint32_t half = halve(first, end);
+  const std::array<std::uint32_t, kWidth + 1> cuts{first, halve(first, half), half, halve(half, end), end};
+  for (std::size_t k = 0; k < kWidth; ++k) {
+    constexpr double kNone = -1e300;
+    const bool none = cuts[k] == cuts[k + 1];
+    const Bounds box = none ? Bounds{} : boundsOf(cuts[k], cuts[k + 1]);
+    for (int axis = 0; axis < 3; ++axis) {
+      nodes_[index].centre[axis][k] = (box.max[axis] + box.min[axis]) / 2;
+      nodes_[index].half[axis][k] = none ? kNone : (box.max[axis] - box.min[axis]) / 2;
     }
+    const std::uint32_t count = cuts[k + 1] - cuts[k];
+    const Child child =
+        count > kLeafTriangles ? Child{build(cuts[k], cuts[k + 1]), 0} : Child{cuts[k], count};
+    nodes_[index].children[k] = child;
   }
-  Node node;
-  for (int k = 0; k < 3; ++k) {
-    node.centre[k] = (double{low[k]} + high[k]) / 2;
-    node.half[k] = (double{high[k]} - low[k]) / 2;
-  }
-  const bool leaf = end - first <= kLeafTriangles;
-  node.first = first;
-  node.count = leaf ? end - first : 0;
-  const std::size_t index = nodes_.size();
-  nodes_.push_back(node);
-  if (leaf) return;
+  return index;
+}
 
-  const int axis = static_cast<int>(std::max_element(node.half.begin(), node.half.end()) - node.half.begin());
+/// Sorts triangles [first, end) into two halves along the longest side of their box, with whole leaves in the
+/// first half. Returns where the second one begins: at `end` if one leaf is enough.
+std::uint32_t SurfaceTree::halve(std::uint32_t first, std::uint32_t end) {
+  if (end - first <= kLeafTriangles) return end;
+  const Bounds box = boundsOf(first, end);
+  const Vec3d size = box.max - box.min;
+  const auto axis = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
   const auto at = [&](std::uint32_t i) { return triangles_.begin() + static_cast<std::ptrdiff_t>(i); };
   const auto middle = [&](const Triangle& t) { return t[0][axis] + t[1][axis] + t[2][axis]; };
-  // Whole leaves go to the left, so that they are full.
-  const std::uint32_t leaves = (end - first + kLeafTriangles - 1) / kLeafTriangles;
-  const std::uint32_t half = first + (leaves + 1) / 2 * kLeafTriangles;
   std::stable_sort(at(first), at(end),
                    [&](const Triangle& a, const Triangle& b) { return middle(a) < middle(b); });
-  build(first, half);
-  nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
-  build(half, end);
+  const std::uint32_t leaves = (end - first + kLeafTriangles - 1) / kLeafTriangles;
+  return first + (leaves + 1) / 2 * kLeafTriangles;
+}
+
+Bounds SurfaceTree::boundsOf(std::uint32_t first, std::uint32_t end) const {
+  Bounds box = nothing();
+  for (std::uint32_t i = first; i < end; ++i) {
+    for (const Vec3f& v : triangles_[i]) {
+      const Vec3d corner{v.x, v.y, v.z};
+      include({corner, corner}, box);
+    }
+  }
+  return box;
 }
 
 }  // namespace innersphere
