@@ -253,7 +253,8 @@ Command overlapCommand() {
   command.notes =
       "One row a pose: pose, volume [m^3], centroid cx cy cz [m], force on B fx fy fz, its torque tx ty tz "
       "about the centre\n"
-      "of B's bounding box, stiffness (sum pi a^2; with surface the area of B in A) [m^2], overlapping sphere "
+      "of B's bounding box, stiffness (sum pi a^2; with surface the area of B in A) [m^2], overlapping "
+      "sphere "
       "pairs. Forces are per unit of "
       "pressure (gradient,\n"
       "[m^2]) or of force density (volume, [m^3]). Everything is in A's coordinates.";

@@ -1,4 +1,4 @@
-"""Writes poses of a solid and its copy with their exact overlaps, for overlap_accuracy and overlap_estimates.
+"""Writes poses of a solid and its copy with their exact overlaps, for overlap_accuracy and triangle_overlaps.
 
     pip install manifold3d numpy
     python3 exact_overlaps.py bunny.obj -o bunny.csv            # a closed mesh
@@ -141,9 +141,9 @@ def main():
                 middle = (near + far) / 2
                 near, far = (middle, far) if (solid ^ at(middle)).volume() > wanted * whole else (near, middle)
             copy = at(near).as_original()
-            volume, centroid, gradient = row(solid, copy)
-            if volume < 5e-5 * whole:
+            if (solid ^ copy).volume() < 5e-5 * whole:
                 continue
+            volume, centroid, gradient = row(solid, copy)
             place = turn + np.hstack([np.zeros((3, 3)), (near * size * way)[:, None]])
             numbers = [*place.ravel(), volume, *centroid, *gradient]
             out.write(f"{pose}," + ",".join("%.17g" % x for x in numbers) + "\n")

@@ -81,6 +81,21 @@ TEST_P(SurfaceConformance, ParallelBoxes) {
   }
 }
 
+// Of two bodies that are one solid, one reaches into the cube from above; the other is below it, apart.
+TEST_P(SurfaceConformance, PartsAboveAndBelow) {
+  const auto cube = boxModel({1, 1, 1});
+  const auto packing = boxPacking({0.5, 0.5, 0.5});
+  const Surface upper = packing->surface;
+  for (const auto& v : upper.vertices) packing->surface.vertices.push_back({v[0], v[1], v[2] - 2});
+  for (const auto& t : upper.triangles) packing->surface.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  const CollisionModel pair(packing);
+  for (const double depth : {0.125, 0x1p-8}) {
+    const Overlap got = overlap(*cube, pair, at({0.125, 0, 0.75 - depth}));
+    EXPECT_NEAR(got.volume, depth / 4, 1e-14);
+    expectNear(got.area, {0, 0, 0.25}, 1e-9);
+  }
+}
+
 // A square and the same turned by 45 degrees share a regular octagon.
 TEST_P(SurfaceConformance, TurnedThinPlates) {
   constexpr double kThickness = 0x1p-10, kShift = 0x1p-14;

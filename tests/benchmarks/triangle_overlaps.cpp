@@ -1,4 +1,4 @@
-// How well the errors of overlap volumes are foretold, and what the triangles make of them.
+// How exact and how fast overlaps by triangles are, beside those by spheres.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
