@@ -26,7 +26,7 @@ Corner between(const Corner& a, const Corner& b, double of_b) {
           of_a * a.bottom + of_b * b.bottom};
 }
 
-constexpr int kMostCorners = 3 + 8;  ///< three sides, and one more for each cut
+constexpr int kMostCorners = 3 + 10;  ///< three sides, and one more for each cut
 
 /// This is a convex polygon: a triangle that was cut by the sides of another, by those of a box and by a
 /// plane.
@@ -108,6 +108,36 @@ Integrals integrate(const Polygon& polygon) {
   return sums;
 }
 
+/// Adds the columns between t and u over a polygon; `with_surface` also u itself.
+void addColumns(Polygon polygon, const ColumnTriangle& t, const ColumnTriangle& u, bool with_surface,
+                SharedSums& sums) {
+  cut(polygon, [](const Corner& c) { return c.depth(); });
+  if (polygon.count < 3) return;
+  const Integrals of = integrate(polygon);
+  const int sign = -t.side * u.side;
+  sums.volume += sign * of.depth;
+  sums.magnitude += of.depth;
+  sums.moment = sums.moment + double(sign) * Vec3d{of.depth_x, of.depth_y, of.depth_z};
+  if (!with_surface) return;
+  const Vec3d normal = t.side / std::abs(u.normal.z) * u.normal;
+  sums.area = sums.area + of.area * normal;
+  sums.turning = sums.turning + cross(Vec3d{of.x, of.y, of.bottom}, normal);
+  sums.wetted += t.side * of.area * norm(u.normal) / std::abs(u.normal.z);
+}
+
+/// The same, without what is below `low`.
+void addAbove(double low, Polygon polygon, const ColumnTriangle& t, const ColumnTriangle& u,
+              SharedSums& sums) {
+  if (u.box.min.z < low) {
+    Polygon below = polygon;
+    cut(below, [&](const Corner& c) { return low - c.bottom; });
+    for (int k = 0; k < below.count; ++k) below.corners[k].bottom = low;
+    addColumns(below, t, u, false, sums);
+    cut(polygon, [&](const Corner& c) { return c.bottom - low; });
+  }
+  addColumns(polygon, t, u, true, sums);
+}
+
 }  // namespace
 
 ColumnTriangle makeColumnTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -128,18 +158,14 @@ void addColumnPair(const ColumnTriangle& t, const ColumnTriangle& u, const Bound
     const double z = place.z - (u.normal.x * (c.x - place.x) + u.normal.y * (c.y - place.y)) / u.normal.z;
     c.bottom = std::clamp(z, u.box.min.z, u.box.max.z);
   }
-  cut(polygon, [](const Corner& c) { return c.depth(); });
-  if (polygon.count < 3) return;
-
-  const Integrals of = integrate(polygon);
-  const int sign = -t.side * u.side;
-  sums.volume += sign * of.depth;
-  sums.magnitude += of.depth;
-  sums.moment = sums.moment + double(sign) * Vec3d{of.depth_x, of.depth_y, of.depth_z};
-  const Vec3d normal = t.side / std::abs(u.normal.z) * u.normal;
-  sums.area = sums.area + of.area * normal;
-  sums.turning = sums.turning + cross(Vec3d{of.x, of.y, of.bottom}, normal);
-  sums.wetted += t.side * of.area * norm(u.normal) / std::abs(u.normal.z);
+  if (t.box.max.z > box.max.z) {
+    Polygon above = polygon;
+    cut(above, [&](const Corner& c) { return c.top - box.max.z; });
+    for (int k = 0; k < above.count; ++k) above.corners[k].top = box.max.z;
+    addAbove(box.min.z, above, t, u, sums);
+    cut(polygon, [&](const Corner& c) { return box.max.z - c.top; });
+  }
+  addAbove(box.min.z, polygon, t, u, sums);
 }
 
 }  // namespace innersphere

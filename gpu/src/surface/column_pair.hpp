@@ -26,7 +26,7 @@ struct SharedSums {
   double magnitude = 0;  ///< the sum of the volumes' absolute values, to tell rounding from volume
 };
 
-/// Adds what t and u contribute in the columns of a box: where t is above u, all that is between them.
+/// Adds what t and u contribute in a box: where t is above u, all of it that is between them.
 void addColumnPair(const ColumnTriangle& t, const ColumnTriangle& u, const Bounds& box, SharedSums& sums);
 
 }  // namespace innersphere

@@ -128,11 +128,11 @@ class ColumnGrid {
 
 /// Sums over the columns of a box that holds all that is shared.
 SharedSums sumColumns(const SurfaceView& a, const SurfaceView& b, const Bounds& box) {
-  // Whole columns: what is far above or below tells where a solid ends.
-  Bounds columns = box;
-  columns.min.z = -kFar;
-  columns.max.z = kFar;
-  const std::vector<ColumnTriangle> of_a = a.trianglesIn(columns), of_b = b.trianglesIn(columns);
+  // What lies below the box in A, or above it in B, bounds nothing that is in the box.
+  Bounds up = box, down = box;
+  up.max.z = kFar;
+  down.min.z = -kFar;
+  const std::vector<ColumnTriangle> of_a = a.trianglesIn(up), of_b = b.trianglesIn(down);
   SharedSums sums;
   if (of_a.empty() || of_b.empty()) return sums;
   const ColumnGrid grid(of_b, box);
