@@ -20,7 +20,7 @@ enum class Estimator {
   /// about the origin of B, and stiffness is the area of B's surface in A. Spheres (volume-true ones) give
   /// pair_count, Want::touch, contacts and pairs, which may be missing where an overlap is smaller than they
   /// are. It costs 6 to 35 times as much as volume_true with 4,000 spheres where less than 1 % of a solid
-  /// overlaps, 3 to 230 times where more does, grows with the number of triangles, and allocates memory. The
+  /// overlaps, 3 to 200 times where more does, grows with the number of triangles, and allocates memory. The
   /// triangles are worked on by the CPU, also where the spheres are on a device. Swapping A and B negates
   /// force and area to rounding only.
   surface

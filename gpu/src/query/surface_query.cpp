@@ -12,7 +12,7 @@ namespace innersphere {
 
 namespace {
 
-constexpr std::size_t kGrain = 1;  ///< queries that one thread takes at once: they differ much in work
+constexpr std::size_t kSurfaceGrain = 1;  ///< queries that one thread takes at once: they differ much in work
 
 PlacedSurface placedSurface(const CollisionModel& model, const Placement& placement, const Vec3d& origin) {
   core::Mat3<double> rotation;
@@ -21,7 +21,7 @@ PlacedSurface placedSurface(const CollisionModel& model, const Placement& placem
   return {model.impl().surface(), core::scaled(rotation, placement.scale), placement.translation - origin};
 }
 
-Vec3d middleOf(const PlacedSurface& surface) {
+Vec3d middleOfBox(const PlacedSurface& surface) {
   return surface.matrix * (0.5 * (surface.tree.bounds().min + surface.tree.bounds().max)) +
          surface.translation;
 }
@@ -31,7 +31,7 @@ void refineOne(const PairQuery& query, bool volume_only, Overlap& overlap) {
   const PlacedSurface a = placedSurface(*query.a, query.placement_a, origin);
   const PlacedSurface b = placedSurface(*query.b, query.placement_b, origin);
   const bool directed = norm(overlap.area) > 0;
-  const SharedSums sums = sharedVolume(a, b, directed ? overlap.area : middleOf(b) - middleOf(a));
+  const SharedSums sums = sharedVolume(a, b, directed ? overlap.area : middleOfBox(b) - middleOfBox(a));
   const std::uint64_t pairs = overlap.pair_count;
   overlap = {};
   overlap.pair_count = pairs;
@@ -66,7 +66,7 @@ void SurfaceQueries::keep(const PairQuery* queries, std::size_t count, const Que
 }
 
 void SurfaceQueries::refine(Workers& workers, std::vector<Overlap>& overlaps) const {
-  workers.forRanges(queries_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  workers.forRanges(queries_.size(), kSurfaceGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) refineOne(queries_[i], volume_only_, overlaps[i]);
   });
 }

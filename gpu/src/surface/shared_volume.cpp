@@ -31,7 +31,7 @@ Mat3<double> columnFrame(const Vec3d& up) {
   return {{x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z}};
 }
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 /// Returns whether a column may reach from `a` down to `b`.
 bool isAbove(const Bounds& a, const Bounds& b) {
@@ -130,8 +130,8 @@ class ColumnGrid {
 SharedSums sumColumns(const SurfaceView& a, const SurfaceView& b, const Bounds& box) {
   // What lies below the box in A, or above it in B, bounds nothing that is in the box.
   Bounds up = box, down = box;
-  up.max.z = kFar;
-  down.min.z = -kFar;
+  up.max.z = kEndless;
+  down.min.z = -kEndless;
   const std::vector<ColumnTriangle> of_a = a.trianglesIn(up), of_b = b.trianglesIn(down);
   SharedSums sums;
   if (of_a.empty() || of_b.empty()) return sums;
