@@ -166,6 +166,7 @@ def main() -> None:
     bench = Bench(options)
     versions = present(options.engines)
     if not options.page_only:
+        (bench.folder / "versions.json").write_text(json.dumps(versions))
         prepared = bench.prepare(options.scenes, options.spheres)
         for name, version in versions.items():
             if version:
@@ -173,8 +174,11 @@ def main() -> None:
                     all_engines()[name].prepare(made)
         cases = [(name, made, rate) for made in prepared.values() for rate in options.rates for name in versions
                  if versions[name]]
+        rows: list[dict] = []
         with concurrent.futures.ThreadPoolExecutor(bench.jobs) as pool:
-            rows = [row for found in pool.map(lambda case: bench.case(*case), cases) for row in found]
+            for found in pool.map(lambda case: bench.case(*case), cases):
+                rows += found
+                write(bench.folder / "bench.csv", rows)  # each time: what was measured stays if somebody stops it
         if bench.repeat:
             first = {(row["engine"], row["scene"], row["rate"]): row for row in reversed(rows)}
             for row in first.values():
@@ -183,7 +187,6 @@ def main() -> None:
         write(bench.folder / "bench.csv", rows)
         if not options.no_queries:
             overlaps.write(bench.folder)
-        (bench.folder / "versions.json").write_text(json.dumps(versions))
     page.write(bench.folder)
 
 

@@ -26,8 +26,8 @@ def _draw(recording: Recording, meshes: list, step: int, low: np.ndarray, scale:
     draw = ImageDraw.Draw(image)
     faces = []
     for i, mesh in enumerate(meshes):
-        seen = _camera(recording.rotations(i)[step].apply(mesh.vertices) + recording.position[step, i])
-        normals = recording.rotations(i)[step].apply(mesh.face_normals)
+        seen = _camera(recording.rotations(i)[step].apply(np.array(mesh.vertices)) + recording.position[step, i])
+        normals = recording.rotations(i)[step].apply(np.array(mesh.face_normals))
         for triangle, normal in zip(mesh.faces, normals):
             light = 0.55 + 0.45 * max(0.0, float(normal @ [0.3, -0.6, 0.74]))
             colour = tuple(int(c * light) for c in _COLOURS[i % len(_COLOURS)])
@@ -52,7 +52,7 @@ def _film(folder: pathlib.Path, name: str, rate: int, engines: list[str]) -> str
     if not recordings:
         return ""
     first = next(iter(recordings.values()))
-    seen = np.vstack([_camera(first.rotations(i)[0].apply(m.vertices) + first.position[0, i]) for i, m in enumerate(meshes)])
+    seen = np.vstack([_camera(first.rotations(i)[0].apply(np.array(m.vertices)) + first.position[0, i]) for i, m in enumerate(meshes)])
     low, high = seen[:, :2].min(0), seen[:, :2].max(0)
     scale = 0.8 * _SIDE / (high - low).max()
     low = np.array([(low[0] + high[0] - _SIDE / scale) / 2, low[1]])

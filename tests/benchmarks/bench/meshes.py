@@ -6,7 +6,6 @@ import subprocess
 import tempfile
 
 import numpy as np
-import shapely
 import trimesh
 
 tool = "innersphere"  # the program that has the named solids; set by whoever prepares scenes
@@ -42,9 +41,11 @@ def plate(outer: float, hole: float, thickness: float, around: int = 128) -> tri
     return trimesh.creation.annulus(hole / math.cos(math.pi / around), outer, thickness, sections=around)
 
 
-def _prism(polygon: shapely.Polygon, height: float) -> trimesh.Trimesh:
+def _prism(outline: list, height: float, holes: list = ()) -> trimesh.Trimesh:
     """Centred along z."""
-    mesh = trimesh.creation.extrude_polygon(polygon, height)
+    import shapely
+
+    mesh = trimesh.creation.extrude_polygon(shapely.Polygon(outline, holes), height)
     mesh.apply_translation([0, 0, -height / 2])
     return mesh
 
@@ -52,8 +53,7 @@ def _prism(polygon: shapely.Polygon, height: float) -> trimesh.Trimesh:
 def wedge(inner: float, outer: float, angle: float, depth: float) -> trimesh.Trimesh:
     """A stone of an arch: a sector of a ring about the origin with plane faces, upright, as deep along y. Degrees."""
     s, c = math.sin(math.radians(angle / 2)), math.cos(math.radians(angle / 2))
-    mesh = _prism(shapely.Polygon([(-inner * s, inner * c), (-outer * s, outer * c), (outer * s, outer * c),
-                                   (inner * s, inner * c)]), depth)
+    mesh = _prism([(-inner * s, inner * c), (-outer * s, outer * c), (outer * s, outer * c), (inner * s, inner * c)], depth)
     return _upright(mesh)
 
 
@@ -70,7 +70,7 @@ def gear(teeth: int, pitch: float = 0.18, tooth: float = 0.05, bore: float = 0.1
                 (radius + height) * math.sin(2 * math.pi * (i + part) / teeth))
                for i in range(teeth) for part, height in corners]
     hole = [(bore * math.cos(a), bore * math.sin(a)) for a in np.linspace(0, 2 * math.pi, 64, endpoint=False)]
-    return _prism(shapely.Polygon(outline, [hole]), thick)
+    return _prism(outline, thick, [hole])
 
 
 def bowl(outer: float = 0.5, inner: float = 0.42, around: int = 96) -> trimesh.Trimesh:
@@ -96,22 +96,19 @@ def half_pipe(inner: float, wall: float, length: float, facets: int = 360) -> tr
     angles = np.linspace(math.pi, 2 * math.pi, facets + 1)
     inside = [(inner * math.cos(a), inner * math.sin(a)) for a in angles]
     outside = [((inner + wall) * math.cos(a), (inner + wall) * math.sin(a)) for a in angles]
-    return _upright(_prism(shapely.Polygon(inside + outside[::-1]), length))
-
-
-def _rectangles(*boxes: tuple) -> shapely.Polygon:
-    return shapely.unary_union([shapely.box(*corners) for corners in boxes])
+    return _upright(_prism(inside + outside[::-1], length))
 
 
 def t_slot(length: float = 0.3) -> trimesh.Trimesh:
     """A C-shaped rail along y; lips of 0.06 m leave a gap of 0.12 m at the bottom."""
-    return _upright(_prism(_rectangles((-0.24, 0, -0.16, 0.2), (0.16, 0, 0.24, 0.2), (-0.24, 0.14, 0.24, 0.2),
-                                       (-0.24, 0, -0.06, 0.06), (0.06, 0, 0.24, 0.06)), length))
+    outline = [(0.06, 0), (0.24, 0), (0.24, 0.2), (-0.24, 0.2), (-0.24, 0), (-0.06, 0), (-0.06, 0.06), (-0.16, 0.06)]
+    return _upright(_prism(outline + [(-0.16, 0.14), (0.16, 0.14), (0.16, 0.06), (0.06, 0.06)], length))
 
 
 def t_slider(length: float = 0.3) -> trimesh.Trimesh:
     """A T that hangs on the lips of t_slot(): its flange is above them."""
-    return _upright(_prism(_rectangles((-0.05, -0.1, 0.05, 0.12), (-0.15, 0.06, 0.15, 0.12)), length))
+    return _upright(_prism([(-0.05, -0.1), (0.05, -0.1), (0.05, 0.06), (0.15, 0.06), (0.15, 0.12), (-0.15, 0.12), (-0.15, 0.06),
+                            (-0.05, 0.06)], length))
 
 
 def mug(radius: float = 0.04, height: float = 0.1, wall: float = 0.005) -> trimesh.Trimesh:

@@ -64,7 +64,7 @@ def _innersphere(case: Case) -> dict:
     found = query.overlap(packings[0], packings[1], pose_b=poses)
     spent = time.perf_counter() - start
     return {"volume": float(found["volume"][0]), "centroid": np.array(found["centroid"][0]),
-            "gradient": np.array(found["area"][0]), "seconds": spent}
+            "gradient": -np.array(found["area"][0]), "seconds": spent}  # it tells that of the first solid's way
 
 
 def _manifold(case: Case) -> dict:
@@ -93,6 +93,7 @@ def _trimesh(case: Case) -> dict:
             "gradient": _differences(lambda s: common(s).volume, case.shift)}
 
 
+# FCL and Coal tell the depth of pairs of triangles; the largest is taken.
 def _fcl(case: Case) -> dict:
     import fcl
 
@@ -116,7 +117,10 @@ def _coal(case: Case) -> dict:
     for mesh in (case.a, case.b):
         model = coal.BVHModelOBBRSS()
         model.beginModel(len(mesh.faces), len(mesh.vertices))
-        model.addSubModel(np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces, dtype=np.int64))
+        corners, faces = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+        corners.extend([np.array(v, dtype=np.float64) for v in mesh.vertices])
+        faces.extend([coal.Triangle(*map(int, face)) for face in mesh.faces])
+        model.addSubModel(corners, faces)
         model.endModel()
         models.append(model)
     request, result = coal.CollisionRequest(coal.CollisionRequestFlag.CONTACT, 1000), coal.CollisionResult()

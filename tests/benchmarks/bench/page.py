@@ -268,7 +268,8 @@ increments of its total energy are more than {100 * _ENERGY:.0f} % of what its b
     if overlaps:
         parts.append("## Overlaps\n\nErrors against closed forms ([overlaps.py](../bench/overlaps.py)): of the volume, of the centroid over "
                      "the solid's size, of the gradient of the volume, of the depth. Gradients of manifold3d and trimesh are differences of "
-                     f"volumes.\n\n{_overlaps(overlaps)}\n")
+                     "volumes. FCL and Coal tell the depth of pairs of triangles, not of solids: the largest is taken.\n\n"
+                     f"{_overlaps(overlaps)}\n")
     parts.append(f"## Motion\n\nHow far a body of each scene is from where it started [m], over time [s], at {fast}/s:\n\n"
                  "![Way of a body over time](bench-motion.png)\n\n" + "".join(f"![{text}]({file})\n\n" for file, text in shown))
     if _failures(results):

@@ -1,7 +1,5 @@
 """MuJoCo, with the signed distance fields that it makes of meshes, or with convex parts."""
 
-import importlib.metadata
-
 import numpy as np
 
 from ..scene import force_at, path_at
@@ -23,9 +21,9 @@ class _MuJoCo(Engine):
 
     @classmethod
     def version(cls) -> str:
-        import mujoco  # noqa: F401
+        import mujoco
 
-        return "MuJoCo " + importlib.metadata.version("mujoco")
+        return "MuJoCo " + mujoco.__version__
 
     def __init__(self, scene: dict, dt: float) -> None:
         import mujoco
