@@ -166,7 +166,7 @@ def main() -> None:
     bench = Bench(options)
     versions = present(options.engines)
     if not options.page_only:
-        (bench.folder / "versions.json").write_text(json.dumps(versions))
+        kept = remember(bench.folder, versions, options)
         prepared = bench.prepare(options.scenes, options.spheres)
         for name, version in versions.items():
             if version:
@@ -174,13 +174,13 @@ def main() -> None:
                     all_engines()[name].prepare(made)
         cases = [(name, made, rate) for made in prepared.values() for rate in options.rates for name in versions
                  if versions[name]]
-        rows: list[dict] = []
+        rows: list[dict] = list(kept)
         with concurrent.futures.ThreadPoolExecutor(bench.jobs) as pool:
             for found in pool.map(lambda case: bench.case(*case), cases):
                 rows += found
                 write(bench.folder / "bench.csv", rows)  # each time: what was measured stays if somebody stops it
         if bench.repeat:
-            first = {(row["engine"], row["scene"], row["rate"]): row for row in reversed(rows)}
+            first = {(row["engine"], row["scene"], row["rate"]): row for row in reversed(rows[len(kept):])}
             for row in first.values():
                 if not row["why"] and row["rate"] == max(options.rates):
                     bench.again(row)
@@ -188,6 +188,19 @@ def main() -> None:
         if not options.no_queries:
             overlaps.write(bench.folder)
     page.write(bench.folder)
+
+
+def remember(folder: pathlib.Path, versions: dict[str, str], options: argparse.Namespace) -> list[dict]:
+    """Adds the versions to those that the folder has, and returns what it has of other runs."""
+    known, table = folder / "versions.json", folder / "bench.csv"
+    before = json.loads(known.read_text()) if known.exists() else {}
+    both = before | versions
+    known.write_text(json.dumps({name: both[name] for name in all_engines() if name in both}))
+    if not table.exists():
+        return []
+    with table.open(newline="") as file:
+        return [row for row in csv.DictReader(file) if not (row["engine"] in versions and row["scene"] in options.scenes
+                                                            and int(row["rate"]) in options.rates)]
 
 
 def write(path: pathlib.Path, rows: list[dict]) -> None:

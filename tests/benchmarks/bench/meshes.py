@@ -124,7 +124,7 @@ def mug(radius: float = 0.04, height: float = 0.1, wall: float = 0.005) -> trime
 def brick(columns: int = 4, rows: int = 2, pitch: float = 0.08, clearance: float = 0.001) -> trimesh.Trimesh:
     """A building brick, ten times as large: studs above, a hollow below whose walls the studs of another fit between."""
     x, y, high, stud, rise = columns * pitch, rows * pitch, 0.096, 0.024, 0.018
-    room = pitch - stud - 2 * clearance  # twice the wall's thickness
+    room = pitch - 2 * stud - 2 * clearance  # twice the wall's thickness
     body = trimesh.creation.box((x, y, high))
     hollow = trimesh.creation.box((x - room, y - room, high))
     hollow.apply_translation([0, 0, -0.012])

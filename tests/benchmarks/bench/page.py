@@ -55,8 +55,8 @@ class Results:
         self.rows = _read(folder / "bench.csv")
         self.versions = json.loads((folder / "versions.json").read_text())
         self.engines = list(self.versions)
-        self.scenes = list(dict.fromkeys(row["scene"] for row in self.rows))
-        self.rates = list(dict.fromkeys(int(row["rate"]) for row in self.rows))
+        self.scenes = sorted({row["scene"] for row in self.rows})
+        self.rates = sorted({int(row["rate"]) for row in self.rows}, reverse=True)
 
     def of(self, engine: str, name: str, rate: int) -> list[dict]:
         return [r for r in self.rows if (r["engine"], r["scene"], int(r["rate"])) == (engine, name, rate)]
