@@ -18,6 +18,8 @@ using namespace innersphere;
 
 constexpr int kIterations = 50;   // of dWorldQuickStep, whose default is 20
 constexpr int kMostContacts = 64;  // of a pair
+// Against jitter and pops, as its manual advises: what contacts may sink in, over the smallest body's size, and how fast they part [m/s].
+constexpr double kLayer = 1e-3, kParting = 0.5;
 
 // A mesh as ODE wants it: the arrays must stay.
 struct Mesh {
@@ -35,6 +37,10 @@ class World {
     contacts_ = dJointGroupCreate(0);
     dWorldSetGravity(world_, 0, 0, -9.81);
     dWorldSetQuickStepNumIterations(world_, kIterations);
+    double smallest = HUGE_VAL;
+    for (const bench::Body& body : scene.bodies) smallest = std::fmin(smallest, body.size);
+    dWorldSetContactSurfaceLayer(world_, kLayer * smallest);
+    dWorldSetContactMaxCorrectingVel(world_, kParting);
     if (scene.has_ground) dCreatePlane(space_, 0, 0, 1, scene.ground);
     for (const bench::Body& body : scene.bodies) addBody(body);
   }

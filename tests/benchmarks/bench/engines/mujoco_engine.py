@@ -29,13 +29,14 @@ class _MuJoCo(Engine):
         import mujoco
 
         self._mujoco, self._scene, self._dt = mujoco, scene, dt
+        self._concave = any(len(body.get("hulls", [])) > 1 for body in scene["bodies"])
         self._model = mujoco.MjModel.from_xml_string(self._xml())
         self._data = mujoco.MjData(self._model)
         self._numbers = [self._model.body(f"b{i}").id for i in range(len(scene["bodies"]))]
 
     def _files(self, body: dict) -> list[str]:
-        """Meshes of a body: one field, or convex parts."""
-        return body["hulls"] if not self.fields or len(body["hulls"]) == 1 else [body["mesh"]]
+        """Meshes of a body: one field, or convex parts. Fields meet fields best; where all is convex there is no need of them."""
+        return [body["mesh"]] if self.fields and self._concave else body["hulls"]
 
     def _xml(self) -> str:
         scene = self._scene
@@ -99,7 +100,7 @@ _CONTACT = "solref 0.01 1, solimp .95 .99 .0001 (its own examples), elliptic con
 
 class MuJoCoFields(_MuJoCo):
     name, fields = "mujoco-sdf", True
-    settings = f"geoms of type sdf, its octree of the mesh, 20 iterations from 40 points (model/plugin/sdf/octree.xml); {_CONTACT}"
+    settings = f"geoms of type sdf, its octree of the mesh, for all meshes of a scene that has concave ones, 20 iterations from 40 points (model/plugin/sdf/octree.xml); {_CONTACT}"
 
 
 class MuJoCoHulls(_MuJoCo):

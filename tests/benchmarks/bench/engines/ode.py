@@ -8,8 +8,9 @@ from .programs import program
 
 class Ode(Program):
     name = "ode"
-    settings = ("triangle meshes, with the last transforms set (manual, Trimesh class); dWorldQuickStep with 50 iterations, ERP 0.2, "
-                "pyramids of friction (dContactApprox1), at most 64 contacts a pair")
+    settings = ("triangle meshes, with the last transforms set (manual, Trimesh class); dWorldQuickStep with 50 iterations, ERP 0.2, a "
+                "surface layer of 1e-3 of the smallest body and contacts that part at 0.5 m/s at most (manual), pyramids of "
+                "friction (dContactApprox1), at most 64 contacts a pair")
 
     @classmethod
     def version(cls) -> str:
