@@ -89,7 +89,7 @@ def _summary(results: Results) -> str:
             continue
         cells = [engine]
         for rate in results.rates:
-            whole = [results.held(engine, name, rate) == 1 for name in results.scenes]
+            whole = [results.held(engine, name, rate) == 1 for name in results.scenes if results.of(engine, name, rate)]
             mine = [r for r in results.rows if r["engine"] == engine and int(r["rate"]) == rate]
             cells += [f"{sum(whole)} of {len(whole)}", f"{sum(r['holds'] == 'True' for r in mine)} of {len(mine)}"]
         runs = {(r["scene"], r["rate"]): r for r in results.rows if r["engine"] == engine}.values()
@@ -112,9 +112,8 @@ def _truths(results: Results, rate: int) -> str:
     rows = []
     for name in results.scenes:
         found = {engine: results.of(engine, name, rate) for engine in results.engines}
-        length = max(len(r) for r in found.values())
-        some = next(r for r in found.values() if r)
-        for k in range(length):
+        some = next((r for r in found.values() if r), [])  # none: the scene was not run at this rate
+        for k in range(len(some)):
             rows.append([name, some[k]["quantity"], _expected(some[k])]
                         + [_cell(found[engine][k] if found[engine] else None) for engine in results.engines])
     return _table(["scene", "quantity", "truth", *results.engines], rows)
@@ -179,7 +178,7 @@ def _picture(results: Results, path: pathlib.Path) -> None:
         axis.grid(which="minor", color="white", linewidth=1.5)
         axis.tick_params(which="both", length=0)
         axis.set_title(f"{rate} steps a second", fontsize=9)
-    figure.suptitle("green: all truths hold; yellow: some; red: none; grey: no result in its time", fontsize=8, y=0.995)
+    figure.suptitle("green: all truths hold; yellow: some; red: none; grey: no result in its time, or not run", fontsize=8)
     figure.tight_layout()
     figure.savefig(path, dpi=110)
     pyplot.close(figure)
