@@ -162,18 +162,23 @@ void devices(const CollisionModel& a, const CollisionModel& b, std::size_t batch
 #endif
 
 /// From which size on a device is faster, and what Backend::automatic chooses.
-void crossover(std::size_t runs) {
+void crossover(Want want, const std::vector<std::size_t>& sizes, std::size_t pairs, std::size_t runs) {
   QueryContext one({Backend::cpu, 1}), all({Backend::cpu, 0}), cuda({Backend::cuda}), automatic;
-  for (const std::size_t count : {100, 200, 400, 800, 1600, 3200}) {
+  for (const std::size_t count : sizes) {
     const CollisionModel a(benchmarks::greedyBall(count, 1)), b(benchmarks::greedyBall(count, 2));
     for (const Scene& scene : kScenes) {
-      const PairQuery query = sceneQuery(a, b, scene);
-      std::printf("| %zu | %s |", count, scene.name);
+      const std::vector<PairQuery> queries = sceneBatch(a, b, scene, pairs);
+      std::printf("| %s | %zu | %zu | %s |", want == Want::contacts ? "contacts" : "wrench", pairs, count,
+                  scene.name);
+      QueryResult result;
       for (QueryContext* context : {&one, &all, &cuda, &automatic}) {
-        const Times t = measure(runs, [&] { context->overlap(query, {Want::wrench, Estimator::raw}); });
+        const Times t = measure(runs, [&] {
+          context->run(queries.data(), pairs, {want, Estimator::raw}, result);
+        });
         std::printf(" %.1f |", t.median);
       }
       std::printf(" %s |\n", nameOf(automatic.lastBackend()));
+      std::fflush(stdout);
     }
   }
 }
@@ -271,10 +276,15 @@ int main(int argc, char** argv) {
 #endif
     if (cudaAvailable()) {
       std::printf(
-          "\nSmall packings, one wrench, us, as the host sees it.\n\n"
-          "| spheres | overlap | CPU, one thread | CPU, all threads | CUDA | automatic | on |\n"
-          "|---|---|---|---|---|---|---|\n");
-      crossover(runs);
+          "\nSmall packings, us for all pairs, as the host sees it.\n\n"
+          "| wanted | pairs | spheres | overlap | CPU, one thread | CPU, all threads | CUDA | automatic | on "
+          "|\n"
+          "|---|---|---|---|---|---|---|---|---|\n");
+      const std::size_t few = std::min<std::size_t>(runs, 21);
+      crossover(Want::wrench, {100, 200, 400, 800, 1600, 3200}, 1, runs);
+      crossover(Want::contacts, {400, 1600, 6400, 25600}, 1, runs);
+      crossover(Want::contacts, {100, 400, 1600, 6400}, 16, few);
+      crossover(Want::contacts, {100, 400, 1600}, 256, few);
     }
 
     std::printf(

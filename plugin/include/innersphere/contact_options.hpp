@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "innersphere/bullet_precision.hpp"
 #include "innersphere/query.hpp"
+#include "innersphere/query_queue.hpp"
 
 namespace innersphere {
 
@@ -78,6 +80,10 @@ struct ContactOptions {
   /// found are used again while bodies hardly move against each other. Reuse::search takes several times as
   /// long; it is for tests and measurements, and to find out where a fault lies. See ContactStatistics.
   Reuse reuse = Reuse::idle;
+  /// Where pairs of packings are searched together with those of other worlds that other threads step. The
+  /// motion has the same bits. Null, the default: the world has queries of its own. Backend then says
+  /// nothing.
+  std::shared_ptr<QueryQueue> queue;
 };
 
 inline namespace INNERSPHERE_BULLET_PRECISION {

@@ -16,8 +16,8 @@ std::size_t roomOf(const QueryResult& result) {
 
 }  // namespace
 
-PackingSearch::PackingSearch(Backend backend, std::size_t room)
-    : backend_(backend), context_(QueryContextOptions{backend, 0}) {
+PackingSearch::PackingSearch(const ContactOptions& options, std::size_t room)
+    : backend_(options.backend), queue_(options.queue), context_(QueryContextOptions{backend_, 0}) {
   reserve(room);
 }
 
@@ -36,10 +36,26 @@ void PackingSearch::clear() {
 
 void PackingSearch::start(Estimator estimator) {
   estimator_ = estimator;
+  if (queue_) return;
   makeQueries(SearchPass::surfaces);
   if (queries_.empty()) return;
   context_.start(queries_.data(), queries_.size(), queryOptionsOf(SearchPass::surfaces, estimator));
   started_ = true;
+}
+
+void PackingSearch::run(SearchPass pass) {
+  const QueryOptions options = queryOptionsOf(pass, estimator_);
+  if (queue_)
+    queue_->run(queries_.data(), queries_.size(), options, result_);
+  else
+    context_.run(queries_.data(), queries_.size(), options, result_);
+}
+
+Overlap PackingSearch::overlap(const PairQuery& query, Estimator estimator) {
+  const QueryOptions options{Want::wrench, estimator};
+  if (!queue_) return context_.overlap(query, options);
+  queue_->run(&query, 1, options, result_);
+  return result_.overlaps[0];
 }
 
 bool PackingSearch::isLarge() const {

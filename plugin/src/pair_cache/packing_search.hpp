@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "common/parallel.hpp"
-#include "innersphere/query.hpp"
+#include "innersphere/contact_options.hpp"
+#include "innersphere/query_queue.hpp"
 #include "narrow_phase/packing_vs_packing.hpp"
 
 namespace innersphere {
@@ -15,11 +16,15 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Runs searches. All pairs go through the same passes together, each pass one query; pairs that are swept go
 /// through the first one once for each pose. The first one can be
-/// under way on a device while the caller does something else.
+/// under way on a device while the caller does something else, unless searches share their queries with
+/// others.
 class PackingSearch {
  public:
-  PackingSearch(Backend backend, std::size_t room);
-  Backend backend() const { return backend_; }
+  PackingSearch(const ContactOptions& options, std::size_t room);
+  /// Returns true if these options would make it the same.
+  bool isFor(const ContactOptions& options) const {
+    return backend_ == options.backend && queue_ == options.queue;
+  }
   /// Makes room for so many pairs, so that a search does not allocate.
   void reserve(std::size_t pairs);
 
@@ -46,7 +51,7 @@ class PackingSearch {
     for (const SearchPass pass :
          {SearchPass::surfaces, SearchPass::touch, SearchPass::deep, SearchPass::volumes}) {
       for (makeQueries(pass); !queries_.empty(); makeQueries(pass)) {
-        context_.run(queries_.data(), queries_.size(), queryOptionsOf(pass, estimator_), result_);
+        run(pass);
         take(pass, done);
       }
     }
@@ -56,9 +61,7 @@ class PackingSearch {
   /// Returns true if it holds more memory than searches of a usual size need, and is soon made anew.
   bool isLarge() const;
   /// Runs one query for volumes and returns its sums.
-  Overlap overlap(const PairQuery& query, Estimator estimator) {
-    return context_.overlap(query, {Want::wrench, estimator});
-  }
+  Overlap overlap(const PairQuery& query, Estimator estimator);
 
  private:
   struct Item {
@@ -67,6 +70,7 @@ class PackingSearch {
     std::size_t index;
   };
   void makeQueries(SearchPass pass);
+  void run(SearchPass pass);
   /// Bodies that were deep in each other for once leave no memory behind.
   void releaseUnused();
   template <typename Done>
@@ -82,6 +86,7 @@ class PackingSearch {
   }
 
   Backend backend_;
+  std::shared_ptr<QueryQueue> queue_;  ///< null: queries of its own
   QueryContext context_;
   Estimator estimator_ = Estimator::volume_true;
   bool started_ = false;

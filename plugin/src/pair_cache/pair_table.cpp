@@ -48,8 +48,8 @@ class Busy {
 void PairTable::setOptions(const ContactOptions& options) {
   const std::lock_guard<std::mutex> lock(mutex_);
   finish();
-  if (options.backend != options_.backend) spare_searches_.clear();
   options_ = options;
+  std::erase_if(spare_searches_, [&](const auto& search) { return !search->isFor(options); });
   pairs_.forEach([](ContactPair& pair) { pair.forgetContact(); });
 }
 
@@ -321,7 +321,7 @@ StepSettings PairTable::settingsFor(btScalar time_step) const {
 }
 
 std::unique_ptr<PackingSearch> PairTable::takeSearch() {
-  if (spare_searches_.empty()) return std::make_unique<PackingSearch>(options_.backend, pairs_.capacity());
+  if (spare_searches_.empty()) return std::make_unique<PackingSearch>(options_, pairs_.capacity());
   std::unique_ptr<PackingSearch> search = std::move(spare_searches_.back());
   spare_searches_.pop_back();
   search->reserve(pairs_.capacity());
@@ -330,7 +330,7 @@ std::unique_ptr<PackingSearch> PairTable::takeSearch() {
 
 void PairTable::giveBack(std::unique_ptr<PackingSearch> search) {
   search->clear();
-  if (search->backend() == options_.backend) spare_searches_.push_back(std::move(search));
+  if (search->isFor(options_)) spare_searches_.push_back(std::move(search));
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

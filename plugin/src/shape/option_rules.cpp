@@ -40,6 +40,7 @@ const ContactOptions* ownOptions(const btCollisionShape& shape) {
 ContactOptions combine(const ContactOptions& world, const ContactOptions* a, const ContactOptions* b) {
   ContactOptions pair = a != nullptr ? *a : b != nullptr ? *b : world;
   pair.backend = world.backend;
+  pair.queue = world.queue;
   pair.estimator = world.estimator;
   pair.reuse = world.reuse;
   if (a == nullptr || b == nullptr) return pair;
