@@ -17,22 +17,26 @@ INNERSPHERE_HD inline Mat3<double> matrixOf(const double* q) {
            2 * (x * z - y * w), 2 * (y * z + x * w), w * w - x * x - y * y + z * z}};
 }
 
+/// Returns the matrix of a pose as it was given.
+INNERSPHERE_HD inline Mat3<double> givenRotation(const Poses& poses, std::size_t number) {
+  if (!poses.matrices) return matrixOf(poses.quaternions + 4 * number);
+  const double* m = poses.matrices + 16 * number;
+  return {{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}};
+}
+
 /// Reads a pose, and makes its matrix a rotation.
 INNERSPHERE_HD inline Fault readPose(const Poses& poses, std::size_t number, Mat3<double>& rotation,
                                      Vec3d& translation) {
+  rotation = givenRotation(poses, number);
   if (poses.matrices) {
     constexpr double kRounding = 1e-6;
     const double* m = poses.matrices + 16 * number;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) rotation.m[3 * i + j] = m[4 * i + j];
-      translation[i] = m[4 * i + 3];
-    }
+    for (int i = 0; i < 3; ++i) translation[i] = m[4 * i + 3];
     const double off[] = {m[12], m[13], m[14], m[15] - 1};
     for (const double x : off) {
       if (!(fabs(x) <= kRounding)) return Fault::last_row;
     }
   } else {
-    rotation = matrixOf(poses.quaternions + 4 * number);
     for (int i = 0; i < 3; ++i) translation[i] = poses.positions[3 * number + i];
   }
   bool finite = true;
