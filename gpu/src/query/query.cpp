@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -145,6 +146,14 @@ struct QueryContext::Impl {
   std::vector<PreparedQuery> prepared;
   QueryResult single;
 };
+
+std::optional<Placement> placementAt(const Poses& poses, std::size_t number) {
+  core::Mat3<double> rotation;
+  Placement place;
+  if (core::loadPose(poses, number, rotation, place.translation) != core::Fault::none) return std::nullopt;
+  std::copy(std::begin(rotation.m), std::end(rotation.m), place.rotation.begin());
+  return place;
+}
 
 int cudaDeviceCount() {
   return cudaDevices();
