@@ -167,7 +167,7 @@ class CudaBackend : public OneDevice {
 
   Workers& workers_;
   device::Device device_;
-  device::Event filled_;  ///< since which a sweep's arrays hold what they should
+  Event filled_;  ///< since which a sweep's arrays hold what they should
   std::array<BatchPart, 2> parts_;
   std::span<const PreparedQuery> queries_;
   Want want_ = Want::wrench;
