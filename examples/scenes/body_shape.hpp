@@ -25,6 +25,8 @@ struct BodyOptions {
   BodyShape shape = BodyShape::packing;
   /// BodyShape::convex: how far hulls may leave the solid, relative to the diagonal of its bounding box.
   double concavity = 0.003;
+  /// What the spheres of the packings are chosen for, where `packing` is empty.
+  SphereOrder order = SphereOrder::radius;
   /// To get packings elsewhere, for programs that run scenes again and again; empty: pack(). May give more
   /// spheres than are asked for, of which the first ones are used.
   std::function<std::shared_ptr<const Packing>(const Solid& solid, std::size_t spheres, const Progress&)>

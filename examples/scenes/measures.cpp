@@ -46,7 +46,11 @@ std::vector<double> motionsAtTheEnd(const Recording& r, const std::vector<double
 double turnedAboutZ(const Recording& r, std::size_t body, double from, double to) {
   double angle = 0;
   for (std::size_t s = r.stepAt(from) + 1; s <= r.stepAt(to); ++s) {
-    angle += r.body(body, s).spin[2] * (r.steps[s].time - r.steps[s - 1].time);
+    // By z and w of (rotation now) (rotation before)^-1.
+    const auto &p = r.body(body, s - 1).rotation, &q = r.body(body, s).rotation;
+    const double z = q[2] * p[3] - q[3] * p[2] - q[0] * p[1] + q[1] * p[0];
+    const double w = q[0] * p[0] + q[1] * p[1] + q[2] * p[2] + q[3] * p[3];
+    angle += 2 * std::atan2(w < 0 ? -z : z, std::abs(w));
   }
   return angle;
 }

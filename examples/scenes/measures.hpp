@@ -31,7 +31,8 @@ constexpr double kRestMotion = 0.01;
 /// for bodies of size 0. `sizes`: of all bodies [m].
 std::vector<double> motionsAtTheEnd(const Recording& r, const std::vector<double>& sizes);
 
-/// The angle that a body turned about the z axis between two times, by its spin [rad].
+/// The angle that a body turned about the z axis between two times [rad]: by its rotations, less than half a
+/// turn a step. Spins tell it only where a step has one speed, and SubstepSolver's steps have several.
 double turnedAboutZ(const Recording& r, std::size_t body, double from, double to);
 
 /// Energy that came from nowhere, over a reference [J]. `limit` is what GImpact's triangle meshes gain in the

@@ -96,6 +96,7 @@ std::size_t SceneWorld::addSolid(const Solid& solid, std::size_t spheres, const 
   } else {
     PackOptions options;
     options.spheres = spheres;
+    options.order = body_options_.order;
     options.overlap_errors = false;  // nobody asks for them here, and they take most of the time
     entry.packing = std::make_shared<Packing>(pack(solid, options, progress));
   }

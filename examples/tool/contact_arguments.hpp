@@ -16,10 +16,16 @@ inline void addBackendOption(Command& command, Backend& backend) {
                           "Where overlaps are computed; auto chooses by the amount of work");
 }
 
-inline void addEstimatorOption(Command& command, Estimator& estimator) {
-  command.choice<Estimator>(
-      "--estimator", estimator, {{"raw", Estimator::raw}, {"volume-true", Estimator::volume_true}},
-      "Radii of the spheres: as packed (raw), or so that they stand for the whole solid");
+/// Adds the choice of radii and, `with_surface`, of the triangles instead.
+inline void addEstimatorOption(Command& command, Estimator& estimator, bool with_surface = false) {
+  std::vector<std::pair<std::string, Estimator>> names = {{"raw", Estimator::raw},
+                                                          {"volume-true", Estimator::volume_true}};
+  std::string help = "Radii of the spheres: as packed (raw), or so that they stand for the whole solid";
+  if (with_surface) {
+    names.emplace_back("surface", Estimator::surface);
+    help += "; or the triangles of both (surface): exact, but slower";
+  }
+  command.choice<Estimator>("--estimator", estimator, names, help);
 }
 
 inline const std::vector<std::pair<std::string, Response>>& responseNames() {

@@ -93,11 +93,16 @@ void checkPackingOutput(const PackingOutput& output) {
   checkOutput(output.path, output.force);
 }
 
-void writePackingOutput(const Packing& packing, const PackingOutput& output) {
-  if (!isStream(output.path)) return writePacking(packing, output.path, output.force);
+void writeNamedOutput(const PackingOutput& output,
+                      const std::function<void(const std::string&, bool overwrite)>& write) {
+  if (!isStream(output.path)) return write(output.path, output.force);
   const TemporaryFile file("." + output.format);
-  writePacking(packing, file.path());
+  write(file.path(), false);
   copyTo(output.path, file.path());
+}
+
+void writePackingOutput(const Packing& packing, const PackingOutput& output) {
+  writeNamedOutput(output, [&](const std::string& path, bool force) { writePacking(packing, path, force); });
 }
 
 }  // namespace innersphere::tool

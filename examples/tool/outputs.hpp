@@ -39,6 +39,10 @@ void addPackingOutputOptions(Command& command, PackingOutput& output);
 /// bad_argument, too.
 void checkPackingOutput(const PackingOutput& output);
 
+/// Calls write() with a path whose ending names the format, and whether a file there may be replaced.
+void writeNamedOutput(const PackingOutput& output,
+                      const std::function<void(const std::string&, bool overwrite)>& write);
+
 void writePackingOutput(const Packing& packing, const PackingOutput& output);
 
 }  // namespace innersphere::tool

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -26,7 +27,7 @@ constexpr std::size_t kBatch = 256;  // poses queried at once: bounds the memory
 
 // Which force the table holds.
 enum class Force {
-  by_estimator,  ///< gradient for volume-true, volume for raw
+  by_estimator,  ///< gradient for volume-true and surface, volume for raw
   gradient,      ///< sum pi a^2 n: minus the gradient of the overlap volume
   volume         ///< sum V n: the paper's
 };
@@ -132,6 +133,13 @@ std::shared_ptr<const CollisionModel> modelOf(const std::string& source, std::si
   return std::make_shared<CollisionModel>(std::make_shared<Packing>(loadOrPack(source, to_pack)));
 }
 
+// 64-bit FNV-1a (Fowler, Noll, Vo): std::hash may differ between builds, and shards of one job come from many machines.
+std::uint64_t digest(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3;
+  return hash;
+}
+
 // All that the numbers of the table depend on, as 16 hexadecimal digits.
 std::string jobOf(const PairQuery& query, const QueryOptions& options, const std::vector<NamedPose>& poses) {
   std::string all = encodePacking(query.a->packing()) + encodePacking(query.b->packing());
@@ -144,7 +152,7 @@ std::string jobOf(const PairQuery& query, const QueryOptions& options, const std
     all.append(reinterpret_cast<const char*>(&pose.placement), sizeof pose.placement);
   }
   char text[20];
-  std::snprintf(text, sizeof text, "%016zx", std::hash<std::string_view>()(all));
+  std::snprintf(text, sizeof text, "%016" PRIx64, digest(all));
   return text;
 }
 
@@ -170,10 +178,17 @@ void run(Arguments& arguments) {
   clearProgressBar();
 
   const Vec3d centre = boxCentre(b->packing());
-  const bool gradient =
-      arguments.force_law == Force::gradient ||
-      (arguments.force_law == Force::by_estimator && arguments.query.estimator == Estimator::volume_true);
-  arguments.query.want = gradient ? Want::contacts : Want::wrench;
+  const bool on_surfaces = arguments.query.estimator == Estimator::surface;
+  if (on_surfaces && arguments.force_law == Force::volume) {
+    throw Error(ErrorCode::bad_argument,
+                "--force-law volume is a sum over spheres, which --estimator surface does not make");
+  }
+  // The force of a query with surfaces is the gradient already.
+  const bool from_contacts =
+      !on_surfaces &&
+      (arguments.force_law == Force::gradient ||
+       (arguments.force_law == Force::by_estimator && arguments.query.estimator == Estimator::volume_true));
+  arguments.query.want = from_contacts ? Want::contacts : Want::wrench;
   PairQuery query;
   query.a = a.get();
   query.b = b.get();
@@ -201,7 +216,7 @@ void run(Arguments& arguments) {
       const Vec3d reference = moved(place, centre);
       Overlap& overlap = result.overlaps[i];
       const Wrench wrench =
-          gradient ? gradientWrench(result, i, reference) : volumeWrench(overlap, place, reference);
+          from_contacts ? gradientWrench(result, i, reference) : volumeWrench(overlap, place, reference);
       if (overlap.pair_count > 0) overlap.centroid = plus(overlap.centroid, a->packing().origin);
       appendRow(table, poses[first + i].name, overlap, wrench);
     }
@@ -232,7 +247,7 @@ Command overlapCommand() {
   Option& output = command.text("-o,--output", arguments->output, "CSV file to write; -: to stdout");
   output.withFile().required = true;
   command.count("--spheres", arguments->spheres, kNotNegative, "Use the first ones only; 0: all");
-  addEstimatorOption(command, arguments->query.estimator);
+  addEstimatorOption(command, arguments->query.estimator, true);
   addBackendOption(command, arguments->context.backend);
   command.text("--device", arguments->device, "Number of the CUDA device; all: they share the poses")
       .withSuggestions({"all"});
@@ -241,12 +256,14 @@ Command overlapCommand() {
       "--force-law", arguments->force_law,
       {{"by-estimator", Force::by_estimator}, {"gradient", Force::gradient}, {"volume", Force::volume}},
       "Force of the table: minus the gradient of the overlap volume (sum pi a^2 n), or the paper's "
-      "(sum V n); by-estimator: gradient for volume-true, volume for raw");
+      "(sum V n); by-estimator: gradient for volume-true and surface, volume for raw");
   command.flag("--force", arguments->force, "Replace an existing output");
   command.notes =
       "One row a pose: pose, volume [m^3], centroid cx cy cz [m], force on B fx fy fz, its torque tx ty tz "
       "about the centre\n"
-      "of B's bounding box, stiffness (sum pi a^2) [m^2], overlapping sphere pairs. Forces are per unit of "
+      "of B's bounding box, stiffness (sum pi a^2; with surface the area of B in A) [m^2], overlapping "
+      "sphere "
+      "pairs. Forces are per unit of "
       "pressure (gradient,\n"
       "[m^2]) or of force density (volume, [m^3]). Everything is in A's coordinates.";
   command.examples = {"innersphere overlap cow.cbor cow.cbor --poses poses.csv --spheres 4000 -o overlap.csv",

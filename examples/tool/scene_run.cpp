@@ -82,6 +82,9 @@ void addSceneOptions(Command& command, demo::SceneOptions& options) {
        {"convex", demo::BodyShape::convex}},
       "What collides, to compare: packings, or Bullet's triangle meshes, compounds of "
       "the packings' spheres, or compounds of convex parts");
+  command.choice<SphereOrder>("--order", options.bodies.order,
+                              {{"radius", SphereOrder::radius}, {"coverage", SphereOrder::coverage}},
+                              "What the spheres of the packings are chosen for, as in `innersphere pack`");
   command.number("--concavity", options.bodies.concavity, kPositive,
                  "How far convex parts may leave their solid, relative to its size");
   command.flag("--plain", options.plain,

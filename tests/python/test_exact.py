@@ -45,6 +45,17 @@ def test_packings_and_solids(box):
     assert innersphere.Query().overlap(box, box, None, pose)["volume"] == pytest.approx(exact, rel=0.05)
 
 
+def test_the_triangles_of_packings_share_what_manifold_says():
+    pytest.importorskip("manifold3d")
+    gear = innersphere.pack(innersphere.solid("gear"), spheres=64, overlap_errors=False)
+    poses = innersphere.random_poses(30, -0.6, 0.6, seed=4)
+    exact = innersphere.exact_overlap(gear, gear, None, poses)
+    found = innersphere.Query().overlap(gear, gear, None, poses, estimator="surface", want="volume")
+    assert (exact["volume"] > 0).sum() > 20
+    np.testing.assert_allclose(found["volume"], exact["volume"], rtol=1e-5, atol=1e-7 * gear.volume)
+    np.testing.assert_allclose(found["centroid"], exact["centroid"], atol=1e-4)
+
+
 @pytest.mark.parametrize(
     "mesh, pose, error, message",
     [

@@ -2,5 +2,5 @@
 # siblings: neither includes the other.
 set(libraries packing gpu plugin)
 set(packing_rooms common packing file mesh mesh/import solids packer)
-set(gpu_rooms core common grid batch cpu|cuda patches query)
+set(gpu_rooms core common surface grid batch cpu|cuda patches query)
 set(plugin_rooms common surface shape narrow_phase/shapes narrow_phase solver response pair_cache bullet)

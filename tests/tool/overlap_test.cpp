@@ -176,7 +176,7 @@ TEST_F(Overlap, FarFromTheOriginItIsTheSame) {
                 0.5 + place[0] - turned[0], -0.125 + place[1] - turned[1], 0.0625);
   writeFile(path("near.csv"), kHeader + "0,0.6,-0.8,0,0.5,0.8,0.6,0,-0.125,0,0,1,0.0625\n");
   writeFile(path("far.csv"), kHeader + row);
-  for (const char* estimator : {"raw", "volume-true"}) {
+  for (const char* estimator : {"raw", "volume-true", "surface"}) {
     const std::string options = std::string(" --force --estimator ") + estimator;
     succeed("overlap near.cbor near.cbor --poses near.csv -o near_out.csv" + options);
     succeed("overlap far.cbor far.cbor --poses far.csv -o far_out.csv" + options);

@@ -257,6 +257,29 @@ TEST_F(PackingCommands, TheSameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(readFile(path("one.json")), readFile(path("four.json")));
 }
 
+// The C library takes its functions from versions for the processor; here it is told that it has less.
+TEST_F(PackingCommands, TheSameBytesOnAnOlderProcessor) {
+  for (const std::string solid : {"nut", "cup --order coverage"}) {
+    const Outcome packed =
+        shell("pack() { $TOOL -q pack " + solid + " --spheres 200 -o $1; }; pack this.json && export " +
+              "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX512F,-AVX2,-AVX,-FMA,-FMA4 && pack older.json && " +
+              "cmp this.json older.json && rm this.json older.json");
+    EXPECT_EQ(packed.exit_code, 0) << packed.out << packed.err;
+  }
+}
+
+TEST_F(PackingCommands, CoversASolidAndSaysHowFarSpheresReachOut) {
+  const auto summary = json("pack gear --cover --spheres 32 -o gear.json");
+  EXPECT_EQ(summary["spheres"], 32);
+  EXPECT_GT(summary["overhang_max"].get<double>(), summary["overhang_mean"].get<double>());
+  const auto written = nlohmann::json::parse(readFile(path("gear.json")));
+  EXPECT_EQ(written["format"], "innersphere-covering");
+  EXPECT_EQ(written["spheres"].size(), 32u);
+  refuse("info gear.json", 3, {"cover", "overlap"});
+  refuse("check gear.json", 3, {"cover", "overlap"});
+  refuse("pack gear --cover -o gear.cbor", 2, {".cbor", ".xyzr"});
+}
+
 TEST_F(PackingCommands, InterruptCancelsAndLeavesNothing) {
   const Outcome outcome =
       shell("\"$TOOL\" pack gear --spheres 5000000 -o gear.cbor & sleep 1; kill -INT $!; wait $!");

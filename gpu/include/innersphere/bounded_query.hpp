@@ -24,7 +24,7 @@ struct BoundedOverlap {
   std::uint32_t prefix_b = 0;  ///< The number of spheres of B that were used.
   /// The expected |relative error| of the volume. It was measured for overlaps of this depth when the worse
   /// of the two packings was made (see Packing::overlap_errors). NaN if nothing overlaps or nothing was
-  /// measured.
+  /// measured, 0 with Estimator::surface.
   double error = 0;
 };
 

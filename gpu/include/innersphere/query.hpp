@@ -51,7 +51,7 @@ struct PairQuery {
 /// Says what a query computes.
 struct QueryOptions {
   Want want = Want::wrench;                      ///< What is not wanted is zero or empty in the result.
-  Estimator estimator = Estimator::volume_true;  ///< The radii of both bodies.
+  Estimator estimator = Estimator::volume_true;  ///< What stands for both solids.
 };
 
 /// Holds the results of a batch. Keep the object and pass it again: after warm-up nothing is allocated.
@@ -106,8 +106,10 @@ class QueryContext {
   QueryContext& operator=(QueryContext&&) noexcept;
 
   /// Collides `count` pairs. Throws Error: bad_argument (a null model, a rotation that is not one, a scale or
-  /// margin out of range), not_finite, device_error, device_out_of_memory; the message names the query. The
-  /// context stays usable and `result` as it was.
+  /// margin out of range), not_finite, device_error, device_out_of_memory; the message names the query. With
+  /// Estimator::surface also empty_input (a packing without triangles), not_a_solid (its triangles are not
+  /// closed) and bad_argument (a margin, a model after update()). The context stays usable and `result` as it
+  /// was.
   void run(const PairQuery* queries, std::size_t count, const QueryOptions& options, QueryResult& result);
 
   /// Collides one pair and returns its sums. Contacts and pairs are left out, even if they are wanted.
@@ -120,7 +122,8 @@ class QueryContext {
   /// pinned, and are used in place, after what the default stream of the device had to do when sweep() was
   /// called. Memory of the context stays bounded, however many poses there are.
   /// Contacts and pairs are left out, even if they are wanted. Throws as run() does; the message names the
-  /// first pose that is none. Then some overlaps are written, others not.
+  /// first pose that is none. Then some overlaps are written, others not. With Estimator::surface the CPU
+  /// prepares the poses, and the arrays must be in its memory.
   void sweep(const PairQuery& pair, const Poses& poses, const QueryOptions& options, Overlap* overlaps);
 
   /// Starts run(), whose second half is wait(), so that the caller can do other things while a device works.

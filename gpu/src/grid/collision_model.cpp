@@ -59,6 +59,16 @@ const ModelGrid& CollisionModel::Impl::grid(std::uint32_t prefix, Estimator esti
   return grids_.try_emplace(Key(static_cast<std::uint32_t>(count), radii), *this, count, radii).first->second;
 }
 
+const SurfaceTree& CollisionModel::Impl::surface() {
+  if (!moved_.empty()) {
+    throw Error(ErrorCode::bad_argument,
+                "the spheres were updated, and the triangles were not; use another estimator");
+  }
+  const std::lock_guard lock(mutex_);
+  if (!surface_) surface_.emplace(packing->surface);
+  return *surface_;
+}
+
 void CollisionModel::Impl::withSpheres(std::size_t count, const VolumeTrueRadii* radii, const Use& use) {
   // Isolated: while it waits for its own tasks, this thread must not pick up a caller's task that wants the
   // same grid.

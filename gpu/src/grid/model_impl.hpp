@@ -5,11 +5,13 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "grid/model_grid.hpp"
 #include "innersphere/collision_model.hpp"
+#include "surface/surface_tree.hpp"
 
 namespace innersphere {
 
@@ -18,6 +20,10 @@ struct CollisionModel::Impl : GridSource {
 
   /// Returns the grid for the first `prefix` spheres (0: all). Safe to call from several threads at once.
   const ModelGrid& grid(std::uint32_t prefix, Estimator estimator);
+
+  /// Returns the tree of the packing's triangles, which the first call builds. Safe to call from several
+  /// threads at once. Throws Error: what SurfaceTree throws, and bad_argument after update().
+  const SurfaceTree& surface();
 
   /// Does what CollisionModel::update() says.
   void update(const Sphere* spheres, std::size_t count);
@@ -34,6 +40,7 @@ struct CollisionModel::Impl : GridSource {
 
   std::mutex mutex_;
   std::map<Key, ModelGrid> grids_;
+  std::optional<SurfaceTree> surface_;
   std::uint64_t version_ = 1;  ///< of the spheres
   std::vector<Sphere> moved_;  ///< those of the last update; empty: those of the packing
 

@@ -44,6 +44,7 @@ std::size_t stepsOf(const PairQuery& query) {
 /// The error that a packing gives for overlaps of this volume.
 double errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator, double volume) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (estimator == Estimator::surface) return 0;
   const OverlapErrors& errors = packing.overlap_errors;
   const OverlapErrors::Prefix* best = nullptr;
   for (const OverlapErrors::Prefix& candidate : errors.prefixes) {

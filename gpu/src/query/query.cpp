@@ -11,6 +11,7 @@
 #include "cpu/cpu_backend.hpp"
 #include "cuda/cuda_backend.hpp"
 #include "innersphere/error.hpp"
+#include "query/surface_query.hpp"
 
 namespace innersphere {
 
@@ -22,6 +23,14 @@ namespace {
 constexpr std::size_t kDeviceClusters = 60;
 
 constexpr std::size_t kGrain = 64;  ///< queries of a batch that one thread prepares
+
+constexpr std::size_t kSurfaceBatch = 1024;  ///< poses of a sweep over surfaces: bounds the memory
+
+bool anyOnDevice(const Poses& poses, const Overlap* overlaps) {
+  const void* const arrays[] = {poses.matrices, poses.positions, poses.quaternions, overlaps};
+  return std::any_of(std::begin(arrays), std::end(arrays),
+                     [](const void* p) { return p && isOnCudaDevice(p); });
+}
 
 }  // namespace
 
@@ -83,9 +92,10 @@ struct QueryContext::Impl {
     checkIdle();
     if (count > 0 && !queries) throw Error(ErrorCode::bad_argument, "the queries are a null pointer");
     if (count >> 32) throw Error(ErrorCode::bad_argument, "a batch has at most 2^32 - 1 queries; split it");
-    prepare(queries, count, query_options.estimator);
+    prepare(queries, count, estimatorOfSpheres(query_options));
+    for_surfaces.keep(queries, count, query_options);
     QueryBackend& backend = choose();
-    backend.start(prepared, query_options.want);
+    backend.start(prepared, wantOfSpheres(query_options));
     under_way = &backend;
   }
 
@@ -95,6 +105,8 @@ struct QueryContext::Impl {
     if (poses.count == 0) return;
     if (!overlaps || (!poses.matrices && !(poses.positions && poses.quaternions)))
       throw Error(ErrorCode::bad_argument, "an array of poses or overlaps is a null pointer");
+    if (query_options.estimator == Estimator::surface)
+      return sweepSurfaces(pair, poses, query_options, overlaps);
     PairQuery at_origin = pair;
     at_origin.placement_b.rotation = Placement().rotation;
     at_origin.placement_b.translation = pair.placement_a.translation;
@@ -111,11 +123,35 @@ struct QueryContext::Impl {
     chooseFor(sweep, overlaps).sweep(sweep, overlaps);
   }
 
+  /// Makes a batch of each of a few poses.
+  void sweepSurfaces(const PairQuery& pair, const Poses& poses, const QueryOptions& query_options,
+                     Overlap* overlaps) {
+    if (anyOnDevice(poses, overlaps))
+      throw Error(ErrorCode::bad_argument,
+                  "an array is in the memory of a device, and Estimator::surface works on the CPU");
+    QueryOptions sums_only = query_options;
+    if (wantsPairs(sums_only.want)) sums_only.want = Want::wrench;
+    std::vector<PairQuery> queries;
+    QueryResult result;
+    for (std::size_t first = 0; first < poses.count; first += kSurfaceBatch) {
+      queries.assign(std::min(kSurfaceBatch, poses.count - first), pair);
+      for (std::size_t i = 0; i < queries.size(); ++i) {
+        core::Mat3<double> rotation;
+        const core::Fault fault =
+            core::readPose(poses, first + i, rotation, queries[i].placement_b.translation);
+        if (fault != core::Fault::none) failFor(fault, first + i, "B");
+        // As it was given: the query makes it orthonormal, once.
+        core::loadPose(poses, first + i, rotation, queries[i].placement_b.translation);
+        std::copy(std::begin(rotation.m), std::end(rotation.m), queries[i].placement_b.rotation.begin());
+      }
+      start(queries.data(), queries.size(), sums_only);
+      finish(result);
+      std::copy(result.overlaps.begin(), result.overlaps.end(), overlaps + first);
+    }
+  }
+
   QueryBackend& chooseFor(const Sweep& sweep, const Overlap* overlaps) {
-    const void* const arrays[] = {sweep.poses.matrices, sweep.poses.positions, sweep.poses.quaternions,
-                                  overlaps};
-    const bool given_on_device = std::any_of(std::begin(arrays), std::end(arrays),
-                                             [](const void* p) { return p && isOnCudaDevice(p); });
+    const bool given_on_device = anyOnDevice(sweep.poses, overlaps);
     if (given_on_device && options.backend == Backend::cpu)
       throw Error(ErrorCode::bad_argument,
                   "an array is in the memory of a device, and the CPU was asked for");
@@ -131,6 +167,7 @@ struct QueryContext::Impl {
     QueryBackend& backend = *under_way;
     under_way = nullptr;
     backend.finish(result);
+    for_surfaces.refine(workers, result.overlaps);
   }
 
   QueryContextOptions options;
@@ -144,6 +181,7 @@ struct QueryContext::Impl {
 
   // Scratch, kept from run to run.
   std::vector<PreparedQuery> prepared;
+  SurfaceQueries for_surfaces;
   QueryResult single;
 };
 

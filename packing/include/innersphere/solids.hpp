@@ -36,13 +36,15 @@ std::unique_ptr<Solid> makeDistanceSolid(const std::string& name,
 std::unique_ptr<Solid> makeDifference(std::shared_ptr<const Solid> a, std::shared_ptr<const Solid> b);
 
 /// Makes a named solid of the project with sizes that suit a scene about 1 m wide: ball, box, cylinder,
-/// torus, link (of a chain), bowl, gear, lbracket, knot, nut, bolt, chazelle, tray. Throws Error bad_argument
-/// for an unknown name; the message lists the known ones.
+/// torus, link (of a chain), bowl, gear, lbracket, knot, nut, bolt, chazelle, tray, cup, pan, blade, horn.
+/// Throws Error bad_argument for an unknown name; the message lists the known ones.
 ///
 /// Nut and bolt mate. Both are about the z axis with a right-handed thread of pitch 0.125; the bolt's thread
 /// runs from its head at z = 0 up to 0.75, the nut is 0.375 high and stands on z = 0. The nut fits, with 0.01
 /// of radial clearance, where it is moved up by h and turned by 2 pi h / 0.125 counter-clockwise seen from
 /// above. The tray is an open container, 2 x 2 x 1, standing on z = 0, with walls and a floor of 0.2.
+/// Cup, pan and blade have walls of less than 0.01, for which PackOptions::order should be
+/// SphereOrder::coverage; the horn is a bent cone.
 std::unique_ptr<Solid> makeNamedSolid(const std::string& name);
 /// Returns the names that makeNamedSolid() knows.
 std::vector<std::string> namedSolids();

@@ -13,7 +13,7 @@ inline Vec3d frameOrigin(const Bounds& box) {
   const double longest = std::max({size[0], size[1], size[2]});
   Vec3d origin = centre(box);
   if (!(norm(origin) > 8 * longest)) return {};
-  const double step = std::exp2(std::ilogb(longest));
+  const double step = std::ldexp(1.0, std::ilogb(longest));
   for (double& x : origin) x = step * std::round(x / step) + 0.0;  // never -0
   return origin;
 }

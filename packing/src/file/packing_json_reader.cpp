@@ -108,7 +108,14 @@ class Entry {
 };
 
 void requireVersion(const Entry& document) {
-  if (!document.has("format") || document["format"].text() != kPackingFormat) {
+  const std::string format = document.has("format") ? document["format"].text() : "";
+  if (format == kCoveringFormat) {
+    throw Error(
+        ErrorCode::bad_format,
+        "these spheres cover a solid: they overlap each other and reach out of it, so the volumes that they "
+        "share mean nothing; this needs a packing, from `innersphere pack` without --cover");
+  }
+  if (format != kPackingFormat) {
     throw Error(ErrorCode::bad_format,
                 "this is not a packing file (no format '" + std::string(kPackingFormat) + "')");
   }

@@ -9,4 +9,8 @@ inline constexpr char kPackingFormat[] = "innersphere-packing";
 /// In version 2 places are relative to "origin", which version 1 does not know.
 inline constexpr int kPackingFormatVersion = 2;
 
+/// This is the name of the format of spheres that cover a solid.
+inline constexpr char kCoveringFormat[] = "innersphere-covering";
+inline constexpr int kCoveringFormatVersion = 1;
+
 }  // namespace innersphere

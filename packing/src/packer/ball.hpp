@@ -21,6 +21,7 @@ struct Ball {
   double radius = 0;
 
   double distance(const Point& x) const { return (x - centre).norm() - radius; }
+  double volume() const { return kBallVolume * radius * radius * radius; }
 };
 
 }  // namespace innersphere

@@ -124,7 +124,7 @@ CellVolumes findCellVolumes(const Container& container, std::span<const Ball> ba
   const auto count = static_cast<double>(balls.size());
   double filled = 0, smallest = 1;
   for (const Ball& ball : balls) {
-    filled += kBallVolume * std::pow(ball.radius, 3);
+    filled += ball.volume();
     smallest = std::min(smallest, ball.radius);
   }
   // Where the spheres fill nearly everything there is no use in a finer lattice.
@@ -144,7 +144,7 @@ CellVolumes findCellVolumes(const Container& container, std::span<const Ball> ba
   CellVolumes cells;
   cells.sampling_error = std::sqrt(difference / count) * each / (volume / count);
   for (std::size_t i = 0; i < balls.size(); ++i) {
-    const double cell = kBallVolume * std::pow(balls[i].radius, 3) + each * (counts[i][0] + counts[i][1]);
+    const double cell = balls[i].volume() + each * (counts[i][0] + counts[i][1]);
     cells.volumes.push_back(scale * cell);
   }
   return cells;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "packer/pattern_search.hpp"
+
 namespace innersphere {
 namespace {
 
@@ -90,20 +92,23 @@ bool Cover::upTo(double gap, const std::function<bool(const Ball&)>& insert) {
   return false;
 }
 
-/// The radius of the largest sphere about x, if it is more than `enough`.
-double Cover::room(const Point& x, double enough) {
-  const double between = std::min(placed_.nearest(x, 1).distance, 1.0);
-  if (between <= enough) return 0;
-  const double wall = std::min(container_.closest(x, between).distance, between);
-  return wall > enough && clearances_.contains(container_, x, wall) ? wall : 0;
+/// The radius of the largest sphere about x, if it is more than `enough`; the surface is about `wall` away,
+/// or nearer. In bare walls the nearest sphere is far, and looking for it first would mean to look at all.
+double Cover::room(const Point& x, double enough, double wall) {
+  const double limit = 2 * wall;
+  const double alone = std::min(container_.closest(x, limit).distance, limit);
+  if (alone <= enough) return 0;
+  const double radius = std::min(placed_.nearest(x, alone).distance, alone);
+  return radius > enough && clearances_.contains(container_, x, radius) ? radius : 0;
 }
 
 Ball Cover::largestNear(const Point& p, const Point& inwards, double reach) {
   Ball best{p, 0};
   double step = reach / 2;
   const auto look = [&](const Point& x) {
-    if ((x - p).norm() > reach) return false;
-    const double radius = room(x, best.radius);
+    const double away = (x - p).norm();
+    if (away > reach) return false;
+    const double radius = room(x, best.radius, away);
     if (radius <= best.radius) return false;
     best = {x, radius};
     return true;
@@ -114,15 +119,7 @@ Ball Cover::largestNear(const Point& p, const Point& inwards, double reach) {
   while (step > kFinest * best.radius && step > kFinest * min_radius_) {
     const Point centre = best.centre;
     bool better = false;
-    for (int corner = 0; corner < 14; ++corner) {
-      Point way = Point::Zero();
-      if (corner < 6) {
-        way[corner / 2] = corner % 2 ? 1 : -1;
-      } else {
-        for (int k = 0; k < 3; ++k) way[k] = (corner - 6) >> k & 1 ? std::sqrt(1.0 / 3) : -std::sqrt(1.0 / 3);
-      }
-      better = look(centre + step * way) || better;
-    }
+    for (const Point& way : patternDirections()) better = look(centre + step * way) || better;
     if (!better) step /= 2;
   }
   return best;

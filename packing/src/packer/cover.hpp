@@ -38,7 +38,7 @@ class Cover {
   void update();
   void settle();
   Ball largestNear(const Point& p, const Point& inwards, double reach);
-  double room(const Point& x, double enough);
+  double room(const Point& x, double enough, double wall);
   std::size_t cellOf(const Point& x, int axis) const;
 
   const Container& container_;

@@ -32,7 +32,7 @@ void DualSimplex::add(double value, const Point& gradient) {
   }
   const auto slope = [&](int k) { return -rounded(gradient[k], 1); };
   rows_.push_back(
-      {Eigen::Vector4d(1, slope(0), slope(1), slope(2)), rounded(value, std::exp2(std::ilogb(half_)))});
+      {Eigen::Vector4d(1, slope(0), slope(1), slope(2)), rounded(value, std::ldexp(1.0, std::ilogb(half_)))});
   if (size() == 1) {
     start();
     return;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "common/steady_math.hpp"
+
 namespace innersphere {
 namespace {
 
@@ -28,7 +30,7 @@ constexpr double kBlockSide = 4;
 using Active = GreedyRounds::Active;
 
 int blockLevel(double wanted) {
-  return std::clamp(static_cast<int>(std::floor(-std::log2(kBlockSide * wanted))), 0, 20);
+  return std::clamp(static_cast<int>(std::floor(-steady::log2(kBlockSide * wanted))), 0, 20);
 }
 
 // Active cells in the order of blocks, and where each block begins.
@@ -98,10 +100,10 @@ GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop,
   // The steps of the radius schedule are the bounds of rounds with the tight delta; a round with a larger
   // delta takes several at once.
   const double tight = std::min(kTightDelta, delta_);
-  const auto strides = static_cast<std::size_t>(std::log1p(delta_) / std::log1p(tight) + 1e-9);
+  const auto strides = static_cast<std::size_t>(steady::log1p(delta_) / steady::log1p(tight) + 1e-9);
   if (min_radius_ >= 0.5) return {};
-  const RadiusSchedule schedule(1, min_radius_ * std::pow(1 + tight, kUndecided),
-                                std::pow(1 + tight, 1 - kUndecided));
+  const RadiusSchedule schedule(1, min_radius_ * steady::pow(1 + tight, kUndecided),
+                                steady::pow(1 + tight, 1 - kUndecided));
   CellQueue queue(schedule);
   queue.push(Cell{});
   Placed placed;

@@ -89,7 +89,8 @@ std::vector<float> findMassWeights(const std::vector<Sphere>& spheres,
   std::vector<float> weights;
   weights.reserve(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    const double ball = 4.0 / 3.0 * std::numbers::pi * std::pow(double{spheres[i].radius}, 3);
+    const double radius = spheres[i].radius;
+    const double ball = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
     weights.push_back(
         static_cast<float>(cell_volumes[i] * std::max(kLeastMass, 1 + moments[i].dot(y)) / ball));
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/steady_math.hpp"
 #include "packer/sphere_grid.hpp"
 #include "packer/voxels.hpp"
 
@@ -37,29 +38,32 @@ Point evenly(std::size_t i) {
   return u;
 }
 
-Eigen::AngleAxisd rotation(const Point& u) {
+Eigen::Quaterniond rotation(const Point& u) {
   // Uniform in the space of rotations (Shoemake 1992).
   const double a = 2 * std::numbers::pi * u[1], b = 2 * std::numbers::pi * u[2];
   const double s = std::sqrt(1 - u[0]), c = std::sqrt(u[0]);
-  return Eigen::AngleAxisd(
-      Eigen::Quaterniond(c * std::cos(b), s * std::sin(a), s * std::cos(a), c * std::sin(b)));
+  return {c * steady::cos(b), s * steady::sin(a), s * steady::cos(a), c * steady::sin(b)};
 }
 
 Point direction(const Point& u) {
   const double z = 2 * u[0] - 1, a = 2 * std::numbers::pi * u[1], s = std::sqrt(1 - z * z);
-  return {s * std::cos(a), s * std::sin(a), z};
+  return {s * steady::cos(a), s * steady::sin(a), z};
 }
 
 /// Turns the copy about `centre` and moves it away until the solids share the fraction `target`.
 Trial findTrial(const Voxels& voxels, const Point& centre, std::size_t number, double target) {
-  Eigen::AngleAxisd turn = rotation(evenly(2 * number));
+  Eigen::Quaterniond turn = rotation(evenly(2 * number));
+  if (turn.w() < 0) turn.coeffs() *= -1;
   const Point way = direction(evenly(2 * number + 1));
   const auto at = [&](double distance) {
     const Eigen::Matrix3d r = turn.toRotationMatrix();
     return Pose{r, centre - r * centre + distance * way};
   };
-  // A thin solid and its turned copy may share less than that wherever the copy is: turn it less.
-  while (turn.angle() > 1e-3 && voxels.shared(at(0), kStride).fraction < 1.2 * target) turn.angle() /= 2;
+  // A thin solid and its turned copy may share less than that wherever the copy is: turn it half as far.
+  while (turn.vec().norm() > 5e-4 && voxels.shared(at(0), kStride).fraction < 1.2 * target) {
+    turn.w() += 1;
+    turn.normalize();
+  }
   double near = 0, far = std::numbers::sqrt3;
   for (int step = 0; step < 12; ++step) {
     const double middle = (near + far) / 2;
@@ -73,7 +77,7 @@ Trial findTrial(const Voxels& voxels, const Point& centre, std::size_t number, d
 double lens(double r1, double r2, double d) {
   const double s = r1 + r2 - d;
   if (s <= 0) return 0;
-  if (d <= std::abs(r1 - r2)) return kBallVolume * std::pow(std::min(r1, r2), 3);
+  if (d <= std::abs(r1 - r2)) return Ball{Point::Zero(), std::min(r1, r2)}.volume();
   return std::numbers::pi * s * s * (d * d + 2 * d * (r1 + r2) - 3 * (r1 - r2) * (r1 - r2)) / (12 * d);
 }
 
@@ -136,7 +140,7 @@ OverlapErrors findOverlapErrors(const Container& container, std::span<const Ball
     const double low = std::max(kOverlapBins[bin], kLeastOverlap),
                  high = std::min(kOverlapBins[bin + 1], kMostOverlap);
     const double part = (static_cast<double>(i % kPosesPerBin) + 0.5) / kPosesPerBin;
-    trials[i] = findTrial(voxels, centre_of_mass, i, low * std::pow(high / low, part));
+    trials[i] = findTrial(voxels, centre_of_mass, i, low * steady::pow(high / low, part));
   });
 
   OverlapErrors errors;

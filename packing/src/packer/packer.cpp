@@ -69,10 +69,6 @@ std::string commandLine(const PackOptions& options) {
 
 namespace {
 
-double volumeOf(const Ball& ball) {
-  return kBallVolume * ball.radius * ball.radius * ball.radius;
-}
-
 /// The solid and the limits in the packer's coordinates.
 struct Problem {
   Problem(const Solid& solid, const PackOptions& wishes, const MassProperties& mass, const Mesh& surface)
@@ -127,7 +123,7 @@ GreedyRounds::Placed place(const Problem& problem, tbb::task_arena& arena, const
   double filled = 0;
   std::size_t uncovered = 0;
   const auto stop = [&](const GreedyRounds::Placed& now) {
-    filled += volumeOf(now.rounded.back());
+    filled += now.rounded.back().volume();
     return now.top.size() == options.spheres || filled >= problem.enough;
   };
   const auto pause = [&](const GreedyRounds::Placed& now, double bound) {
@@ -184,7 +180,7 @@ Chosen choose(const Problem& problem, const GreedyRounds::Placed& placed) {
   std::size_t count = 0;
   while (count < chosen.balls.size() && chosen.filled < problem.enough) {
     if (by_radius) chosen.delta = std::max(chosen.delta, top[count] / chosen.balls[count].radius - 1);
-    chosen.filled += volumeOf(chosen.balls[count++]);
+    chosen.filled += chosen.balls[count++].volume();
   }
   chosen.balls.resize(count);
   const double room = std::max(0.0, problem.volume - chosen.filled);

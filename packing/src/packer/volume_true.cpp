@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/steady_math.hpp"
 #include "packer/ball.hpp"
 
 namespace innersphere {
@@ -35,14 +36,18 @@ VolumeTrueRadii volumeTrueRadii(const Container& container, std::span<const Ball
     depth[i] = std::max(0.0, distance / smallest - 1);
   });
 
-  std::vector<double> radii(balls.size());
+  std::vector<double> gain(balls.size()), share(balls.size()), equal(balls.size()), radii(balls.size());
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    gain[i] = 1 + kGrowth * steady::exp(-depth[i] / kNear);
+    share[i] = steady::exp(-depth[i] / kFar);
+    equal[i] = std::cbrt(cells.volumes[i] / kBallVolume);
+  }
   const auto adjust = [&](double loss) {
     double sum = 0;
     for (std::size_t i = 0; i < balls.size(); ++i) {
-      const double factor = 1 + kGrowth * std::exp(-depth[i] / kNear) - loss * std::exp(-depth[i] / kFar);
       // No sphere stands for less than itself.
-      radii[i] = std::max(balls[i].radius, factor * std::cbrt(cells.volumes[i] / kBallVolume));
-      sum += kBallVolume * std::pow(radii[i], 3);
+      radii[i] = std::max(balls[i].radius, (gain[i] - loss * share[i]) * equal[i]);
+      sum += kBallVolume * radii[i] * radii[i] * radii[i];
     }
     return sum;
   };

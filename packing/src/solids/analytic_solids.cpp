@@ -4,6 +4,7 @@
 
 #include "common/bounds.hpp"
 #include "common/hash.hpp"
+#include "common/steady_math.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/solids.hpp"
 #include "solids/generators.hpp"
@@ -78,7 +79,7 @@ class BallSolid : public AnalyticSolid {
     std::vector<Ring> rings{{{0, 0, -radius_}}};
     for (int i = 1; i < kRings; ++i) {
       const double angle = kPi * i / kRings;
-      rings.push_back(circle(radius_ * std::sin(angle), -radius_ * std::cos(angle), 2 * kRings));
+      rings.push_back(circle(radius_ * steady::sin(angle), -radius_ * steady::cos(angle), 2 * kRings));
     }
     rings.push_back({{0, 0, radius_}});
     return loft(rings, false);
@@ -147,7 +148,7 @@ class Torus : public AnalyticSolid {
     std::vector<Ring> rings;
     for (int i = 0; i < kAround; ++i) {
       const double angle = 2 * kPi * i / kAround;
-      rings.push_back(circle(ring_ + tube_ * std::cos(angle), tube_ * std::sin(angle), kAlong));
+      rings.push_back(circle(ring_ + tube_ * steady::cos(angle), tube_ * steady::sin(angle), kAlong));
     }
     return loft(rings, true);
   }

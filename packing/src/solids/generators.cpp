@@ -5,23 +5,25 @@
 #include <numbers>
 #include <numeric>
 
+#include "common/steady_math.hpp"
 #include "mesh/mesh_clean.hpp"
 
 namespace innersphere {
 namespace {
 
-using Point = std::array<double, 2>;
+using PlanePoint = std::array<double, 2>;
 
-double turn(const Point& a, const Point& b, const Point& c) {
+double turn(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
 bool isEar(const Polygon& polygon, const std::vector<std::uint32_t>& left, std::size_t i) {
   const std::size_t n = left.size();
-  const Point &a = polygon[left[(i + n - 1) % n]], &b = polygon[left[i]], &c = polygon[left[(i + 1) % n]];
+  const PlanePoint &a = polygon[left[(i + n - 1) % n]], &b = polygon[left[i]],
+                   &c = polygon[left[(i + 1) % n]];
   if (turn(a, b, c) <= 0) return false;
   for (std::uint32_t v : left) {
-    const Point& p = polygon[v];
+    const PlanePoint& p = polygon[v];
     if (p == a || p == b || p == c) continue;
     if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
   }
@@ -34,7 +36,7 @@ std::size_t bestEar(const Polygon& polygon, const std::vector<std::uint32_t>& le
   std::size_t best = n;
   double shortest = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const Point &a = polygon[left[(i + n - 1) % n]], &c = polygon[left[(i + 1) % n]];
+    const PlanePoint &a = polygon[left[(i + n - 1) % n]], &c = polygon[left[(i + 1) % n]];
     const double length = std::hypot(c[0] - a[0], c[1] - a[1]);
     if ((best == n || length < shortest) && isEar(polygon, left, i)) {
       best = i;
@@ -51,14 +53,14 @@ Ring circle(double radius, double z, int n) {
   Ring ring;
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * i / n;
-    ring.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+    ring.push_back({radius * steady::cos(angle), radius * steady::sin(angle), z});
   }
   return ring;
 }
 
 Ring lifted(const Polygon& polygon, double z) {
   Ring ring;
-  for (const Point& p : polygon) ring.push_back({p[0], p[1], z});
+  for (const PlanePoint& p : polygon) ring.push_back({p[0], p[1], z});
   return ring;
 }
 

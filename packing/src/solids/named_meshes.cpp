@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "common/bounds.hpp"
+#include "common/steady_math.hpp"
 #include "solids/generators.hpp"
 
 namespace innersphere {
@@ -16,7 +17,7 @@ Ring tubeRing(const Vec3d& centre, const Vec3d& side, const Vec3d& up, double ra
   Ring ring;
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * kHalfTurn * i / n;
-    ring.push_back(centre + radius * std::cos(angle) * side + radius * std::sin(angle) * up);
+    ring.push_back(centre + radius * steady::cos(angle) * side + radius * steady::sin(angle) * up);
   }
   return ring;
 }
@@ -32,7 +33,7 @@ Mesh linkMesh() {
   for (const double end : {1.0, -1.0}) {
     for (int i = 0; i <= kBendSteps; ++i) {
       const double angle = kHalfTurn * i / kBendSteps + (end > 0 ? -kHalfTurn / 2 : kHalfTurn / 2);
-      const Vec3d out{std::cos(angle), std::sin(angle), 0};
+      const Vec3d out{steady::cos(angle), steady::sin(angle), 0};
       rings.push_back(
           tubeRing(Vec3d{end * kHalfStraight, 0, 0} + kBend * out, out, {0, 0, 1}, kTube, kAround));
     }
@@ -48,15 +49,15 @@ Mesh bowlMesh() {
   std::vector<Ring> rings{{{0, 0, -kOuter}}};
   for (int i = 1; i <= kArc; ++i) {
     const double angle = kHalfTurn / 2 * i / kArc;
-    rings.push_back(circle(kOuter * std::sin(angle), -kOuter * std::cos(angle), kAround));
+    rings.push_back(circle(kOuter * steady::sin(angle), -kOuter * steady::cos(angle), kAround));
   }
   for (int i = 1; i < kRimSteps; ++i) {
     const double angle = kHalfTurn * i / kRimSteps;
-    rings.push_back(circle(kOuter - kRim + kRim * std::cos(angle), kRim * std::sin(angle), kAround));
+    rings.push_back(circle(kOuter - kRim + kRim * steady::cos(angle), kRim * steady::sin(angle), kAround));
   }
   for (int i = kArc; i >= 1; --i) {
     const double angle = kHalfTurn / 2 * i / kArc;
-    rings.push_back(circle(kInner * std::sin(angle), -kInner * std::cos(angle), kAround));
+    rings.push_back(circle(kInner * steady::sin(angle), -kInner * steady::cos(angle), kAround));
   }
   rings.push_back({{0, 0, -kInner}});
   return loft(rings, false);
@@ -70,8 +71,8 @@ Mesh gearMesh() {
   for (int tooth = 0; tooth < kTeeth; ++tooth) {
     const auto add = [&](double fraction, double radius) {
       const double angle = 2 * kHalfTurn * (tooth + fraction) / kTeeth;
-      outer.push_back({radius * std::cos(angle), radius * std::sin(angle)});
-      bore.push_back({kBore * std::cos(angle), kBore * std::sin(angle)});
+      outer.push_back({radius * steady::cos(angle), radius * steady::sin(angle)});
+      bore.push_back({kBore * steady::cos(angle), kBore * steady::sin(angle)});
     };
     for (int i = 0; i < kRoot; ++i) add(0.5 * i / (kRoot - 1) - 0.25, kRootRadius);
     add(0.38, kTipRadius);
@@ -100,8 +101,8 @@ Mesh knotMesh() {
   constexpr double kRing = 0.3, kWinding = 0.12, kTube = 0.07;
   constexpr int kAlong = 144, kAround = 20;
   const auto onTorus = [](double t, double r) -> Vec3d {
-    const double rho = kRing + r * std::cos(3 * t);
-    return {rho * std::cos(2 * t), rho * std::sin(2 * t), r * std::sin(3 * t)};
+    const double rho = kRing + r * steady::cos(3 * t);
+    return {rho * steady::cos(2 * t), rho * steady::sin(2 * t), r * steady::sin(3 * t)};
   };
   std::vector<Ring> rings;
   for (int i = 0; i < kAlong; ++i) {

@@ -14,6 +14,10 @@ Mesh knotMesh();
 Mesh nutMesh();
 Mesh boltMesh();
 Mesh chazelleMesh();
+Mesh cupMesh();
+Mesh panMesh();
+Mesh bladeMesh();
+Mesh hornMesh();
 
 /// Returns Chazelle's polyhedron with this many wedges from below and from above.
 Mesh wedgedCube(int wedges);

@@ -38,6 +38,10 @@ const std::vector<NamedSolid>& catalogue() {
       {"bolt", fromMesh(boltMesh)},
       {"chazelle", fromMesh(chazelleMesh)},
       {"tray", fromMesh(trayMesh)},
+      {"cup", fromMesh(cupMesh)},
+      {"pan", fromMesh(panMesh)},
+      {"blade", fromMesh(bladeMesh)},
+      {"horn", fromMesh(hornMesh)},
   };
   return solids;
 }

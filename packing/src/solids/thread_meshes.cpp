@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/steady_math.hpp"
 #include "solids/generators.hpp"
 #include "solids/named_meshes.hpp"
 
@@ -31,7 +32,7 @@ Ring threadRing(int step, double clearance) {
   for (int i = 0; i < kSteps; ++i) {
     const double angle = 2 * std::numbers::pi * i / kSteps;
     const double radius = threadRadius(static_cast<double>(step - i) / kSteps) + clearance;
-    ring.push_back({radius * std::cos(angle), radius * std::sin(angle), kPitch * step / kSteps});
+    ring.push_back({radius * steady::cos(angle), radius * steady::sin(angle), kPitch * step / kSteps});
   }
   return ring;
 }
@@ -42,8 +43,8 @@ Ring hexagonRing(double z) {
     const double angle = 2 * std::numbers::pi * i / kSteps;
     // Angle from the middle of the nearest flat; corners are at multiples of 60 degrees.
     const double off = std::remainder(angle - std::numbers::pi / 6, std::numbers::pi / 3);
-    const double radius = kHexagon / std::cos(off);
-    ring.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+    const double radius = kHexagon / steady::cos(off);
+    ring.push_back({radius * steady::cos(angle), radius * steady::sin(angle), z});
   }
   return ring;
 }

@@ -21,8 +21,8 @@ using namespace nb::literals;
 
 constexpr std::pair<const char*, Backend> kBackends[] = {
     {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
-constexpr std::pair<const char*, Estimator> kEstimators[] = {{"volume_true", Estimator::volume_true},
-                                                             {"raw", Estimator::raw}};
+constexpr std::pair<const char*, Estimator> kEstimators[] = {
+    {"volume_true", Estimator::volume_true}, {"raw", Estimator::raw}, {"surface", Estimator::surface}};
 constexpr std::pair<const char*, Want> kWants[] = {
     {"touch", Want::touch}, {"volume", Want::volume}, {"wrench", Want::wrench}};
 
@@ -52,9 +52,10 @@ class Query {
 
   nb::object overlap(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b,
                      const std::string& want, const std::string& estimator, double margin, nb::object out) {
-    const Batch batch(a, b, pose_a, pose_b, margin, on_host_ ? Where::host : Where::anywhere);
     const QueryOptions options{parseWord("want", want, kWants),
                                parseWord("estimator", estimator, kEstimators)};
+    const bool on_host = on_host_ || options.estimator == Estimator::surface;
+    const Batch batch(a, b, pose_a, pose_b, margin, on_host ? Where::host : Where::anywhere);
     if (!out.is_none()) {
       write(batch, options, out);
       return out;
@@ -287,13 +288,13 @@ The GIL is free while a query runs. One object runs one query at a time: give ea
       .def("overlap", &Query::overlap, "a"_a, "b"_a, "pose_a"_a.none() = nb::none(),
            "pose_b"_a.none() = nb::none(), nb::kw_only(), "want"_a = "wrench", "estimator"_a = "volume_true",
            "margin"_a = 0.0, "out"_a.none() = nb::none(),
-           nb::sig(
-               "def overlap(self, a: Packing, b: Packing, pose_a: numpy.typing.ArrayLike | "
-               "tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None, pose_b: "
-               "numpy.typing.ArrayLike | tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = "
-               "None, *, want: typing.Literal['touch', 'volume', 'wrench'] = 'wrench', estimator: "
-               "typing.Literal['volume_true', 'raw'] = 'volume_true', margin: float = 0.0, out: typing.Any "
-               "= None) -> typing.Any"),
+           nb::sig("def overlap(self, a: Packing, b: Packing, pose_a: numpy.typing.ArrayLike | "
+                   "tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None, pose_b: "
+                   "numpy.typing.ArrayLike | tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = "
+                   "None, *, want: typing.Literal['touch', 'volume', 'wrench'] = 'wrench', estimator: "
+                   "typing.Literal['volume_true', 'raw', 'surface'] = 'volume_true', margin: float = 0.0, "
+                   "out: typing.Any "
+                   "= None) -> typing.Any"),
            R"(Overlaps of two packings in one pose or in many.
 
 a, b: packings, or slices of them: packing[:256].
@@ -302,14 +303,16 @@ pose_a, pose_b: where the solids are in the world. Each is None (at the origin),
     are broadcast together, as numpy does it.
 want: "touch" (pair_count is 0 or 1, all else is zero), "volume" (volume, centroid, pair_count) or "wrench" (all).
     Less costs less.
-estimator: "volume_true" (radii whose volumes sum to the solid's) or "raw" (those of the spheres: volumes are low).
+estimator: "volume_true" (radii whose volumes sum to the solid's), "raw" (those of the spheres: volumes are low) or
+    "surface" (the triangles that both packings carry: exact, but slower, and without a margin; spheres give only
+    pair_count and "touch").
 margin: distance up to which spheres count as overlapping [m], at least 0. All spheres of A grow by it.
 out: None, or an array of float64 in C's order of the shape of the poses and 16 columns, which is written to and returned:
     the fields below, one after the other, in the last column the bits of pair_count. It may be on a CUDA device
     (torch, cupy, by DLPack): then nothing is copied to the host. If a pose is refused, some rows are written.
 
 Poses of B on a CUDA device are read in place where A has a single pose, and where they are float64 in C's order, with any
-backend but "cpu"; others are copied to the host. What was enqueued before is waited for.
+backend but "cpu" and any estimator but "surface"; others are copied to the host. What was enqueued before is waited for.
 
 Returns a structured array of the shape of the poses; for a single pose one element of it. Vectors have the axes of the
 world. The fields, all float64 but the last:
@@ -323,8 +326,13 @@ stiffness   by which the force grows with depth [m^2]
 energy      potential of the force for unit stiffness [m^4]
 pair_count  overlapping pairs of spheres, uint64
 
+With estimator="surface" the law of force is another one: energy is the volume, force is area, torque is minus the
+gradient of the volume by a rotation about the translation of pose_b [m^3], and stiffness is the area of B's surface
+that is in A.
+
 Raises TypeError and ValueError for arrays of the wrong type or shape; InvalidArgumentError and NotFiniteError, with
-the number of the query in C's order, for poses that are none; DeviceError.)")
+the number of the query in C's order, for poses that are none; DeviceError. With estimator="surface" also
+EmptyInputError for a packing without triangles, NotASolidError for triangles that are not closed.)")
       .def("pairs", &Query::pairs, "a"_a, "b"_a, "pose_a"_a.none() = nb::none(),
            "pose_b"_a.none() = nb::none(), nb::kw_only(), "estimator"_a = "volume_true", "margin"_a = 0.0,
            nb::sig("def pairs(self, a: Packing, b: Packing, pose_a: numpy.typing.ArrayLike | "

@@ -14,6 +14,7 @@
 
 #include "bindings.hpp"
 #include "innersphere/check.hpp"
+#include "innersphere/cover_solid.hpp"
 #include "innersphere/mesh.hpp"
 #include "innersphere/pack_mesh.hpp"
 #include "innersphere/packing_file.hpp"
@@ -150,6 +151,38 @@ SharedPacking packWith(const Mesh& mesh, const std::string& name, std::int64_t s
   return result;
 }
 
+/// Numbers that Python may change, in an array of its own.
+template <typename T>
+nb::object copyOf(const T& numbers, std::initializer_list<std::size_t> shape) {
+  double* data = new double[numbers.end() - numbers.begin()];
+  std::copy(numbers.begin(), numbers.end(), data);
+  const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, double>(data, shape, owner));
+}
+
+/// Spheres that cover the solid, in its own coordinates (n, 4), and their largest overhang.
+nb::tuple coverPacking(const SharedPacking& self, double resolution) {
+  Covering covering;
+  {
+    const nb::gil_scoped_release release;
+    Packing first;
+    first.origin = self.packing().origin;
+    first.spheres.assign(self.packing().spheres.begin(), self.packing().spheres.begin() + self.count);
+    first.order = self.packing().order;
+    first.surface = self.packing().surface;
+    first.provenance = self.packing().provenance;
+    CoverOptions options;
+    options.resolution = resolution;
+    covering = coverSurface(first, options);
+  }
+  std::vector<double> numbers;
+  for (const Sphere& s : covering.spheres) {
+    for (int k = 0; k < 3; ++k) numbers.push_back(covering.origin[k] + (&s.x)[k]);
+    numbers.push_back(s.radius);
+  }
+  return nb::make_tuple(copyOf(numbers, {covering.spheres.size(), 4}), covering.overhang_max);
+}
+
 SharedPacking readShared(const std::filesystem::path& path) {
   const nb::gil_scoped_release release;
   return share(readPacking(path.string()));
@@ -180,15 +213,6 @@ SharedPacking slice(const SharedPacking& self, nb::handle index) {
 template <typename T>
 nb::object rows(const T* first, std::size_t count, std::size_t width, nb::handle owner) {
   return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<2>>(first, {count, width}, owner));
-}
-
-/// Numbers that Python may change, in an array of its own.
-template <typename T>
-nb::object copyOf(const T& numbers, std::initializer_list<std::size_t> shape) {
-  double* data = new double[numbers.end() - numbers.begin()];
-  std::copy(numbers.begin(), numbers.end(), data);
-  const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return nb::cast(nb::ndarray<nb::numpy, double>(data, shape, owner));
 }
 
 double densityOf(const SharedPacking& self) {
@@ -402,13 +426,14 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
               "numpy.typing.NDArray[numpy.uint32]]"),
       R"(The surface of a solid to try things with: vertices (n, 3) [m] and faces (m, 3), as pack() takes them.
 
-name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, chazelle or tray; about 1 m in size. Nut and
+name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, chazelle, tray, cup, pan, blade or horn; about 1 m in size. Nut and
 bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for another name.)");
   module.def("mesh_of", &meshOf, "vertices"_a, "faces"_a);
   module.def("surface_of_mesh", &surfaceOfMesh, "mesh"_a, "name"_a);
   module.def("pack", &packWith, "mesh"_a, "name"_a, "spheres"_a, "min_radius"_a, "density"_a, "gap"_a,
              "order"_a, "delta"_a, "overlap_errors"_a, "threads"_a, "repair"_a, "cache"_a,
              "progress"_a.none());
+  module.def("cover", &coverPacking, "packing"_a, "resolution"_a);
   module.def("read", &readShared, "path"_a);
   const PackOptions defaults;
   module.attr("pack_defaults") = [&] {

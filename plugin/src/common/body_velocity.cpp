@@ -10,6 +10,7 @@ BodyVelocity::BodyVelocity(const btCollisionObject& object) {
   if (const btRigidBody* body = btRigidBody::upcast(&object)) {
     linear = body->getLinearVelocity();
     spin = body->getAngularVelocity();
+    has_arrived = body->isKinematicObject();
     return;
   }
   const btMultiBodyLinkCollider* collider = btMultiBodyLinkCollider::upcast(&object);

@@ -17,6 +17,8 @@ struct BodyVelocity {
 
   btVector3 linear{0, 0, 0};  ///< of its origin [m/s]
   btVector3 spin{0, 0, 0};    ///< [rad/s]
+  /// Bullet moves kinematic bodies before it looks for contact: they are where the step ends already.
+  bool has_arrived = false;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -87,16 +87,15 @@ class Falls {
   btScalar xx_, xy_ = 0, yy_;
 };
 
-/// Moves a sample uphill; not where slopes above `steepest` say that the top is far. Notes whether it got
-/// there.
-void ascend(const SurfaceProbe& probe, btScalar steepest, int steps, ProbedSample& sample) {
+/// Moves a sample uphill along lines beside that from `shift` beside its sphere; not where slopes above
+/// `steepest` say that the top is far. Notes whether it got there.
+void climb(const SurfaceProbe& probe, btScalar steepest, int steps, btVector3 shift, ProbedSample& sample) {
   Hillside here = hillsideAt(sample.points, sample.direction);
   // There is no top where faces are flat, or fit together.
   if (fitTogether(sample.points.curvature_a, sample.points.curvature_b) || here.slope.length() > steepest)
     return;
   const btScalar fall = hillAt(probe, sample).fall(0);
   Falls falls(sample.direction, fall > 0 ? fall : sample.points.curvature_a + sample.points.curvature_b);
-  btVector3 shift(0, 0, 0);
   for (int i = 0; i < steps && here.slope.length2() > kLevel * kLevel; ++i) {
     OpposedPoints points;
     points.triangle_a = sample.points.triangle_a;
@@ -117,6 +116,25 @@ void ascend(const SurfaceProbe& probe, btScalar steepest, int steps, ProbedSampl
     here = next;
   }
   sample.is_top = here.slope.length2() < kReached * kReached;
+}
+
+/// Moves a sample to the top of its hill. Normals agree all along a line over it, for lines of any direction;
+/// but both points are opposed only along the normal, so a line that is askew is drawn again along that.
+void ascend(const SurfaceProbe& probe, ProbedSample& sample) {
+  climb(probe, BT_LARGE_FLOAT, kAscentSteps, btVector3(0, 0, 0), sample);
+  const OpposedPoints& points = sample.points;
+  const btVector3 normal = (points.normal_a + points.normal_b).normalized();
+  const btVector3 apart = points.on_a - points.on_b;
+  if (!sample.is_top ||
+      (apart - normal * apart.dot(normal)).length2() < kReached * kReached * apart.length2())
+    return;
+  const btVector3 middle = (points.on_a + points.on_b) / 2 - probe.lineStart(sample.index);
+  const btVector3 shift = middle - normal * middle.dot(normal);
+  ProbedSample again = sample;
+  again.direction = normal;
+  if (!probe.probeLine(sample.index, normal, shift, again.points)) return;
+  climb(probe, BT_LARGE_FLOAT, kAscentSteps, shift, again);
+  if (again.is_top) sample = again;
 }
 
 /// The tops that were reached.
@@ -140,7 +158,7 @@ class Tops {
     ProbedSample& top = tops_[count_];
     top = start;
     top.id = kDeepestId - static_cast<std::uint64_t>(count_++);
-    ascend(probe, BT_LARGE_FLOAT, kAscentSteps, top);
+    ascend(probe, top);
     hills_[count_ - 1] = hillAt(probe, top);
   }
 
@@ -197,7 +215,7 @@ void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::ve
 
 void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples) {
   for (std::size_t i = 0; i < count; ++i) {
-    if (isUsable(samples[i])) ascend(probe, kSlopeBeside, kAscentStepsBeside, samples[i]);
+    if (isUsable(samples[i])) climb(probe, kSlopeBeside, kAscentStepsBeside, btVector3(0, 0, 0), samples[i]);
   }
 }
 

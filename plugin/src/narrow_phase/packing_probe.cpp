@@ -77,6 +77,11 @@ bool PackingProbe::probeLine(std::size_t index, const btVector3& direction, cons
   return true;
 }
 
+btVector3 PackingProbe::lineStart(std::size_t index) const {
+  const PlacedPacking& own = index < count_a_ ? a_ : b_;
+  return own.origin() - a_.origin() + own.centreOf(contacts_[index].sphere);
+}
+
 bool PackingProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const {
   const bool of_a = index < count_a_;
   const PlacedPacking& own = of_a ? a_ : b_;

@@ -62,6 +62,8 @@ class SurfaceProbe {
   /// same: that by which the line leaves A sideways, or one near the sphere.
   virtual bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
                          OpposedPoints& points) const = 0;
+  /// Returns where lines start that are not moved sideways: the middle of the sphere [m].
+  virtual btVector3 lineStart(std::size_t index) const = 0;
   /// Finds the direction from A to B in which the sphere is nearest to the other solid's surface. Returns
   /// false if it is too far away to tell. Leaves the triangles near the sphere in `points`.
   virtual bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const = 0;

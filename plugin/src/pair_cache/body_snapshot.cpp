@@ -1,25 +1,26 @@
 #include "pair_cache/body_snapshot.hpp"
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btTransformUtil.h>
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-BodySnapshot::BodySnapshot(const btCollisionObject& object)
+BodySnapshot::BodySnapshot(const btCollisionObject& object, btScalar time_step)
     : object_(&object),
       body_(btRigidBody::upcast(&object)),
       transform_(object.getWorldTransform()),
       velocity_(object),
       motion_(object, velocity_) {
-  take();
+  take(time_step);
 }
 
-BodySnapshot::BodySnapshot(const btCollisionObjectWrapper& wrapper)
-    : BodySnapshot(*wrapper.getCollisionObject()) {
+BodySnapshot::BodySnapshot(const btCollisionObjectWrapper& wrapper, btScalar time_step)
+    : BodySnapshot(*wrapper.getCollisionObject(), time_step) {
   shape_place_ = wrapper.getWorldTransform();
 }
 
-void BodySnapshot::take() {
+void BodySnapshot::take(btScalar time_step) {
   if (shape_ != object_->getCollisionShape()) {
     ++changes_;
     shape_ = object_->getCollisionShape();
@@ -34,7 +35,9 @@ void BodySnapshot::take() {
   motion_ = Motion(*object_, velocity_);
   const btTransform& now = object_->getWorldTransform();
   if (!(now == transform_)) travel_ += travelBetween(transform_, now, motion_.size);
-  transform_ = now;
+  transform_ = start_ = now;
+  if (velocity_.has_arrived)
+    btTransformUtil::integrateTransform(now, -velocity_.linear, -velocity_.spin, time_step, start_);
 }
 
 bool BodySnapshot::isAsTaken(const btCollisionObjectWrapper& wrapper) const {

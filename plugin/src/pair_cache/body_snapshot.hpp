@@ -20,13 +20,13 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// Holds where a body is, how fast, how far it has travelled, and which shape it has.
 class BodySnapshot {
  public:
-  /// Takes a first snapshot of a body.
-  explicit BodySnapshot(const btCollisionObject& object);
+  /// Takes a first snapshot of a body, in a step of `time_step` [s].
+  BodySnapshot(const btCollisionObject& object, btScalar time_step);
   /// Takes one of the body of a shape that is where the wrapper says, whatever the body's own place.
-  explicit BodySnapshot(const btCollisionObjectWrapper& wrapper);
+  BodySnapshot(const btCollisionObjectWrapper& wrapper, btScalar time_step);
 
   /// Takes another one.
-  void take();
+  void take(btScalar time_step);
   /// Returns true if the body, as Bullet asks for it, is as it was in the snapshot.
   bool isAsTaken(const btCollisionObjectWrapper& wrapper) const;
   /// Returns true if the body is where it was, and as fast; its shape may be a child of a compound.
@@ -37,6 +37,12 @@ class BodySnapshot {
 
   const btCollisionObject* object() const { return object_; }
   const btTransform& transform() const { return transform_; }
+  /// Returns where the body was when the step began: Bullet has moved kinematic bodies, and no others yet.
+  const btTransform& start() const { return start_; }
+  /// Returns where something was then that is part of the body, and is here now.
+  btTransform startOf(const btTransform& place) const {
+    return velocity_.has_arrived ? start_ * transform_.inverse() * place : place;
+  }
   /// Returns where the shape is, if that was said.
   const std::optional<btTransform>& shapePlace() const { return shape_place_; }
   const BodyVelocity& velocity() const { return velocity_; }
@@ -58,7 +64,7 @@ class BodySnapshot {
   const btCollisionShape* shape_ = nullptr;
   const PackingShape* packing_ = nullptr;
   std::uint64_t version_ = 0;  ///< of the packing shape
-  btTransform transform_;
+  btTransform transform_, start_;
   std::optional<btTransform> shape_place_;
   BodyVelocity velocity_;
   Motion motion_;

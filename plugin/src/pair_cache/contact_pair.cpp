@@ -52,7 +52,7 @@ btVector3 impulseOf(const btManifoldPoint& point) {
 }
 
 PairMotion motionOf(const BodySnapshot& a, const BodySnapshot& b, btScalar time_step) {
-  return {a.transform().getOrigin(), a.velocity(), b.transform().getOrigin(), b.velocity(),
+  return {a.start().getOrigin(), a.velocity(), b.start().getOrigin(), b.velocity(),
           isSwept(a.motion(), b.motion(), time_step)};
 }
 
@@ -114,7 +114,7 @@ void ContactPair::clear() {
 }
 
 btVector3 ContactPair::origin() const {
-  return a.packing->impl().toWorld(a.transform).getOrigin();
+  return a.packing->impl().toWorld(a.start).getOrigin();
 }
 
 bool ContactPair::canBePublished() const {
@@ -141,7 +141,7 @@ void ContactPair::publish(const StepSettings& settings, const BodySnapshot& body
 void ContactPair::write(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
                         btManifoldResult* result) {
   depth = deepest(found->patches());
-  manifolds.write(*a.object, *b.object, motionOf(body_a, body_b, settings.time_step), origin(),
+  manifolds.write(*a.object, *b.object, {body_a.start(), body_b.start()}, motionOf(body_a, body_b, settings.time_step), origin(),
                   found->patches(), lawOf(settings),
                   speculativeDistance(body_a.motion(), body_b.motion(), settings.time_step), result);
 }

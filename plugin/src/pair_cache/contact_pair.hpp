@@ -50,8 +50,8 @@ struct ContactPair {
   /// Makes it a new pair, and gives the manifolds back.
   void clear();
 
-  /// Returns where both were in the last update.
-  Placed placed() const { return {a.transform, b.transform}; }
+  /// Returns where both were when the step of the last update began.
+  Placed placed() const { return {a.start, b.start}; }
   /// Returns the origin of A's packing in the world, which contacts are relative to.
   btVector3 origin() const;
 

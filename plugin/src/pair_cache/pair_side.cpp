@@ -12,7 +12,8 @@ PairSide::PairSide(const btCollisionObjectWrapper& wrapper)
     : object(wrapper.getCollisionObject()),
       shape(wrapper.getCollisionShape()),
       packing(PackingShape::from(shape)),
-      transform(wrapper.getWorldTransform()) {
+      transform(wrapper.getWorldTransform()),
+      start(transform) {
   for (const btCollisionObjectWrapper* w = &wrapper; w->m_parent != nullptr; w = w->m_parent) {
     if (nesting == kMaxNesting) {
       nesting = -1;

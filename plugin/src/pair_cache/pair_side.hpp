@@ -37,7 +37,9 @@ struct PairSide {
   const PackingShape* packing = nullptr;  ///< null for a shape of another kind
   std::uint64_t version = 0;              ///< of the packing, when contact was searched for last
   btTransform transform =
-      btTransform::getIdentity();           ///< of the shape in the world, at the last update of the pair
+      btTransform::getIdentity();  ///< of the shape in the world, at the last update of the pair
+  btTransform start =
+      btTransform::getIdentity();           ///< the same where the step of that update began (BodySnapshot)
   int nesting = 0;                          ///< in how many compounds, -1 if too many
   std::array<int, kMaxNesting> child_of{};  ///< which child of them, innermost first
 };

@@ -114,7 +114,7 @@ void PairTable::unlist(ContactPair& pair) {
 }
 
 BodySnapshot* PairTable::use(const PairSide& side) {
-  BodySnapshot& body = bodies_.try_emplace(side.object, *side.object).first->second;
+  BodySnapshot& body = bodies_.try_emplace(side.object, *side.object, btScalar(0)).first->second;
   if (body.users++ == 0) body_list_.add(&body);
   return &body;
 }
@@ -160,8 +160,8 @@ void PairTable::process(ContactPair& pair, const btCollisionObjectWrapper& a,
   if (pair.separation != separation) pair.forgetContact();
   pair.separation = separation;
   pair.published = false;
-  const BodySnapshot body_a(a), body_b(b);
   const StepSettings settings = settingsFor(dispatch.m_timeStep);
+  const BodySnapshot body_a(a, settings.time_step), body_b(b, settings.time_step);
   const Busy busy(pair, mutex_, number_);
   lock.unlock();
 
@@ -180,8 +180,8 @@ void PairTable::report(ContactPair& pair, const btCollisionObjectWrapper& a,
   pair.forgetContact();
   pair.separation = result->m_closestPointDistanceThreshold;
   std::unique_lock<std::mutex> lock(mutex_);
-  const BodySnapshot body_a(a), body_b(b);
   const StepSettings settings = settingsFor(0);
+  const BodySnapshot body_a(a, 0), body_b(b, 0);
   lock.unlock();
   if (updateOrLog(pair, body_a, body_b, settings)) pair.report(result);
 }
@@ -285,7 +285,7 @@ void PairTable::push(ContactPair& pair, const StepSettings& settings, const btDi
   manifolds.resize(0);
   pair.manifolds.append(manifolds);
   const btVector3 arm =
-      pair.of_packings ? pair.b.packing->impl().toWorld(pair.b.transform).getOrigin() : pair.origin();
+      pair.of_packings ? pair.b.packing->impl().toWorld(pair.b.start).getOrigin() : pair.origin();
   // Bodies take one push at a time.
   pair.penalty = Penalty(*pair.a.object, *pair.b.object, btScalar(pair.options.damping), settings.time_step)
                      .push(shared, law.penaltyStiffness(), arm, manifolds);

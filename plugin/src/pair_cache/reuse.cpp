@@ -33,7 +33,7 @@ Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot
   if (least == Reuse::search || !pair.found->isKnown() || !same_shapes || !pair.a.hasSameShape() ||
       !pair.b.hasSameShape() || !at_a || !at_b)
     return Reuse::search;
-  const Placed now{*at_a, *at_b};
+  const Placed now{a.startOf(*at_a), b.startOf(*at_b)};
   const ContactTransport& memory = pair.found->memory;
   const ContactSettings& settings = *pair.found->settings;
   if (!pair.found->on_surfaces && (least > Reuse::transport || !(memory.measuredAt() == now)))

@@ -27,13 +27,15 @@ bool place(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b) {
   if (!at_a || !at_b) return false;
   pair.a.transform = *at_a;
   pair.b.transform = *at_b;
+  pair.a.start = a.startOf(*at_a);
+  pair.b.start = b.startOf(*at_b);
   return true;
 }
 
 StepAhead stepAheadOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                       btScalar time_step) {
   const btVector3 origin = pair.origin();
-  return {{a.transform().getOrigin() - origin, a.velocity(), b.transform().getOrigin() - origin, b.velocity(),
+  return {{a.start().getOrigin() - origin, a.velocity(), b.start().getOrigin() - origin, b.velocity(),
            isSwept(a.motion(), b.motion(), time_step)},
           time_step,
           neededSeparation(pair, a, b, time_step),
@@ -67,7 +69,7 @@ void PairTable::begin(btScalar time_step) {
     std::erase_if(spare_searches_, [](const auto& search) { return search->isLarge(); });
   ++number_;
   settings_ = settingsFor(time_step);
-  body_list_.forEachInParallel([](BodySnapshot& body) { body.take(); });
+  body_list_.forEachInParallel([&](BodySnapshot& body) { body.take(settings_.time_step); });
   jobs_.assign(pairs_.size(), Job());
   pairs_.forEachInParallel([&](ContactPair& pair) { jobs_[pair.list_index] = decide(pair); });
   collectJobs();

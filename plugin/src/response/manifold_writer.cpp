@@ -127,6 +127,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   const bool bounces = point.m_combinedRestitution * approach > law.push;
   if (solver.substeps) {
     setCurvatures(point, from.ahead);
+    point.m_contactPointFlags |= kContactOfStart;
   } else {
     // The solver would begin the bounce before they touch, and brake them on their way.
     if (!meets) point.m_combinedRestitution = 0;
@@ -191,10 +192,19 @@ Curvatures curvaturesAhead(const ContactPoint& point, const btVector3& sliding, 
   return {a.turn(direction, axes).dot(direction), b.turn(direction, axes).dot(direction)};
 }
 
+/// Bullet has found the points' places on the bodies as if all of them were where kinematic ones will be.
+void takeToStart(const Placed& start, btPersistentManifold& manifold) {
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    btManifoldPoint& point = manifold.getContactPoint(i);
+    point.m_localPointA = start.a.invXform(point.m_positionWorldOnA);
+    point.m_localPointB = start.b.invXform(point.m_positionWorldOnB);
+  }
+}
+
 /// The points of one patch into the manifold that `result` holds.
-void writePatch(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
-                const btVector3& origin, const ContactPatch& patch, const ContactLaw::OfPatch& law,
-                const SolverSettings& solver, btManifoldResult* result) {
+void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Placed& start,
+                const PairMotion& motion, const btVector3& origin, const ContactPatch& patch,
+                const ContactLaw::OfPatch& law, const SolverSettings& solver, btManifoldResult* result) {
   btPersistentManifold& manifold = *result->getPersistentManifold();
   std::array<NewPoint, kPatchPoints> points;
   int count = 0;
@@ -209,7 +219,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
     point.on_b = origin + patch.points[i].on_b;
     point.ahead = curvaturesAhead(patch.points[i], motion.velocityAt(point.on_b), motion.spin());
     point.aside = patch.points[i].aside;
-    point.local_a = a.getWorldTransform().invXform(point.on_b + point.normal * point.depth);
+    point.local_a = start.a.invXform(point.on_b + point.normal * point.depth);
     ++count;
   }
   PointIndices match = matchPoints(manifold, points.data(), count);
@@ -220,19 +230,24 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pa
   for (int i = 0; i < count; ++i) {
     NewPoint& point = points[i];
     point.friction = friction;
+    // Where Bullet, which has moved kinematic bodies, will say that it is.
+    const btVector3 local_a = motion.a().has_arrived
+                                  ? a.getWorldTransform().invXform(start.a * point.local_a)
+                                  : point.local_a;
     // Bullet keeps impulses and lifetime of the cached point nearest to the new one: move the match there
     // first.
     if (match[i] >= 0) {
       btManifoldPoint& cached = manifold.getContactPoint(match[i]);
-      if (!solver.substeps) point.slip = slipOf(cached, a, b, point.normal, largest_slip, farthest_slip);
-      cached.m_localPointA = point.local_a;
+      if (!solver.substeps) point.slip = slipOf(cached, start, point.normal, largest_slip, farthest_slip);
+      cached.m_localPointA = local_a;
       letGo(a, b, cached);
     }
-    if (motion.isSwept() && match[i] < 0) keepApart(point.local_a, manifold);
+    if (motion.isSwept() && match[i] < 0) keepApart(local_a, manifold);
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
     if (btManifoldPoint* added = pointAt(manifold, point.on_b)) setLaw(*added, point, a, motion, solver);
   }
   result->refreshContactPoints();
+  if (motion.a().has_arrived || motion.b().has_arrived) takeToStart(start, manifold);
 }
 
 }  // namespace
@@ -299,11 +314,12 @@ void ManifoldWriter::provide(const btCollisionObject& a, const btCollisionObject
   }
 }
 
-void ManifoldWriter::write(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
-                           const btVector3& origin, const std::vector<ContactPatch>& patches,
-                           const ContactLaw& law, btScalar separation, btManifoldResult* result) {
+void ManifoldWriter::write(const btCollisionObject& a, const btCollisionObject& b, const Placed& start,
+                           const PairMotion& motion, const btVector3& origin,
+                           const std::vector<ContactPatch>& patches, const ContactLaw& law,
+                           btScalar separation, btManifoldResult* result) {
   if (patches.empty() && entries_.empty()) return;
-  assign(a.getWorldTransform(), patches);
+  assign(start.a, patches);
   provide(a, b, patches.size());
   btPersistentManifold* const before = result->getPersistentManifold();
   for (std::size_t e = 0; e < entries_.size(); ++e) {
@@ -313,12 +329,12 @@ void ManifoldWriter::write(const btCollisionObject& a, const btCollisionObject& 
       continue;
     }
     const std::size_t p = static_cast<std::size_t>(owner_[e]);
-    entry.normal = patches[p].normal * a.getWorldTransform().getBasis();
-    entry.centre = patches[p].centre * a.getWorldTransform().getBasis();
+    entry.normal = patches[p].normal * start.a.getBasis();
+    entry.centre = patches[p].centre * start.a.getBasis();
     entry.manifold->setContactBreakingThreshold(btMax(entry.threshold, separation));
     entry.manifold->setContactProcessingThreshold(law.penalty() ? -BT_LARGE_FLOAT : entry.processing);
     result->setPersistentManifold(entry.manifold);
-    writePatch(a, b, motion, origin, patches[p], law.of(patches, p), law.solver(), result);
+    writePatch(a, b, start, motion, origin, patches[p], law.of(patches, p), law.solver(), result);
   }
   result->setPersistentManifold(before);
 }

@@ -8,6 +8,7 @@
 
 #include "common/pair_motion.hpp"
 #include "narrow_phase/contact_point.hpp"
+#include "narrow_phase/contact_transport.hpp"
 #include "response/contact_law.hpp"
 
 namespace innersphere {
@@ -24,10 +25,10 @@ class ManifoldWriter {
   ManifoldWriter(const ManifoldWriter&) = delete;
   ManifoldWriter& operator=(const ManifoldWriter&) = delete;
 
-  /// Replaces the contacts between `a` and `b`, which move like `motion`. `origin` is that of A's packing in
-  /// the world. Points up to `separation` [m] apart are kept.
-  void write(const btCollisionObject& a, const btCollisionObject& b, const PairMotion& motion,
-             const btVector3& origin, const std::vector<ContactPatch>& patches, const ContactLaw& law,
+  /// Replaces the contacts between `a` and `b`, which were at `start` when the step began and move like
+  /// `motion`. `origin` is that of A's packing in the world. Points up to `separation` [m] apart are kept.
+  void write(const btCollisionObject& a, const btCollisionObject& b, const Placed& start,
+             const PairMotion& motion, const btVector3& origin, const std::vector<ContactPatch>& patches, const ContactLaw& law,
              btScalar separation, btManifoldResult* result);
 
   /// Only tells `result` of the contacts, as closest-point queries want it: keeps nothing and makes no

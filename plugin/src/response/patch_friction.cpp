@@ -30,11 +30,10 @@ btScalar mostFriction(const btPersistentManifold& manifold) {
   return friction;
 }
 
-btVector3 slipOf(const btManifoldPoint& cached, const btCollisionObject& a, const btCollisionObject& b,
-                 const btVector3& normal, btScalar largest, btScalar farthest) {
+btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const btVector3& normal,
+                 btScalar largest, btScalar farthest) {
   if (!(cached.m_combinedFriction * cached.m_appliedImpulse > 0)) return btVector3(0, 0, 0);
-  const btVector3 apart =
-      a.getWorldTransform() * cached.m_localPointA - b.getWorldTransform() * cached.m_localPointB;
+  const btVector3 apart = start.a * cached.m_localPointA - start.b * cached.m_localPointB;
   const btVector3 slip = apart - normal * normal.dot(apart);
   const btScalar length = slip.length();
   if (length > farthest) return btVector3(0, 0, 0);

@@ -59,6 +59,10 @@ void checkOptions(const ContactOptions& options) {
   require(options.stiffness, "stiffness", "0 (default) or a positive number of N/m^3.");
   require(options.damping, "damping", "a fraction of critical damping, 0 or more.");
   require(options.accuracy, "accuracy", "0 (all spheres) or a positive number of metres.");
+  if (options.estimator == Estimator::surface) {
+    throw Error(ErrorCode::bad_argument,
+                "ContactOptions::estimator is surface; contacts by volume need spheres: volume_true or raw");
+  }
 }
 
 ContactOptions optionsOfPair(const ContactOptions& world, const btCollisionShape& a,

@@ -94,16 +94,23 @@ void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, c
                             const SolverBodies& bodies) const {
   const btManifoldPoint& point = *source.point;
   const btScalar sign = source.flipped ? btScalar(-1) : btScalar(1);
-  const btVector3& on_a = source.flipped ? point.getPositionWorldOnB() : point.getPositionWorldOnA();
-  const btVector3& on_b = source.flipped ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
+  btVector3 on_a = source.flipped ? point.getPositionWorldOnB() : point.getPositionWorldOnA();
+  btVector3 on_b = source.flipped ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
   const btVector3 normal = point.m_normalWorldOnB * sign;
+  btScalar gap = point.getDistance();
+  if (!isOfStart(point)) {
+    const btVector3 then_a = bodies.startOf(pair.a, on_a), then_b = bodies.startOf(pair.b, on_b);
+    gap += (then_a - on_a - (then_b - on_b)).dot(normal);
+    on_a = then_a;
+    on_b = then_b;
+  }
   // The fixed world does not turn.
   const btVector3 arm_a = on_a - bodies.origin(pair.a),
                   arm_b = pair.b == bodies.movable() ? btVector3(0, 0, 0) : on_b - bodies.origin(pair.b);
   lanes.normal.set(lane, normal);
   lanes.arm_a.set(lane, arm_a);
   lanes.arm_b.set(lane, arm_b);
-  lanes.gap[lane] = point.getDistance() + slop_;
+  lanes.gap[lane] = gap + slop_;
   fillCurves(lanes, lane, source, bodies.size(pair.a), bodies.size(pair.b));
   btVector3 side_1, side_2;
   if ((point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0) {

@@ -1,4 +1,4 @@
-// How curved bodies are where they touch, told along with a contact point.
+// What SubstepSolver is told along with a contact point: how curved the bodies are there, and when that was.
 #pragma once
 
 #include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
@@ -27,6 +27,13 @@ inline void setCurvatures(btManifoldPoint& point, const Curvatures& curvatures) 
 inline Curvatures curvaturesOf(const btManifoldPoint& point) {
   if (!hasRoomForCurvatures(point)) return {};
   return {point.m_contactMotion1, point.m_contactMotion2};
+}
+
+/// Bullet's own shapes touch where the bodies are: kinematic ones where the step ends, others where it begins.
+/// A point with this flag, which Bullet has no use for, is of the beginning for both.
+constexpr int kContactOfStart = 1 << 16;
+inline bool isOfStart(const btManifoldPoint& point) {
+  return (point.m_contactPointFlags & kContactOfStart) != 0;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -50,7 +50,8 @@ btScalar inverseOrZero(btScalar x) {
 
 }  // namespace
 
-void SolverBodies::begin(btCollisionObject** objects, int count) {
+void SolverBodies::begin(btCollisionObject** objects, int count, btScalar time_step) {
+  time_step_ = time_step;
   states_.clear();
   bodies_.clear();
   broken_.clear();
@@ -115,15 +116,21 @@ int SolverBodies::indexOf(const btCollisionObject& object) {
   BodyState& state = states_.emplace_back();
   body.rigid = const_cast<btRigidBody*>(rigid);
   body.given = rigid->getWorldTransform();
-  body.origin = body.given.getOrigin();
-  body.rotation = body.given.getRotation();
   state.velocity = rigid->getLinearVelocity();
   state.spin = rigid->getAngularVelocity();
+  btTransform start = body.given;
+  if (rigid->isKinematicObject())  // Bullet has moved it already
+    btTransformUtil::integrateTransform(body.given, -state.velocity, -state.spin, time_step_, start);
+  body.origin = start.getOrigin();
+  body.rotation = start.getRotation();
   return static_cast<int>(bodies_.size()) - 1;
 }
 
 void SolverBodies::follow(int index) {
-  if (index >= 0) bodies_[static_cast<std::size_t>(index)].followed = true;
+  if (index < 0) return;
+  Body& body = bodies_[static_cast<std::size_t>(index)];
+  body.followed = true;
+  if (index > movable_) body.rigid->setWorldTransform(poseOf(body, states_[static_cast<std::size_t>(index)]));
 }
 
 btScalar SolverBodies::largestAcceleration() const {
@@ -208,7 +215,13 @@ btTransform SolverBodies::poseOf(const Body& body, const BodyState& state) const
   return btTransform(state.turned * body.rotation, body.origin + state.moved);
 }
 
-int SolverBodies::finish(btScalar time_step) {
+btVector3 SolverBodies::startOf(int index, const btVector3& point) const {
+  const Body& body = bodies_[static_cast<std::size_t>(index)];
+  if (index <= movable_ || !body.rigid->isKinematicObject()) return point;
+  return btTransform(body.rotation, body.origin) * body.given.invXform(point);
+}
+
+int SolverBodies::finish() {
   int lost = 0;
   for (btRigidBody* body : broken_) body->setCompanionId(-1);
   for (std::size_t i = static_cast<std::size_t>(movable_) + 1; i < bodies_.size(); ++i) {
@@ -224,7 +237,7 @@ int SolverBodies::finish(btScalar time_step) {
     }
     // Bullet goes on from here by the velocities, over the whole step.
     btTransform start;
-    btTransformUtil::integrateTransform(poseOf(body, state), -state.velocity, -state.spin, time_step, start);
+    btTransformUtil::integrateTransform(poseOf(body, state), -state.velocity, -state.spin, time_step_, start);
     body.rigid->setWorldTransform(start);
     body.rigid->setLinearVelocity(state.velocity);
     body.rigid->setAngularVelocity(state.spin);

@@ -34,8 +34,8 @@ struct BodyState {
 /// Bodies that can be moved come first; then the fixed world, and whatever else moves by itself.
 class SolverBodies {
  public:
-  /// Takes over the bodies of a group, and gives each its place as companion id.
-  void begin(btCollisionObject** objects, int count);
+  /// Takes over the bodies of a group for a step of `time_step` [s], and gives each its place as companion id.
+  void begin(btCollisionObject** objects, int count, btScalar time_step);
   /// Returns the place of a body: that of the fixed world for whatever stands still.
   int indexOf(const btCollisionObject& object);
   /// Notes that constraints read this body, so that it has to be where its state says.
@@ -52,6 +52,8 @@ class SolverBodies {
   btScalar size(int index) const { return bodies_[static_cast<std::size_t>(index)].size; }
   /// Returns where the body was at the start of the step.
   const btVector3& origin(int index) const { return bodies_[static_cast<std::size_t>(index)].origin; }
+  /// Returns where a point of the body that is here now was then: Bullet has moved kinematic bodies.
+  btVector3 startOf(int index, const btVector3& point) const;
   /// Returns the largest acceleration that forces of the world and the user give a body [m/s^2].
   btScalar largestAcceleration() const;
 
@@ -62,9 +64,9 @@ class SolverBodies {
   /// What moves by itself goes on, as far as contacts and constraints see it.
   void moveDriven(btScalar substep);
 
-  /// Writes poses and velocities such that Bullet's own integration over the step [s] ends where the substeps
+  /// Writes poses and velocities such that Bullet's own integration over the step ends where the substeps
   /// did. Returns the number of bodies that have got lost in infinity: they keep their places and stop.
-  int finish(btScalar time_step);
+  int finish();
   /// Returns the number of bodies that came with infinite or undefined velocities, forces or places: they
   /// stand still, and nothing touches them.
   int broken() const { return static_cast<int>(broken_.size()); }
@@ -91,6 +93,7 @@ class SolverBodies {
   void updateInertia(const Body& body, BodyState& state) const;
   btTransform poseOf(const Body& body, const BodyState& state) const;
 
+  btScalar time_step_ = 0;
   std::vector<BodyState> states_;
   std::vector<Body> bodies_;
   int movable_ = 0;

@@ -120,8 +120,8 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
   called_ = true;
   const btScalar time_step = info.m_timeStep;
   if (!(time_step > 0)) return;
-  bodies_.begin(bodies, body_count);
-  if (bodies_.movable() == 0) return report(bodies_.finish(time_step));
+  bodies_.begin(bodies, body_count, time_step);
+  if (bodies_.movable() == 0) return report(bodies_.finish());
   contacts_.collect(manifolds, manifold_count, bodies_);
   constraints_.collect(constraints, constraint_count, bodies_);
   const int substeps = substepsFor(options, time_step, bodies_, contacts_.pairs(), constraints_);
@@ -142,7 +142,7 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
     each([&](int block) { contacts_.writeBack(block); });
   });
   constraints_.writeBack();
-  report(bodies_.finish(time_step));
+  report(bodies_.finish());
 }
 
 void SubstepSolver::Impl::report(int lost) {

@@ -11,7 +11,8 @@ namespace {
 constexpr btScalar kSmooth = btScalar(0.866);  // cos 30 degrees
 /// Normals that differ by less are those of a flat face, but for rounding [rad].
 constexpr btScalar kFlat = btScalar(1e-4);
-/// How far beyond an edge, in weights, a line still meets a triangle: no rounding leaves a gap between two.
+/// How far beyond an edge, in weights, a line still meets a triangle, and a point is still over it: no
+/// rounding leaves a gap between two, or takes the bulge from a point on a rim.
 constexpr btScalar kBeyond = btScalar(1e-4);
 /// Added to the triangle across a sharp edge. Instead of one across an edge that no other triangle shares.
 constexpr std::uint32_t kSharp = std::uint32_t(1) << 31, kSeam = kSharp - 1;
@@ -170,7 +171,7 @@ bool SmoothNormals::isPastSharpEdge(std::size_t t, const btVector3& point) const
     const Facet& facet = facets_[t];
     std::size_t edge = 3;
     for (std::size_t k = 0; k < 3 && edge == 3; ++k) {
-      if (facet.inwards[k].dot(point - facet.corners[k]) < 0) edge = k;
+      if (facet.inwards[k].dot(point - facet.corners[k]) < -kBeyond) edge = k;
     }
     if (edge == 3) return false;
     t = facet.across[edge];

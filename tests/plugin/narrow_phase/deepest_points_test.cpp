@@ -29,26 +29,26 @@ Relief ball(double x0, double y0, double top, double radius) {
   };
 }
 
-/// A lies below B: lines go straight up from each of the starts.
+/// A lies below B: lines go up from each of the starts.
 class Reliefs : public SurfaceProbe {
  public:
   /// `b`: seen from above, so that B is convex where it is.
   Reliefs(Relief a, Relief b, std::vector<btVector3> starts)
       : a_(std::move(a)), b_(std::move(b)), starts_(std::move(starts)) {}
 
-  bool probeLine(std::size_t index, const btVector3&, const btVector3& shift,
+  bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
                  OpposedPoints& points) const override {
-    const btVector3 place = starts_[index] + shift;
-    const Height a = a_(place.x(), place.y()), b = b_(place.x(), place.y());
+    const btVector3 from = starts_[index] + shift;
+    const Height a = meet(a_, from, direction, 1, points.on_a);
+    const Height b = meet(b_, from, direction, -1, points.on_b);
     if (!std::isfinite(a.z) || !std::isfinite(b.z)) return false;
-    points.on_a.setValue(place.x(), place.y(), btScalar(a.z));
-    points.on_b.setValue(place.x(), place.y(), btScalar(-b.z));
     points.normal_a = btVector3(btScalar(-a.slope_x), btScalar(-a.slope_y), 1).normalized();
     points.normal_b = btVector3(btScalar(b.slope_x), btScalar(b.slope_y), 1).normalized();
     points.curvature_a = btScalar(a.curvature);
     points.curvature_b = btScalar(b.curvature);
     return true;
   }
+  btVector3 lineStart(std::size_t index) const override { return starts_[index]; }
   bool nearest(std::size_t, btVector3& direction, OpposedPoints&) const override {
     direction = kUp;
     return true;
@@ -66,6 +66,18 @@ class Reliefs : public SurfaceProbe {
   }
 
  private:
+  /// Where a line goes through a relief. Lines are steep: their place over it hardly changes.
+  static Height meet(const Relief& relief, const btVector3& from, const btVector3& direction, double side,
+                     btVector3& at) {
+    Height height{};
+    at = from;
+    for (int i = 0; i < 50; ++i) {
+      height = relief(at.x(), at.y());
+      at = from + direction * btScalar((side * height.z - from.z()) / direction.z());
+    }
+    return height;
+  }
+
   Relief a_, b_;
   std::vector<btVector3> starts_;
 };
@@ -84,19 +96,21 @@ std::vector<btVector3> grid(double from, double to, int n) {
 }
 
 TEST(DeepestPoints, OfTwoBallsOverEachOtherIsBetweenTheirCentres) {
-  // Radii 1 and 0.5, shifted by 0.12 against each other: on a vertical line the depth is greatest where the
-  // slopes agree, at two thirds of the way.
+  // Radii 1 and 0.5, shifted by 0.12 against each other: that is on the line between their centres. Vertical
+  // lines would meet points side by side.
   const Reliefs reliefs(ball(0, 0, 0.01, 1), ball(0.12, 0, 0.01, 0.5),
                         {start(0, 0.1), start(0.2, 0.05), start(0.3, -0.2)});
   std::vector<ProbedSample> samples = reliefs.samples();
   appendDeepestPoints(reliefs, btScalar(0.05), samples);
   ASSERT_EQ(samples.size(), 4u);
-  const ProbedSample& top = samples.back();
-  EXPECT_EQ(top.id, kDeepestId);
-  EXPECT_NEAR(top.points.on_a.x(), 0.08, kAtTop);
-  EXPECT_NEAR(top.points.on_a.y(), 0, kAtTop);
-  const double depth = std::sqrt(1 - 0.08 * 0.08) + std::sqrt(0.25 - 0.04 * 0.04) - 1.5 + 0.02;
-  EXPECT_NEAR(top.points.depthAlong(kUp), depth, 2e-6);
+  const OpposedPoints& top = samples.back().points;
+  EXPECT_EQ(samples.back().id, kDeepestId);
+  const double apart = std::hypot(0.12, 1.48), x = 0.12 / apart;
+  EXPECT_NEAR(top.on_a.x(), x, kAtTop);
+  EXPECT_NEAR(top.on_a.y(), 0, kAtTop);
+  EXPECT_NEAR(top.normal_a.x(), x, kAtTop);
+  EXPECT_NEAR(top.depthAlong(top.normal_a), 1.5 - apart, 2e-6);
+  EXPECT_LT((top.on_a - top.on_b).cross(top.normal_a).length(), 2e-5);
   EXPECT_EQ(samples[0].starts_ascent + samples[1].starts_ascent + samples[2].starts_ascent, 1);
 }
 

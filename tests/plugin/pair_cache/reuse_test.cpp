@@ -22,8 +22,8 @@ class ReuseRule : public testing::Test {
   void searchAt(double gap) {
     upper.setWorldTransform(at(gap));
     pair.set(wrapper(upper), wrapper(lower), false);
-    body_a.emplace(upper);
-    body_b.emplace(lower);
+    body_a.emplace(upper, btScalar(kStep));
+    body_b.emplace(lower, btScalar(kStep));
     pair.a.noteShape();
     pair.a.transform = upper.getWorldTransform();
     pair.b.transform = lower.getWorldTransform();
@@ -35,7 +35,7 @@ class ReuseRule : public testing::Test {
   Reuse ruleAfter(const btTransform& where, const btVector3& velocity = btVector3(0, 0, 0)) {
     upper.setWorldTransform(where);
     upper.setLinearVelocity(velocity);
-    body_a->take();
+    body_a->take(btScalar(kStep));
     return reuseOf(pair, *body_a, *body_b, btScalar(kStep));
   }
   static btTransform at(double gap, double aside = 0) {
@@ -82,7 +82,7 @@ TEST_F(ReuseRule, BodiesThatMoveTogetherKeepTheirContacts) {
   searchAt(-0.001);
   const btTransform away(btQuaternion(btVector3(0, 1, 0), btScalar(0.8)), btVector3(3, -2, 7));
   lower.setWorldTransform(away);
-  body_b->take();
+  body_b->take(btScalar(kStep));
   EXPECT_EQ(ruleAfter(away * at(-0.001)), Reuse::transport);
 }
 
@@ -101,8 +101,8 @@ TEST_F(ReuseRule, BodiesApartAreIdleAsLongAsTheyAreSlowAndHaveNotGoneFar) {
 TEST_F(ReuseRule, SleepingBodiesAreNotIdleButOutOfUse) {
   searchAt(1);
   for (btRigidBody* body : {&upper, &lower}) body->setActivationState(ISLAND_SLEEPING);
-  body_a->take();
-  body_b->take();
+  body_a->take(btScalar(kStep));
+  body_b->take(btScalar(kStep));
   EXPECT_EQ(reuseOf(pair, *body_a, *body_b, btScalar(kStep)), Reuse::transport);
 }
 

@@ -145,7 +145,7 @@ TEST(SubstepContacts, ALiftCarriesAndABeltMoves) {
     world.step();
   }
   const btVector3 apart = load.getWorldTransform().getOrigin() - lift.getWorldTransform().getOrigin();
-  EXPECT_NEAR(apart.z(), 0.1 + kHalf, 0.01);
+  EXPECT_NEAR(apart.z(), 0.1 + kHalf, 0.001);
   EXPECT_NEAR(load.getLinearVelocity().x(), 0.5, 0.01);
   EXPECT_NEAR(load.getLinearVelocity().z(), 0.3, 0.01);
 

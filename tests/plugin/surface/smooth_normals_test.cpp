@@ -122,6 +122,8 @@ TEST(SmoothNormals, TellWhatIsPastARim) {
     const btScalar up = btScalar(kHeight) - place.z();
     EXPECT_FALSE(normals.isPastSharpEdge(first, place + btVector3(0, 0, btScalar(0.9) * up)));
     EXPECT_TRUE(normals.isPastSharpEdge(first, place + btVector3(0, 0, btScalar(1.1) * up)));
+    // A line along the end of a cylinder is on either side by chance.
+    EXPECT_FALSE(normals.isPastSharpEdge(first, place + btVector3(0, 0, btScalar(1 + 1e-5) * up)));
   }
 }
 

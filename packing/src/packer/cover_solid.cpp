@@ -1,0 +1,273 @@
+#include "innersphere/cover_solid.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "common/bounds.hpp"
+#include "common/steady_math.hpp"
+#include "innersphere/error.hpp"
+#include "innersphere/mesh.hpp"
+#include "packer/container.hpp"
+#include "packer/pattern_search.hpp"
+#include "packer/sphere_grid.hpp"
+#include "packer/surface_samples.hpp"
+
+namespace innersphere {
+namespace {
+
+// Points in the solid for each sphere, and in all at least.
+constexpr double kInnerPoints = 64;
+constexpr double kLeastInnerPoints = 4096;
+
+// The most steps in which spheres fit themselves to the points around them. They win little after ten.
+constexpr int kSteps = 30;
+
+// A pattern search ends when its steps are this small a part of the radius, and takes those that win at least
+// this part of their length.
+constexpr double kFinestFit = 0.01;
+constexpr double kWorthwhile = 0.01;
+
+// Points on each sphere at which the overhang is measured.
+constexpr int kOverhangPoints = 500;
+
+/// A cube of the octree.
+struct OctreeCube {
+  Point centre;
+  double half;
+  double farthest(const Ball& ball) const {
+    return ((centre - ball.centre).array().abs() + half).matrix().norm() - ball.radius;
+  }
+  double nearest(const Ball& ball) const {
+    return ((centre - ball.centre).array().abs() - half).max(0.0).matrix().norm() - ball.radius;
+  }
+};
+
+/// Points of the surface and of the inside.
+std::vector<Point> pointsOf(const Solid& solid, const Container& container, std::size_t spheres) {
+  std::vector<Point> points = SurfaceSamples(solid.surface(), container).points();
+  const double volume =
+      solid.massProperties().volume / (container.side() * container.side() * container.side());
+  const double inner = std::max(kInnerPoints * static_cast<double>(spheres), kLeastInnerPoints);
+  const int cells = static_cast<int>(std::ceil(std::cbrt(inner / volume)));
+  for (int z = 0; z < cells; ++z) {
+    for (int y = 0; y < cells; ++y) {
+      for (int x = 0; x < cells; ++x) {
+        const Point p = Point(x + 0.5, y + 0.5, z + 0.5) / cells;
+        if (container.contains(p)) points.push_back(p);
+      }
+    }
+  }
+  return points;
+}
+
+/// A ball in the solid that touches its surface, and by how much it has to grow to hold some points.
+struct Fit {
+  Ball ball;
+  double growth = 0;
+};
+
+/// Looks for the place from which the largest ball in the solid has to grow least until it holds the points.
+Fit fitted(const Container& container, const Ball& start, const std::vector<Point>& points) {
+  const auto fitAt = [&](const Point& x) -> Fit {
+    double farthest = 0;
+    for (const Point& p : points) farthest = std::max(farthest, (p - x).squaredNorm());
+    const double room = container.closest(x, 1).distance;
+    return {{x, room}, std::sqrt(farthest) - room};
+  };
+  Fit best = fitAt(start.centre);
+  for (double step = (best.ball.radius + best.growth) / 4;
+       step > kFinestFit * (best.ball.radius + best.growth);) {
+    const Point centre = best.ball.centre;
+    bool better = false;
+    for (const Point& way : patternDirections()) {
+      const Point x = centre + step * way;
+      const Fit fit = fitAt(x);
+      if (!(fit.growth < best.growth - kWorthwhile * step) || !container.contains(x)) continue;
+      best = fit;
+      better = true;
+    }
+    if (!better) step /= 2;
+  }
+  return best;
+}
+
+/// Each point belongs to the ball that has to grow least for it.
+std::vector<std::vector<Point>> grouped(const std::vector<Ball>& balls, const std::vector<Point>& points) {
+  const SphereGrid grid(balls);
+  std::vector<std::uint32_t> nearest(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(),
+                    [&](std::size_t i) { nearest[i] = grid.nearestOfAll(points[i], 0.01).index; });
+  std::vector<std::vector<Point>> groups(balls.size());
+  for (std::size_t i = 0; i < points.size(); ++i) groups[nearest[i]].push_back(points[i]);
+  return groups;
+}
+
+/// Moves balls in the solid to where they have to grow least, and lets them grow.
+std::vector<Ball> tightened(const Container& container, std::vector<Ball> balls,
+                            const std::vector<Point>& points, const std::function<void(double)>& report) {
+  std::vector<Ball> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kSteps; ++step) {
+    report(static_cast<double>(step) / (2 * kSteps));
+    const std::vector<std::vector<Point>> groups = grouped(balls, points);
+    std::vector<double> growth(balls.size());
+    tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
+      const Fit fit = fitted(container, balls[i], groups[i]);
+      balls[i] = fit.ball;
+      growth[i] = std::max(0.0, fit.growth);
+    });
+    const double sum = std::accumulate(growth.begin(), growth.end(), 0.0);
+    if (!(sum < (1 - 1e-3) * least)) break;
+    least = sum;
+    best = balls;
+    for (std::size_t i = 0; i < balls.size(); ++i) best[i].radius += growth[i];
+  }
+  return best;
+}
+
+/// Proves cube by cube that balls hold a solid, once they have grown as much as it finds. They do not grow
+/// meanwhile: a ball that just grew would be next to grow, too, and go on across the solid.
+class Proof {
+ public:
+  Proof(const Container& container, double smallest, const std::vector<Ball>& balls)
+      : container_(container), smallest_(smallest), balls_(balls), growth_(balls.size()) {}
+
+  /// Returns by how much each ball has to grow.
+  const std::vector<double>& growth() const { return growth_; }
+
+  /// Looks at a cube. `near` are the balls that may have to grow least for a part of it.
+  void visit(const OctreeCube& cube, const std::vector<std::uint32_t>& near) {
+    double least = std::numeric_limits<double>::infinity();
+    std::uint32_t nearest = 0;
+    for (std::uint32_t i : near) {
+      const double growth = cube.farthest(balls_[i]);
+      if (growth < least) least = growth, nearest = i;
+    }
+    if (least <= 0) return;
+    const double reach = std::sqrt(3.0) * cube.half + container_.margin();
+    if (std::isinf(container_.closest(cube.centre, reach).distance) && !container_.contains(cube.centre))
+      return;
+    if (cube.half <= smallest_) {
+      growth_[nearest] = std::max(growth_[nearest], least);
+      return;
+    }
+    std::vector<std::uint32_t> rest;
+    for (std::uint32_t i : near) {
+      if (cube.nearest(balls_[i]) <= least) rest.push_back(i);
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      const Point way(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+      visit({cube.centre + cube.half / 2 * way, cube.half / 2}, rest);
+    }
+  }
+
+ private:
+  const Container& container_;
+  const double smallest_;
+  const std::vector<Ball>& balls_;
+  std::vector<double> growth_;
+};
+
+/// Measures the overhang at points of the balls that are in no other ball, by equal parts of the area.
+void addOverhang(const Container& container, const std::vector<Ball>& balls, Covering& covering) {
+  const double turn = std::numbers::pi * (1 + std::sqrt(5.0));
+  std::vector<double> sums(balls.size()), areas(balls.size()), most(balls.size());
+  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
+    const Ball& ball = balls[i];
+    const double area = ball.radius * ball.radius;
+    for (int k = 0; k < kOverhangPoints; ++k) {
+      const double z = 1 - (2 * k + 1.0) / kOverhangPoints, r = std::sqrt(1 - z * z);
+      const Point x =
+          ball.centre + ball.radius * Point(r * steady::cos(k * turn), r * steady::sin(k * turn), z);
+      const auto holds = [&](const Ball& other) { return &other != &ball && other.distance(x) < 0; };
+      if (std::any_of(balls.begin(), balls.end(), holds)) continue;
+      const double out = container.closest(x, std::numeric_limits<double>::infinity()).distance;
+      sums[i] += area * out;
+      areas[i] += area;
+      most[i] = std::max(most[i], out);
+    }
+  });
+  double sum = 0, area = 0;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    sum += sums[i];
+    area += areas[i];
+    covering.overhang_max = std::max(covering.overhang_max, container.side() * most[i]);
+  }
+  covering.overhang_mean = area > 0 ? container.side() * sum / area : 0;
+}
+
+}  // namespace
+
+Covering coverSolid(const Solid& solid, const Packing& packing, const CoverOptions& options,
+                    const Progress& progress) {
+  if (!(options.resolution >= 1e-4 && options.resolution <= 0.1))
+    throw Error(ErrorCode::bad_argument, "resolution must lie between 0.0001 and 0.1");
+  if (options.threads < 0) throw Error(ErrorCode::bad_argument, "threads must be 0 or more");
+  validate(packing);
+  const auto report = [&](double fraction) {
+    if (progress && !progress("covering", fraction))
+      throw Error(ErrorCode::cancelled, "covering '" + solid.name() + "' was cancelled");
+  };
+  const Container container(solid);
+  std::vector<Ball> balls;
+  for (const Sphere& s : packing.spheres)
+    balls.push_back(
+        {container.fromWorld(packing.origin + Vec3d{s.x, s.y, s.z}), s.radius / container.side()});
+  tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
+  arena.execute([&] {
+    const std::vector<Point> points = pointsOf(solid, container, balls.size());
+    balls = tightened(container, std::move(balls), points, report);
+  });
+
+  // Centres are rounded before the proof, radii are rounded up after it.
+  for (Ball& ball : balls) {
+    const double radius = ball.radius;
+    ball = container.rounded({ball.centre, 1});
+    ball.radius = radius;
+  }
+  std::vector<std::uint32_t> all(balls.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const double diagonal_length = diagonal(solid.bounds()) / container.side();
+  report(0.5);
+  Proof proof(container, options.resolution * diagonal_length / 2, balls);
+  proof.visit({Point::Constant(0.5), 0.5}, all);
+
+  Covering covering;
+  covering.origin = container.origin();
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    balls[i].radius += proof.growth()[i] + container.coarseness();
+    covering.spheres.push_back(container.toSphere(balls[i]));
+    float& radius = covering.spheres.back().radius;
+    radius = std::nextafter(radius, std::numeric_limits<float>::infinity());
+  }
+  report(0.9);
+  arena.execute([&] { addOverhang(container, balls, covering); });
+  covering.solid = solid.massProperties();
+  covering.solid.centre_of_mass = covering.solid.centre_of_mass - covering.origin;
+  covering.provenance = packing.provenance;
+  covering.provenance.options += " --cover";
+  report(1);
+  return covering;
+}
+
+Covering coverSurface(const Packing& packing, const CoverOptions& options, const Progress& progress) {
+  if (packing.surface.triangles.empty())
+    throw Error(ErrorCode::empty_input, "the packing has no surface that could be covered");
+  Mesh mesh;
+  for (const auto& v : packing.surface.vertices)
+    mesh.vertices.push_back(packing.origin + Vec3d{v[0], v[1], v[2]});
+  mesh.triangles = packing.surface.triangles;
+  MeshOptions repair;
+  repair.repair = true;  // single precision may have welded vertices
+  return coverSolid(*makeSolid(std::move(mesh), packing.provenance.source, repair), packing, options,
+                    progress);
+}
+
+}  // namespace innersphere
