@@ -54,7 +54,7 @@ class DeviceArray:
         self._pointer = ctypes.c_void_p()
         assert self._cuda.cudaMalloc(ctypes.byref(self._pointer), ctypes.c_size_t(max(self._host.nbytes, 1))) == 0
         self._copy(self._pointer, self._host.ctypes.data_as(ctypes.c_void_p), 1)
-        self.streams = []
+        self.streams, self._kept = [], []
 
     def __del__(self):
         self._cuda.cudaFree(self._pointer)
@@ -74,10 +74,11 @@ class DeviceArray:
         self.streams.append(stream)
         count, bits = self._host.ndim, 8 * self._host.itemsize
         shape = (ctypes.c_int64 * count)(*self._host.shape)
-        self._kept = _Tensor(self._pointer, CUDA, 0, count, FLOAT, bits, 1, shape, None, 0, None, None), shape
+        tensor = _Tensor(self._pointer, CUDA, 0, count, FLOAT, bits, 1, shape, None, 0, None, None)
+        self._kept.append((tensor, shape))  # who asked before may still read them
         new = ctypes.pythonapi.PyCapsule_New
         new.restype, new.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
-        return new(ctypes.addressof(self._kept[0]), b"dltensor", None)
+        return new(ctypes.addressof(tensor), b"dltensor", None)
 
 
 @pytest.fixture(scope="module")

@@ -42,7 +42,10 @@ def on_device(values: Any) -> Any:
         return None
     if hasattr(values, "detach"):
         values = values.detach()
-    return values.__dlpack__(stream=_DEFAULT_STREAM)
+    try:
+        return values.__dlpack__(stream=_DEFAULT_STREAM)
+    except BufferError:  # it is not handed out there: it is copied to the host
+        return None
 
 
 def as_indices(values: Any, name: str) -> NDArray[np.int64]:
