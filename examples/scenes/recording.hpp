@@ -19,6 +19,7 @@ struct StepRecord {
   double processor_time = 0;    ///< of the step, of all threads [s]: other programs do not add to it
   double kinetic = 0;           ///< [J]
   double potential = 0;         ///< [J], 0 at z = 0
+  int substeps = 1;             ///< of the solver
   Vec3d momentum{};             ///< [kg m/s]
   Vec3d angular_momentum{};     ///< [kg m^2/s] about the origin
   int contacts = 0;             ///< contact points that Bullet's solver gets
@@ -57,10 +58,11 @@ struct Recording {
   double deepestOverlap(double from = 0) const;
   /// Sum of all increments of the total energy from one step to the next [J]: energy from nowhere, unless
   /// springs give back what they took. Bullet moves bodies at the velocities that they have after a step, so
-  /// these belong to its middle, and are put together with the places there: free flight then keeps its
-  /// energy to rounding, and the error of a pendulum is of second order in the step. With the places after
-  /// the step a chain of Bullet's own joints, which swings like that of rings, would gain three times as
-  /// much, and a body that falls would lose m g^2 dt^2 / 2 a step.
+  /// these belong to its middle, and are put together with the places there; those of a solver with substeps
+  /// belong to the middle of the last one. Free flight then keeps its energy to rounding, and the error of a
+  /// pendulum is of second order in the step. With the places after the step a chain of Bullet's own joints,
+  /// which swings like that of rings, would gain three times as much, and a body that falls would lose
+  /// m g^2 dt^2 / 2 a step.
   double energyGained() const;
   /// The farthest that the centre of a body came from where it was at time `from` [m].
   double farthestFrom(std::size_t index, double from = 0) const;

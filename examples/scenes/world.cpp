@@ -204,6 +204,11 @@ void SceneWorld::step(double dt) {
     world_.stepSimulation(btScalar(dt), 0);
 }
 
+int SceneWorld::substeps() const {
+  const auto* solver = dynamic_cast<const SubstepSolver*>(solver_.get());
+  return solver != nullptr ? std::max(1, solver->substeps()) : 1;
+}
+
 void SceneWorld::addConstraint(std::unique_ptr<btTypedConstraint> constraint) {
   world_.addConstraint(constraint.get());
   constraints_.push_back(std::move(constraint));

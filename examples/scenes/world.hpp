@@ -82,6 +82,8 @@ class SceneWorld {
 
   /// One step [s], which is 1 / kPlainRate where the world is plain.
   void step(double dt);
+  /// The number of substeps of the last step; 1 with Bullet's solver.
+  int substeps() const;
 
   /// A box of Bullet's own. Mass 0 [kg]: it never moves.
   btRigidBody& addBox(const btVector3& half_size, double mass, const btTransform& place,

@@ -3,7 +3,7 @@
 #
 #   ./tests/benchmarks/run.sh substep [SCENES]     all of the list below if none is named
 #
-# prints a Markdown table: every truth, and what each solver shows of it at each step. Takes about a quarter of an hour on two cores.
+# prints a Markdown table: every truth, and what each solver shows of it at each step. Takes about half an hour on two cores.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tool=${TOOL:-$here/../../build-benchmarks/bin/innersphere}
@@ -12,7 +12,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 scenes=${*:-stack mass-ratios card-house chain-hang chain-swing chain-heavy rest drop bounce slide roll flip torsion cradle collisions
   tumble bowls soft nut nut-held gears peg maze chazelle pile arch arch-thin dominoes ring-peg half-pipe t-slot gripper gripper-motor
-  gear-box chain-rest}
+  gear-box chain-rest ring-cylinder carabiner half-pipe-mesh gear-plane gear-mesh drops mixed-pile scan-bin large-pile}
 declare -A arguments=()
 columns=
 for rate in 60 120 240; do

@@ -281,6 +281,33 @@ def test_arrays_in_a_row_are_read_in_place_to_the_same_bits(box):
         assert query.overlap(box, box, place_a, matrices[at]).tobytes() == in_row[at].tobytes()
 
 
+def test_results_into_an_array_of_the_users(box):
+    query = Query("cpu")
+    rng = np.random.default_rng(6)
+    positions = rng.uniform(-1, 1, (2, 5, 3))
+    turns = random_quaternions(rng, 2, 5)
+    for pose_a in (None, (np.zeros((5, 3)), [0, 0, 0, 1])):  # in place, and pose by pose
+        expected = query.overlap(box, box, pose_a, (positions, turns))
+        out = np.full((2, 5, 16), np.nan)
+        assert query.overlap(box, box, pose_a, (positions, turns), out=out) is out
+        assert out.tobytes() == expected.tobytes()
+        assert out.view(innersphere.overlap_dtype)[..., 0]["pair_count"].tolist() == expected["pair_count"].tolist()
+    single = np.zeros(16)
+    assert query.overlap(box, box, out=single)[0] == query.overlap(box, box)["volume"]
+    read_only = np.zeros((2, 5, 16))
+    read_only.flags.writeable = False
+    for wrong, error in (
+        (np.zeros((2, 5, 15)), ValueError),
+        (np.zeros((10, 16)), ValueError),
+        (np.zeros((2, 5, 16), np.float32), TypeError),
+        (np.zeros((2, 5, 32))[..., ::2], TypeError),
+        (read_only, TypeError),
+        ("out", TypeError),
+    ):
+        with pytest.raises(error, match="out must"):
+            query.overlap(box, box, None, (positions, turns), out=wrong)
+
+
 def test_not_packings(ball):
     with pytest.raises(TypeError):
         Query().overlap(ball, ball.spheres)
@@ -344,7 +371,7 @@ class OnlyDLPack:
     def __init__(self, array, device=(1, 0)):
         self._array, self._device = array, device
 
-    def __dlpack__(self, **options):
+    def __dlpack__(self, stream=None, **options):
         return self._array.__dlpack__(**options)
 
     def __dlpack_device__(self):
@@ -368,6 +395,9 @@ def test_arrays_of_other_libraries(box):
     for other in (OnlyDLPack(poses), OnDevice(poses, (2, 0))):
         np.testing.assert_array_equal(query.overlap(box, box, pose_b=other), expected)
     single = query.overlap(box, box, pose_b=OnlyDLPack(poses.astype(np.float32)))
+    if not innersphere.cuda_available():
+        with pytest.raises(innersphere.NoDeviceError, match="out"):
+            query.overlap(box, box, pose_b=poses, out=OnlyDLPack(np.zeros((2, 16)), (2, 0)))
     np.testing.assert_allclose(single["volume"], expected["volume"], rtol=1e-5)
 
 

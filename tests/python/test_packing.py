@@ -56,13 +56,13 @@ def test_views_share_memory_outlive_the_packing_and_cannot_be_written(tmp_path):
         views[0][0] = 0
 
 
-def test_slices_are_the_largest_spheres(box):
+def test_slices_are_the_first_spheres(box):
     coarse = box[:64]
     assert len(coarse) == 64
     np.testing.assert_array_equal(coarse.spheres, box.spheres[:64])
     radii = coarse.spheres[:, 3].astype(float)
     assert coarse.quality["density"] == pytest.approx((4 / 3 * np.pi * radii**3).sum() / 6)
-    assert np.isnan(coarse.quality["gap_max"]) and box.quality["gap_max"] > 0
+    assert np.isnan(box[:100].quality["gap_max"]) and coarse.quality["gap_max"] > box.quality["gap_max"] > 0
     assert coarse.volume == box.volume
     assert len(box[:]) == len(box[: 10**9]) == 300 and len(box[:-100]) == 200 and len(coarse[:10]) == 10
     for wrong in (slice(1, 10), slice(None, None, 2), slice(0, 0), slice(None, None, -1)):
@@ -81,6 +81,51 @@ def test_errors_of_overlaps_are_told(box):
         assert len(raw) == len(volume_true) == 4
         assert all(0 < v < r < 1 for v, r in zip(volume_true[1:], raw[1:]))
     assert [count for count, _, _ in packing[:200].overlap_errors] == [64, 128]
+
+
+def test_coverage_is_how_far_the_surface_is_from_the_first_spheres(box):
+    assert box.order == "radius"
+    assert box.coverage["count"].tolist() == [64, 128, 256, 300]
+    assert box[:200].coverage["count"].tolist() == [64, 128]
+    # Points spread evenly over the six sides of the box, beside all spheres.
+    rng = np.random.default_rng(3)
+    sides = rng.choice(6, 20000, p=np.array([6, 6, 3, 3, 2, 2]) / 22)
+    points = rng.uniform(size=(20000, 3)) * [1, 2, 3]
+    points[np.arange(20000), sides // 2] = np.where(sides % 2, np.array([1, 2, 3])[sides // 2], 0)
+    for row in box.coverage:
+        spheres = box.spheres[: row["count"]].astype(float)
+        distance = (np.linalg.norm(points[:, None] - spheres[None, :, :3], axis=2) - spheres[:, 3]).min(axis=1)
+        assert row["mean"] == pytest.approx(distance.mean(), rel=0.05)
+        assert row["p95"] == pytest.approx(np.quantile(distance, 0.95), rel=0.1)
+        assert 0.8 * distance.max() < row["max"] < 1.3 * distance.max()
+        assert row["uncovered"] == pytest.approx((distance > 0.01 * np.sqrt(14)).mean(), abs=0.03)
+        at = np.linalg.norm(row["farthest"] - spheres[:, :3], axis=1) - spheres[:, 3]
+        assert at.min() == pytest.approx(row["max"], rel=1e-3)
+    assert box.quality["gap_max"] == pytest.approx(box.coverage["max"][-1])
+    assert box[:128].quality["gap_p95"] == box.coverage["p95"][1]
+
+
+def test_packings_that_cover_first_survive_files_and_pickles(tmp_path):
+    def block_with_a_rod(p):
+        rod = np.maximum(np.hypot(p[:, 1], p[:, 2]) - 0.05, np.abs(p[:, 0] - 1.5) - 1.1)
+        return np.minimum(np.abs(p).max(axis=1) - 0.5, rod)
+
+    solid = innersphere.surface_of(block_with_a_rod, [-0.6, -0.6, -0.6], [2.7, 0.6, 0.6], cells=100)
+    largest, covering = (
+        innersphere.pack(solid, spheres=64, order=order, overlap_errors=False) for order in ("radius", "coverage")
+    )
+    assert largest.coverage["max"][-1] > 1 and covering.coverage["max"][-1] < 0.2  # the rod is 2.1 m long
+    assert covering.order == "coverage"
+    assert (np.diff(covering.spheres[:, 3]) > 0).any()
+    covering.save(tmp_path / "rod.cbor")
+    for again in (innersphere.read(tmp_path / "rod.cbor"), pickle.loads(pickle.dumps(covering))):
+        assert again.order == "coverage"
+        np.testing.assert_array_equal(again.coverage, covering.coverage)
+        np.testing.assert_array_equal(again.spheres, covering.spheres)
+
+
+def test_imported_spheres_have_no_coverage(ball):
+    assert len(ball.coverage) == 0 and ball.coverage.dtype == innersphere.coverage_dtype
 
 
 def test_paths_arrays_and_objects_give_the_same_packing(box, tmp_path):
@@ -164,7 +209,7 @@ def test_holes_are_closed_on_request():
     assert packing.warnings
 
 
-@pytest.mark.parametrize("options", [dict(spheres=-1), dict(delta=0.0), dict(density=2.0), dict(gap=np.nan), dict(threads=-1)])
+@pytest.mark.parametrize("options", [dict(spheres=-1), dict(delta=0.0), dict(density=2.0), dict(gap=np.nan), dict(threads=-1), dict(order='size')])
 def test_bad_options(options):
     with pytest.raises(innersphere.InvalidArgumentError, match=next(iter(options))):
         innersphere.pack((BOX_VERTICES, BOX_FACES), **options)

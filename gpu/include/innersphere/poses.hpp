@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+
+#include "innersphere/placement.hpp"
 
 namespace innersphere {
 
@@ -16,5 +19,9 @@ struct Poses {
   const double* positions = nullptr;    ///< count x 3 numbers [m].
   const double* quaternions = nullptr;  ///< count x 4 numbers: unit quaternions x y z w, to within 5e-5.
 };
+
+/// Returns where a pose brings a body, of poses in memory of the host. Returns nothing if the last row of its
+/// matrix is not 0 0 0 1. All else that a pose may have wrong is found by the query, which names it.
+std::optional<Placement> placementAt(const Poses& poses, std::size_t number);
 
 }  // namespace innersphere

@@ -119,7 +119,8 @@ class QueryContext {
   /// and translation of placement_b, to the bit. Scales, margin, prefixes and placement_a are those of
   /// `pair`. `overlaps` has room for poses.count of them. On a device the poses are prepared there, so that a
   /// sweep costs the host nothing for each pose; both arrays may then be in the memory of a device, or
-  /// pinned, and are used in place. Memory of the context stays bounded, however many poses there are.
+  /// pinned, and are used in place, after what the default stream of the device had to do when sweep() was
+  /// called. Memory of the context stays bounded, however many poses there are.
   /// Contacts and pairs are left out, even if they are wanted. Throws as run() does; the message names the
   /// first pose that is none. Then some overlaps are written, others not. With Estimator::surface the CPU
   /// prepares the poses, and the arrays must be in its memory.

@@ -17,28 +17,32 @@ INNERSPHERE_HD inline Mat3<double> matrixOf(const double* q) {
            2 * (x * z - y * w), 2 * (y * z + x * w), w * w - x * x - y * y + z * z}};
 }
 
-/// Returns the matrix of a pose as it was given.
-INNERSPHERE_HD inline Mat3<double> givenRotation(const Poses& poses, std::size_t number) {
-  if (!poses.matrices) return matrixOf(poses.quaternions + 4 * number);
+/// Reads a pose as it is, without a check of its rotation. Returns last_row or none.
+INNERSPHERE_HD inline Fault loadPose(const Poses& poses, std::size_t number, Mat3<double>& rotation,
+                                     Vec3d& translation) {
+  if (!poses.matrices) {
+    rotation = matrixOf(poses.quaternions + 4 * number);
+    for (int i = 0; i < 3; ++i) translation[i] = poses.positions[3 * number + i];
+    return Fault::none;
+  }
+  constexpr double kRounding = 1e-6;
   const double* m = poses.matrices + 16 * number;
-  return {{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) rotation.m[3 * i + j] = m[4 * i + j];
+    translation[i] = m[4 * i + 3];
+  }
+  const double off[] = {m[12], m[13], m[14], m[15] - 1};
+  for (const double x : off) {
+    if (!(fabs(x) <= kRounding)) return Fault::last_row;
+  }
+  return Fault::none;
 }
 
 /// Reads a pose, and makes its matrix a rotation.
 INNERSPHERE_HD inline Fault readPose(const Poses& poses, std::size_t number, Mat3<double>& rotation,
                                      Vec3d& translation) {
-  rotation = givenRotation(poses, number);
-  if (poses.matrices) {
-    constexpr double kRounding = 1e-6;
-    const double* m = poses.matrices + 16 * number;
-    for (int i = 0; i < 3; ++i) translation[i] = m[4 * i + 3];
-    const double off[] = {m[12], m[13], m[14], m[15] - 1};
-    for (const double x : off) {
-      if (!(fabs(x) <= kRounding)) return Fault::last_row;
-    }
-  } else {
-    for (int i = 0; i < 3; ++i) translation[i] = poses.positions[3 * number + i];
-  }
+  const Fault fault = loadPose(poses, number, rotation, translation);
+  if (fault != Fault::none) return fault;
   bool finite = true;
   for (const double x : rotation.m) finite = finite && fabs(x) < INFINITY;
   for (int i = 0; i < 3; ++i) finite = finite && fabs(translation[i]) < INFINITY;

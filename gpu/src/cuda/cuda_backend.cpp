@@ -74,6 +74,9 @@ class CudaBackend : public OneDevice {
     open();
     const CurrentDevice current(device_.number);
     discard();
+    // Who filled the caller's arrays may still be at it, in the default stream or in one that waits for it.
+    INNERSPHERE_CUDA(cudaEventRecord(filled_.get(), cudaStreamLegacy));
+    INNERSPHERE_CUDA(cudaStreamWaitEvent(device_.stream, filled_.get()));
     poses = std::min(poses, BatchPart::mostPoses(sweep));
     kernel_time_ = 0;
     SweepFault fault;
@@ -197,6 +200,7 @@ class CudaBackend : public OneDevice {
 
   Workers& workers_;
   device::Device device_;
+  Event filled_;  ///< since which a sweep's arrays hold what they should
   std::array<BatchPart, 2> parts_;
   std::span<const PreparedQuery> queries_;
   Want want_ = Want::wrench;

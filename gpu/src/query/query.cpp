@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -182,7 +183,7 @@ struct QueryContext::Impl {
             core::readPose(poses, first + i, rotation, queries[i].placement_b.translation);
         if (fault != core::Fault::none) failFor(fault, first + i, "B");
         // As it was given: the query makes it orthonormal, once.
-        rotation = core::givenRotation(poses, first + i);
+        core::loadPose(poses, first + i, rotation, queries[i].placement_b.translation);
         std::copy(std::begin(rotation.m), std::end(rotation.m), queries[i].placement_b.rotation.begin());
       }
       start(queries.data(), queries.size(), sums_only);
@@ -225,6 +226,14 @@ struct QueryContext::Impl {
   SurfaceQueries for_surfaces;
   QueryResult single;
 };
+
+std::optional<Placement> placementAt(const Poses& poses, std::size_t number) {
+  core::Mat3<double> rotation;
+  Placement place;
+  if (core::loadPose(poses, number, rotation, place.translation) != core::Fault::none) return std::nullopt;
+  std::copy(std::begin(rotation.m), std::end(rotation.m), place.rotation.begin());
+  return place;
+}
 
 int cudaDeviceCount() {
   return cudaDevices();

@@ -16,6 +16,7 @@ from ._core import (
     Query,
     __version__,
     cuda_available,
+    coverage_dtype,
     cuda_device_count,
     overlap_dtype,
     pair_dtype,
@@ -33,6 +34,7 @@ from ._errors import (
     FileThereError,
     FormatError,
     InvalidArgumentError,
+    MissingLibraryError,
     NoDeviceError,
     NoSphereFitsError,
     NotASolidError,
@@ -41,6 +43,7 @@ from ._errors import (
     UnsupportedVersionError,
     WriteError,
 )
+from ._exact import exact_dtype, exact_overlap
 from ._pack import pack, read
 from ._poses import random_poses
 from ._progress import ProgressBar
@@ -56,6 +59,7 @@ __all__ = [
     "FileThereError",
     "FormatError",
     "InvalidArgumentError",
+    "MissingLibraryError",
     "NoDeviceError",
     "NoSphereFitsError",
     "NotASolidError",
@@ -67,8 +71,11 @@ __all__ = [
     "UnsupportedVersionError",
     "WriteError",
     "__version__",
+    "coverage_dtype",
     "cuda_available",
     "cuda_device_count",
+    "exact_dtype",
+    "exact_overlap",
     "overlap_dtype",
     "pack",
     "pair_dtype",

@@ -7,6 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+_CPU, _CUDA, _PINNED = 1, 2, 3  # devices of DLPack
+_DEFAULT_STREAM = 1
+
 
 def as_float64(values: Any, name: str) -> NDArray[np.float64]:
     """Makes an array of doubles, also of what lies on a device. Raises TypeError for anything but real numbers."""
@@ -23,13 +26,26 @@ def _on_host(values: Any) -> Any:
     """Copies tensors of torch, cupy and others with DLPack from their device, without what is kept for gradients."""
     if hasattr(values, "detach"):
         values = values.detach()
-    cpu, pinned = 1, 3  # of DLPack
-    if not hasattr(values, "__dlpack_device__") or values.__dlpack_device__()[0] in (cpu, pinned):
+    if not hasattr(values, "__dlpack_device__") or values.__dlpack_device__()[0] in (_CPU, _PINNED):
         return np.from_dlpack(values) if hasattr(values, "__dlpack__") and not hasattr(values, "__array__") else values
     for copy in ("cpu", "get"):  # of torch and jax, of cupy
         if hasattr(values, copy):
             return _on_host(getattr(values, copy)())
     return np.from_dlpack(values, device="cpu")  # numpy 2.1
+
+
+def on_device(values: Any) -> Any:
+    """Returns a capsule of DLPack of what is on a CUDA device, without a copy; None for all else.
+
+    Its numbers are there when the device's default stream has done what it has to do."""
+    if not hasattr(values, "__dlpack_device__") or values.__dlpack_device__()[0] != _CUDA:
+        return None
+    if hasattr(values, "detach"):
+        values = values.detach()
+    try:
+        return values.__dlpack__(stream=_DEFAULT_STREAM)
+    except BufferError:  # it is not handed out there: it is copied to the host
+        return None
 
 
 def as_indices(values: Any, name: str) -> NDArray[np.int64]:

@@ -92,6 +92,12 @@ class DeviceMemoryError(DeviceError, MemoryError):
     code = "device_out_of_memory"
 
 
+class MissingLibraryError(Error, ImportError):
+    """A library that this call needs is not installed; the message has the command that installs it."""
+
+    code = "missing_library"
+
+
 class SweepError(Error, RuntimeError):
     """A block of a sweep failed; the message names its rows, and the cause is what its function raised."""
 

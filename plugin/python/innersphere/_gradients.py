@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ._arrays import as_float64
 from ._core import Packing, Query
+from ._poses import parts_of_pose, turned
 
 Array = NDArray[np.float64]
 
@@ -23,7 +24,7 @@ def value_and_gradients(
     nothing. what: "energy" has force and torque for its gradient; "volume" has the area.
     """
     got = np.asarray(query.overlap(a, b, pose_a, pose_b, **options))
-    (place_a, turn_a), (place_b, _) = _parts(pose_a), _parts(pose_b)
+    (place_a, turn_a), (place_b, _) = parts_of_pose(pose_a, "pose_a"), parts_of_pose(pose_b, "pose_b")
     arm = np.broadcast_to(place_b - place_a, (*got.shape, 3))
     if what == "energy":
         force, torque = got["force"], got["torque"]
@@ -33,25 +34,6 @@ def value_and_gradients(
     # Both bodies together can be moved and turned without any change.
     of_a = _by_pose(pose_a, -force, -(torque + np.cross(arm, force)))
     return got[what], of_a + _by_pose(pose_b, force, torque)
-
-
-def _parts(pose: Any) -> tuple[Array, Array]:
-    """Translation and rotation matrix."""
-    if pose is None:
-        return np.zeros(3), np.eye(3)
-    if not isinstance(pose, tuple):
-        matrix = as_float64(pose, "pose")
-        return matrix[..., :3, 3], matrix[..., :3, :3]
-    q = as_float64(pose[1], "quaternion")
-    # Column k is what becomes of axis k.
-    columns = [_turned(q, np.eye(3)[k]) for k in range(3)]
-    return as_float64(pose[0], "position"), np.stack(columns, axis=-1)
-
-
-def _turned(q: Array, v: Array) -> Array:
-    u, w = q[..., :3], q[..., 3:]
-    turned: Array = (w * w - (u * u).sum(-1, keepdims=True)) * v + 2 * ((u @ v)[..., None] * u + w * np.cross(u, v))
-    return turned
 
 
 def _torque_of_area(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -22,6 +22,7 @@ def pack(
     min_radius: float = 0.0,
     density: float = 0.0,
     gap: float = 0.0,
+    order: Literal["radius", "coverage"] = "radius",
     delta: float = 0.1,
     overlap_errors: bool = True,
     threads: int = 0,
@@ -43,6 +44,9 @@ def pack(
     density: fraction of the solid that is filled, 0 to 1.
     gap: largest distance of a point of the surface from a sphere [m].
 
+    order: what the first spheres are chosen for. "radius": the largest come first, and fill most. "coverage": after a few
+        of the largest, spheres come first where the surface is farthest from all before, so that few spheres are in all thin
+        walls and slender parts.
     delta: each sphere has at least 1/(1+delta) of the largest possible radius, 0.001 to 1. Less is denser and slower.
     overlap_errors: whether to measure how far volumes of overlaps are off, which takes half of the time.
     threads: 0 are all cores. The result does not depend on it.
@@ -59,11 +63,8 @@ def pack(
     NoSphereFitsError, FileMissingError, FormatError, CancelledError.
     """
     if isinstance(mesh, (str, os.PathLike)):
-        path = os.fspath(mesh)
-        triangles = _core.read_mesh(path, scale)
-        name = path if name is None else name
-    else:
-        triangles = _triangles(mesh, scale)
+        name = os.fspath(mesh) if name is None else name
+    triangles = triangles_of(mesh, scale)
     bar = ProgressBar() if progress is True else None
     callback = bar if progress is True else None if progress is False or progress is None else progress
     if callback is not None and not callable(callback):
@@ -76,6 +77,7 @@ def pack(
             min_radius,
             density,
             gap,
+            order,
             delta,
             overlap_errors,
             threads,
@@ -96,7 +98,10 @@ def read(path: str | os.PathLike[str]) -> _core.Packing:
     return _core.read(path)
 
 
-def _triangles(mesh: Any, scale: float) -> _core.Mesh:
+def triangles_of(mesh: Any, scale: float) -> _core.Mesh:
+    """Makes the triangles of a mesh that is given as pack() takes it."""
+    if isinstance(mesh, (str, os.PathLike)):
+        return _core.read_mesh(os.fspath(mesh), scale)
     if isinstance(mesh, (tuple, list)):
         if len(mesh) != 2:
             raise ValueError(f"mesh has {len(mesh)} parts; it must be vertices and faces")

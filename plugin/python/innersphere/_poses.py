@@ -1,4 +1,4 @@
-"""Poses for sweeps."""
+"""Poses: random ones for sweeps, and their parts."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._arrays import as_float64
 from ._errors import InvalidArgumentError
 
 _STEPS = 2  # of Philox's counter for a pose; each gives four numbers
@@ -32,3 +33,34 @@ def random_poses(
     # K. Shoemake, Uniform random rotations, Graphics Gems III, 1992
     r1, r2, a, b = np.sqrt(1 - u[:, 3]), np.sqrt(u[:, 3]), 2 * np.pi * u[:, 4], 2 * np.pi * u[:, 5]
     return low + (high - low) * u[:, :3], np.stack([r1 * np.sin(a), r1 * np.cos(a), r2 * np.sin(b), r2 * np.cos(b)], 1)
+
+
+def parts_of_pose(pose: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Translation (..., 3) and rotation matrix (..., 3, 3) of a pose, as Query.overlap() takes it.
+
+    Raises TypeError and ValueError for arrays of the wrong type or shape."""
+    if pose is None:
+        return np.zeros(3), np.eye(3)
+    if not isinstance(pose, tuple):
+        matrix = _shaped(pose, (4, 4), name)
+        return matrix[..., :3, 3], matrix[..., :3, :3]
+    if len(pose) != 2:
+        raise ValueError(f"{name} is a tuple of {len(pose)}; a tuple holds positions and quaternions")
+    q = _shaped(pose[1], (4,), f"the quaternion of {name}")
+    # Column k is what becomes of axis k.
+    columns = [turned(q, np.eye(3)[k]) for k in range(3)]
+    return _shaped(pose[0], (3,), f"the position of {name}"), np.stack(columns, axis=-1)
+
+
+def _shaped(values: Any, inner: tuple[int, ...], name: str) -> NDArray[np.float64]:
+    array = as_float64(values, name)
+    if array.shape[-len(inner) :] != inner:
+        raise ValueError(f"{name} has the shape {array.shape}; it must be (..., {', '.join(map(str, inner))})")
+    return array
+
+
+def turned(q: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turns a vector by unit quaternions x y z w."""
+    u, w = q[..., :3], q[..., 3:]
+    along: NDArray[np.float64] = (w * w - (u * u).sum(-1, keepdims=True)) * v
+    return along + 2 * ((u @ v)[..., None] * u + w * np.cross(u, v))

@@ -15,7 +15,7 @@ namespace innersphere::python {
 
 namespace nb = nanobind;
 
-/// Is `Packing` in Python: the largest `count` spheres of a packing that is ready for queries. Slices share
+/// Is `Packing` in Python: the first `count` spheres of a packing that is ready for queries. Slices share
 /// the model, and with it the grids that queries have built.
 struct SharedPacking {
   std::shared_ptr<const CollisionModel> model;

@@ -2,6 +2,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <mutex>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "bindings.hpp"
 #include "innersphere/query.hpp"
 #include "poses.hpp"
+#include "structured.hpp"
 
 namespace innersphere::python {
 namespace {
@@ -32,34 +34,6 @@ struct Types {
 };
 Types types;
 
-/// A dtype with the fields of a struct: name, type, offset.
-nb::object structuredType(std::size_t size,
-                          std::initializer_list<std::tuple<const char*, const char*, std::size_t>> fields) {
-  nb::list names, formats, offsets;
-  for (const auto& [name, format, offset] : fields) {
-    names.append(name);
-    formats.append(format);
-    offsets.append(offset);
-  }
-  nb::dict all;
-  all["names"] = names;
-  all["formats"] = formats;
-  all["offsets"] = offsets;
-  all["itemsize"] = size;
-  return nb::module_::import_("numpy").attr("dtype")(all);
-}
-
-/// Gives a vector to numpy, without a copy, as a structured array of one dimension.
-template <typename T>
-nb::object structuredArray(std::vector<T>&& items, nb::handle type) {
-  if (items.empty()) return nb::module_::import_("numpy").attr("empty")(0, type);
-  auto* kept = new std::vector<T>(std::move(items));
-  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-  const nb::object bytes = nb::cast(nb::ndarray<nb::numpy, std::uint8_t>(
-      reinterpret_cast<std::uint8_t*>(kept->data()), {kept->size() * sizeof(T)}, owner));
-  return bytes.attr("view")(type);
-}
-
 /// Items of all queries, and where those of each begin.
 template <typename T>
 nb::tuple ranges(QueryResult::Ranges<T>&& found, nb::handle type) {
@@ -74,14 +48,18 @@ nb::tuple ranges(QueryResult::Ranges<T>&& found, nb::handle type) {
 class Query {
  public:
   Query(const std::string& backend, int threads, std::variant<std::monostate, int, std::string> device)
-      : context_(QueryContextOptions{parseWord("backend", backend, kBackends), threads, false,
-                                     deviceOf(device)}) {}
+      : Query({parseWord("backend", backend, kBackends), threads, false, deviceOf(device)}) {}
 
   nb::object overlap(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b,
-                     const std::string& want, const std::string& estimator, double margin) {
-    const Batch batch(a, b, pose_a, pose_b, margin);
+                     const std::string& want, const std::string& estimator, double margin, nb::object out) {
     const QueryOptions options{parseWord("want", want, kWants),
                                parseWord("estimator", estimator, kEstimators)};
+    const bool on_host = on_host_ || options.estimator == Estimator::surface;
+    const Batch batch(a, b, pose_a, pose_b, margin, on_host ? Where::host : Where::anywhere);
+    if (!out.is_none()) {
+      write(batch, options, out);
+      return out;
+    }
     std::vector<Overlap> overlaps = batch.isSweep() ? sweep(batch, options) : run(batch, options).overlaps;
     const nb::object array = structuredArray(std::move(overlaps), types.overlap);
     if (batch.shape.empty()) return array[0];
@@ -113,6 +91,9 @@ class Query {
   }
 
  private:
+  explicit Query(const QueryContextOptions& options)
+      : context_(options), on_host_(options.backend == Backend::cpu) {}
+
   struct Batch {
     const SharedPacking& a;
     const SharedPacking& b;
@@ -123,8 +104,14 @@ class Query {
     std::size_t count = 1;
     bool a_stands = false;  ///< in one pose
 
-    Batch(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b, double margin)
-        : a(a), b(b), poses_a(pose_a, "pose_a"), poses_b(pose_b, "pose_b"), margin(margin) {
+    /// `where`: of arrays that a device may read in place, if it can.
+    Batch(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b, double margin,
+          Where where = Where::host)
+        : a(a),
+          b(b),
+          poses_a(pose_a, "pose_a"),
+          poses_b(pose_b, "pose_b", poses_a.isSingle() && inFramesOfSolids() ? where : Where::host),
+          margin(margin) {
       shape = commonShape(poses_a.shape(), poses_b.shape(), "pose_a and pose_b");
       a_stands = poses_a.isSingle();
       poses_a.broadcast(shape);
@@ -134,9 +121,10 @@ class Query {
 
     /// Whether the arrays can be read as they are: A stands still, and no frame differs from its solid's.
     bool isSweep() const {
-      return a_stands && !shape.empty() && a.packing().origin == Vec3d{} && b.packing().origin == Vec3d{} &&
-             poses_b.inPlace().count > 0;
+      return a_stands && !shape.empty() && inFramesOfSolids() && poses_b.inPlace().count > 0;
     }
+
+    bool inFramesOfSolids() const { return a.packing().origin == Vec3d{} && b.packing().origin == Vec3d{}; }
   };
 
   static int deviceOf(const std::variant<std::monostate, int, std::string>& device) {
@@ -161,13 +149,41 @@ class Query {
   }
 
   std::vector<Overlap> sweep(const Batch& batch, const QueryOptions& options) {
+    std::vector<Overlap> overlaps(batch.count);
+    sweep(batch, options, overlaps.data());
+    return overlaps;
+  }
+
+  void sweep(const Batch& batch, const QueryOptions& options, Overlap* overlaps) {
     const nb::gil_scoped_release release;
     const std::lock_guard lock(mutex_);
     PairQuery pair = pairOf(batch);
     batch.poses_a.forEach(1, [&](std::size_t, const Placement& pose) { pair.placement_a = pose; });
-    std::vector<Overlap> overlaps(batch.count);
-    context_.sweep(pair, batch.poses_b.inPlace(), options, overlaps.data());
-    return overlaps;
+    context_.sweep(pair, batch.poses_b.inPlace(), options, overlaps);
+  }
+
+  /// Writes results into an array of the user's.
+  void write(const Batch& batch, const QueryOptions& options, nb::handle out) {
+    nb::ndarray<double, nb::c_contig> array;
+    const nb::object on_device = nb::module_::import_("innersphere._arrays").attr("on_device")(out);
+    if (!on_device.is_none() && !cudaAvailable())
+      throw Error(ErrorCode::no_device, "out is on a CUDA device, which innersphere cannot use");
+    if (!nb::try_cast(on_device.is_none() ? out : nb::handle(on_device), array, false))
+      throw nb::type_error("out must be an array of float64 in C's order that can be written to");
+    std::vector<std::size_t> shape = batch.shape;
+    shape.push_back(kColumns);
+    bool fits = array.ndim() == shape.size();
+    for (std::size_t k = 0; fits && k < shape.size(); ++k) fits = array.shape(k) == shape[k];
+    if (!fits) throw nb::value_error("out must have the shape of the poses, and 16 columns");
+    auto* overlaps = reinterpret_cast<Overlap*>(array.data());
+    if (batch.isSweep()) return sweep(batch, options, overlaps);
+    if (!on_device.is_none()) {
+      throw Error(ErrorCode::bad_argument,
+                  "out is on a device: pose_a must then be a single pose, and pose_b one array of float64 in "
+                  "C's order, of solids that are less than eight of their sizes from their origins");
+    }
+    const std::vector<Overlap> found = run(batch, options).overlaps;
+    std::copy(found.begin(), found.end(), overlaps);
   }
 
   QueryResult run(const Batch& batch, const QueryOptions& options) {
@@ -216,25 +232,24 @@ class Query {
     }
   }
 
+  static constexpr std::size_t kColumns = 16;  ///< of `out`
+  static_assert(sizeof(Overlap) == kColumns * sizeof(double));
+
   std::mutex mutex_;
   QueryContext context_;
+  bool on_host_ = false;  ///< always
   std::vector<PairQuery> queries_;
 };
 
 nb::object overlapType() {
-  const auto at = [](const auto Overlap::*member) {
-    static const Overlap one;
-    return static_cast<std::size_t>(reinterpret_cast<const char*>(&(one.*member)) -
-                                    reinterpret_cast<const char*>(&one));
-  };
-  return structuredType(sizeof(Overlap), {{"volume", "<f8", at(&Overlap::volume)},
-                                          {"centroid", "(3,)<f8", at(&Overlap::centroid)},
-                                          {"force", "(3,)<f8", at(&Overlap::force)},
-                                          {"torque", "(3,)<f8", at(&Overlap::torque)},
-                                          {"area", "(3,)<f8", at(&Overlap::area)},
-                                          {"stiffness", "<f8", at(&Overlap::stiffness)},
-                                          {"energy", "<f8", at(&Overlap::energy)},
-                                          {"pair_count", "<u8", at(&Overlap::pair_count)}});
+  return structuredType(sizeof(Overlap), {{"volume", "<f8", offsetIn(&Overlap::volume)},
+                                          {"centroid", "(3,)<f8", offsetIn(&Overlap::centroid)},
+                                          {"force", "(3,)<f8", offsetIn(&Overlap::force)},
+                                          {"torque", "(3,)<f8", offsetIn(&Overlap::torque)},
+                                          {"area", "(3,)<f8", offsetIn(&Overlap::area)},
+                                          {"stiffness", "<f8", offsetIn(&Overlap::stiffness)},
+                                          {"energy", "<f8", offsetIn(&Overlap::energy)},
+                                          {"pair_count", "<u8", offsetIn(&Overlap::pair_count)}});
 }
 
 }  // namespace
@@ -272,13 +287,14 @@ The GIL is free while a query runs. One object runs one query at a time: give ea
                    "= 0, device: int | typing.Literal['all'] | None = None) -> None"))
       .def("overlap", &Query::overlap, "a"_a, "b"_a, "pose_a"_a.none() = nb::none(),
            "pose_b"_a.none() = nb::none(), nb::kw_only(), "want"_a = "wrench", "estimator"_a = "volume_true",
-           "margin"_a = 0.0,
+           "margin"_a = 0.0, "out"_a.none() = nb::none(),
            nb::sig("def overlap(self, a: Packing, b: Packing, pose_a: numpy.typing.ArrayLike | "
                    "tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None, pose_b: "
                    "numpy.typing.ArrayLike | tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = "
                    "None, *, want: typing.Literal['touch', 'volume', 'wrench'] = 'wrench', estimator: "
-                   "typing.Literal['volume_true', 'raw', 'surface'] = 'volume_true', margin: float = 0.0) -> "
-                   "typing.Any"),
+                   "typing.Literal['volume_true', 'raw', 'surface'] = 'volume_true', margin: float = 0.0, "
+                   "out: typing.Any "
+                   "= None) -> typing.Any"),
            R"(Overlaps of two packings in one pose or in many.
 
 a, b: packings, or slices of them: packing[:256].
@@ -291,6 +307,12 @@ estimator: "volume_true" (radii whose volumes sum to the solid's), "raw" (those 
     "surface" (the triangles that both packings carry: exact, but slower, and without a margin; spheres give only
     pair_count and "touch").
 margin: distance up to which spheres count as overlapping [m], at least 0. All spheres of A grow by it.
+out: None, or an array of float64 in C's order of the shape of the poses and 16 columns, which is written to and returned:
+    the fields below, one after the other, in the last column the bits of pair_count. It may be on a CUDA device
+    (torch, cupy, by DLPack): then nothing is copied to the host. If a pose is refused, some rows are written.
+
+Poses of B on a CUDA device are read in place where A has a single pose, and where they are float64 in C's order, with any
+backend but "cpu" and any estimator but "surface"; others are copied to the host. What was enqueued before is waited for.
 
 Returns a structured array of the shape of the poses; for a single pose one element of it. Vectors have the axes of the
 world. The fields, all float64 but the last:

@@ -19,6 +19,7 @@
 #include "innersphere/pack_mesh.hpp"
 #include "innersphere/packing_file.hpp"
 #include "innersphere/solids.hpp"
+#include "structured.hpp"
 
 namespace innersphere::python {
 namespace {
@@ -26,6 +27,11 @@ namespace {
 using namespace nb::literals;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+constexpr std::pair<const char*, SphereOrder> kOrders[] = {{"radius", SphereOrder::radius},
+                                                           {"coverage", SphereOrder::coverage}};
+
+PyObject* coverage_type = nullptr;  // it lives as long as the module
 
 SharedPacking share(Packing&& packing) {
   const auto count = static_cast<std::uint32_t>(packing.spheres.size());
@@ -74,9 +80,9 @@ Mesh meshOf(const Vertices& vertices, const Faces& faces) {
   return meshFrom(vertices.data(), vertices.shape(0), faces.data(), faces.shape(0));
 }
 
-/// Vertices and faces of a named solid.
-nb::tuple surfaceOfSolid(const std::string& name) {
-  const Mesh mesh = makeNamedSolid(name)->surface();
+/// Vertices and faces of a solid.
+nb::tuple surfaceOf(const Solid& solid) {
+  const Mesh mesh = solid.surface();
   auto* vertices = new std::vector<Vec3d>(mesh.vertices);
   auto* faces = new std::vector<std::array<std::uint32_t, 3>>(mesh.triangles.begin(), mesh.triangles.end());
   const nb::capsule vertex_owner(vertices,
@@ -88,6 +94,15 @@ nb::tuple surfaceOfSolid(const std::string& name) {
       nb::ndarray<nb::numpy, double>(reinterpret_cast<double*>(vertices->data()), {vertices->size(), 3},
                                      vertex_owner),
       nb::ndarray<nb::numpy, std::uint32_t>(faces->data()->data(), {faces->size(), 3}, face_owner));
+}
+
+/// Vertices and faces of a mesh after it was judged and mended as for packing.
+nb::tuple surfaceOfMesh(const Mesh& mesh, const std::string& name) {
+  const std::unique_ptr<Solid> solid = [&] {
+    const nb::gil_scoped_release release;
+    return makeSolid(mesh, name);
+  }();
+  return surfaceOf(*solid);
 }
 
 Mesh readScaledMesh(const std::filesystem::path& path, double scale) {
@@ -105,13 +120,15 @@ std::size_t natural(const char* name, std::int64_t value) {
 }
 
 SharedPacking packWith(const Mesh& mesh, const std::string& name, std::int64_t spheres, double min_radius,
-                       double density, double gap, double delta, bool overlap_errors, int threads,
-                       bool repair, const std::filesystem::path& cache, nb::object progress) {
+                       double density, double gap, const std::string& order, double delta,
+                       bool overlap_errors, int threads, bool repair, const std::filesystem::path& cache,
+                       nb::object progress) {
   PackMeshOptions options;
   options.pack.spheres = natural("spheres", spheres);
   options.pack.min_radius = min_radius;
   options.pack.density = density;
   options.pack.gap = gap;
+  options.pack.order = parseWord("order", order, kOrders);
   options.pack.delta = delta;
   options.pack.overlap_errors = overlap_errors;
   options.pack.threads = threads;
@@ -188,7 +205,7 @@ SharedPacking slice(const SharedPacking& self, nb::handle index) {
   if (PySlice_Unpack(index.ptr(), &start, &stop, &step) != 0) throw nb::python_error();
   const Py_ssize_t count = PySlice_AdjustIndices(self.count, &start, &stop, step);
   if (start != 0 || step != 1 || count == 0)
-    throw nb::value_error("a slice of a packing is its largest spheres: [:n], with at least one of them");
+    throw nb::value_error("a slice of a packing is its first spheres: [:n], with at least one of them");
   return {self.model, static_cast<std::uint32_t>(count)};
 }
 
@@ -209,15 +226,28 @@ double densityOf(const SharedPacking& self) {
 nb::dict qualityOf(const SharedPacking& self) {
   const Quality& quality = self.packing().quality;
   const Certificate& certificate = self.packing().certificate;
+  const Coverage* coverage = coverageOf(self.packing(), self.count);
+  const auto gap = [&](double of_whole, double Coverage::*of_slice) {
+    if (self.whole()) return of_whole;
+    return coverage != nullptr && coverage->count == self.count ? coverage->*of_slice : kUnknown;
+  };
   const auto of_whole = [&](double value) { return self.whole() ? value : kUnknown; };
   nb::dict result;
   result["density"] = densityOf(self);
-  result["gap_mean"] = of_whole(quality.gap_mean);
-  result["gap_p95"] = of_whole(quality.gap_p95);
-  result["gap_max"] = of_whole(quality.gap_max);
+  result["gap_mean"] = gap(quality.gap_mean, &Coverage::mean);
+  result["gap_p95"] = gap(quality.gap_p95, &Coverage::p95);
+  result["gap_max"] = gap(quality.gap_max, &Coverage::max);
   result["largest_missing_radius"] =
       of_whole(certificate.delta > 0 ? certificate.largest_missing_radius : kUnknown);
   return result;
+}
+
+nb::object coverageRows(const SharedPacking& self) {
+  std::vector<Coverage> rows;
+  for (const Coverage& one : self.packing().coverage) {
+    if (one.count <= self.count) rows.push_back(one);
+  }
+  return structuredArray(std::move(rows), coverage_type);
 }
 
 nb::tuple overlapErrorsOf(const SharedPacking& self) {
@@ -267,12 +297,23 @@ void restore(SharedPacking& self, const std::pair<nb::bytes, std::uint32_t>& sta
 }  // namespace
 
 void bindPacking(nb::module_& module) {
-  nb::class_<SharedPacking>(module, "Packing", R"(Spheres inside a solid that do not overlap, largest first.
+  nb::object coverage =
+      structuredType(sizeof(Coverage), {{"count", "<u4", offsetIn(&Coverage::count)},
+                                        {"mean", "<f8", offsetIn(&Coverage::mean)},
+                                        {"p95", "<f8", offsetIn(&Coverage::p95)},
+                                        {"max", "<f8", offsetIn(&Coverage::max)},
+                                        {"farthest", "(3,)<f8", offsetIn(&Coverage::farthest)},
+                                        {"uncovered", "<f8", offsetIn(&Coverage::uncovered)}});
+  module.attr("coverage_dtype") = coverage;
+  coverage_type = coverage.release().ptr();
+
+  nb::class_<SharedPacking>(module, "Packing",
+                            R"(Spheres inside a solid that do not overlap, the most important first.
 
 Made by pack() or read(). It never changes, and can be shared by threads and pickled. All places are in the
 packing's own frame: x_solid = origin + x. Lengths are in metres.
 
-``packing[:n]`` are the n largest spheres: a coarser packing of the same solid. It shares memory with the whole.)")
+``packing[:n]`` are the first n spheres: a coarser packing of the same solid. It shares memory with the whole.)")
       .def_prop_ro(
           "spheres",
           [](nb::handle_t<SharedPacking> self) {
@@ -322,8 +363,27 @@ packing's own frame: x_solid = origin + x. Lengths are in metres.
           nb::sig("def inertia(self) -> numpy.typing.NDArray[numpy.float64]"),
           "Inertia about the centre of mass for unit density, along the axes of the solid [m^5]: (3, 3) "
           "float64. Times the density [kg/m^3] it is in kg m^2.")
-      .def_prop_ro("quality", &qualityOf, nb::sig("def quality(self) -> dict[str, float]"),
-                   R"(How well the spheres fill the solid. nan where that is unknown, as gaps of a slice are.
+      .def_prop_ro(
+          "order",
+          [](const SharedPacking& p) {
+            return p.packing().order == SphereOrder::coverage ? "coverage" : "radius";
+          },
+          nb::sig("def order(self) -> typing.Literal['radius', 'coverage']"),
+          "What the first spheres are chosen for: \"radius\" (the largest first) or \"coverage\", see "
+          "pack().")
+      .def_prop_ro(
+          "coverage", &coverageRows, nb::sig("def coverage(self) -> numpy.typing.NDArray[typing.Any]"),
+          R"(How near the first spheres come to the surface: a structured array, a row for 64, 128, ... spheres.
+
+count      of spheres, uint32; the others are float64
+mean, p95, max  distance from the surface to the nearest of them [m]: mean, 95th percentile, largest
+farthest   where it is largest, in the packing's frame [m]
+uncovered  part of the surface, 0 to 1, that is farther from them than a hundredth of the diagonal
+
+What is far from all spheres is not felt by other packings. Empty if the surface is unknown.)")
+      .def_prop_ro(
+          "quality", &qualityOf, nb::sig("def quality(self) -> dict[str, float]"),
+          R"(How well the spheres fill the solid. nan where that is unknown, as gaps of a slice are whose length is not in coverage.
 
 density: volume of the spheres over that of the solid, 0 to 1.
 gap_mean, gap_p95, gap_max: distance from the surface to the nearest sphere [m]: mean, 95th percentile, largest.
@@ -348,7 +408,7 @@ The file appears under its name only when it is complete. Raises FileExistsError
 WriteError, and InvalidArgumentError for another ending or a slice.)")
       .def("__len__", [](const SharedPacking& p) { return p.count; })
       .def("__getitem__", &slice, nb::sig("def __getitem__(self, index: slice) -> Packing"),
-           "The n largest spheres, as a packing: packing[:n]. Raises ValueError for any other slice.")
+           "The first n spheres, as a packing: packing[:n]. Raises ValueError for any other slice.")
       .def("__repr__", &describe)
       .def(
           "__copy__", [](nb::object self) { return self; }, nb::sig("def __copy__(self) -> Packing"))
@@ -361,7 +421,7 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
   nb::class_<Mesh>(module, "Mesh", "Triangles that pack() takes.");
   module.def("read_mesh", &readScaledMesh, "path"_a, "scale"_a);
   module.def(
-      "solid", &surfaceOfSolid, "name"_a,
+      "solid", [](const std::string& name) { return surfaceOf(*makeNamedSolid(name)); }, "name"_a,
       nb::sig("def solid(name: str) -> tuple[numpy.typing.NDArray[numpy.float64], "
               "numpy.typing.NDArray[numpy.uint32]]"),
       R"(The surface of a solid to try things with: vertices (n, 3) [m] and faces (m, 3), as pack() takes them.
@@ -369,8 +429,10 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
 name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, chazelle, tray, cup, pan, blade or horn; about 1 m in size. Nut and
 bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for another name.)");
   module.def("mesh_of", &meshOf, "vertices"_a, "faces"_a);
+  module.def("surface_of_mesh", &surfaceOfMesh, "mesh"_a, "name"_a);
   module.def("pack", &packWith, "mesh"_a, "name"_a, "spheres"_a, "min_radius"_a, "density"_a, "gap"_a,
-             "delta"_a, "overlap_errors"_a, "threads"_a, "repair"_a, "cache"_a, "progress"_a.none());
+             "order"_a, "delta"_a, "overlap_errors"_a, "threads"_a, "repair"_a, "cache"_a,
+             "progress"_a.none());
   module.def("cover", &coverPacking, "packing"_a, "resolution"_a);
   module.def("read", &readShared, "path"_a);
   const PackOptions defaults;
@@ -380,6 +442,7 @@ bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for 
     all["min_radius"] = defaults.min_radius;
     all["density"] = defaults.density;
     all["gap"] = defaults.gap;
+    all["order"] = "radius";
     all["delta"] = defaults.delta;
     all["overlap_errors"] = defaults.overlap_errors;
     all["threads"] = defaults.threads;

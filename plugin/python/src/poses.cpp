@@ -3,7 +3,9 @@
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
+
+#include "innersphere/query.hpp"
 
 namespace innersphere::python {
 namespace {
@@ -67,12 +69,14 @@ bool Poses::Operand::isInRow() const {
 }
 
 Poses::Operand Poses::operand(nb::handle object, const std::vector<std::size_t>& inner_shape,
-                              const std::string& name) {
+                              const std::string& name, Where where) {
   Operand one;
-  if (!nb::try_cast(object, one.array, false)) {
+  if (!nb::try_cast(object, one.array, false) || one.array.device_type() != nb::device::cpu::value) {
+    const nb::module_ arrays = nb::module_::import_("innersphere._arrays");
+    const bool stays = where == Where::anywhere && cudaAvailable() &&
+                       nb::try_cast(arrays.attr("on_device")(object), one.array, false);
     // Lists, and arrays of other types: numpy makes an array of doubles, or a TypeError.
-    const nb::object array = nb::module_::import_("innersphere._arrays").attr("as_float64")(object, name);
-    one.array = nb::cast<Array>(array);
+    if (!stays) one.array = nb::cast<Array>(arrays.attr("as_float64")(object, name));
   }
   const std::size_t inner = inner_shape.size();
   std::vector<std::size_t> shape;
@@ -90,22 +94,32 @@ Poses::Operand Poses::operand(nb::handle object, const std::vector<std::size_t>&
   return one;
 }
 
-Poses::Poses(nb::handle poses, const std::string& name) : name_(name) {
+Poses::Poses(nb::handle poses, const std::string& name, Where where) : name_(name) {
   if (poses.is_none()) return;
+  take(poses, where);
+  if (onDevice() && inPlace().count == 0) take(poses, Where::host);
+}
+
+void Poses::take(nb::handle poses, Where where) {
+  operands_.clear();
   if (nb::isinstance<nb::tuple>(poses)) {
     const nb::tuple parts = nb::borrow<nb::tuple>(poses);
     if (parts.size() != 2) {
-      valueError(name + " is a tuple of " + std::to_string(parts.size()) +
+      valueError(name_ + " is a tuple of " + std::to_string(parts.size()) +
                  "; a tuple holds positions and quaternions, anything else is an array (..., 4, 4)");
     }
-    operands_.push_back(operand(parts[0], {3}, "the position of " + name));
-    operands_.push_back(operand(parts[1], {4}, "the quaternion of " + name));
-    shape_ = commonShape(operands_[0].shape, operands_[1].shape, "the positions and quaternions of " + name);
+    operands_.push_back(operand(parts[0], {3}, "the position of " + name_, where));
+    operands_.push_back(operand(parts[1], {4}, "the quaternion of " + name_, where));
+    shape_ = commonShape(operands_[0].shape, operands_[1].shape, "the positions and quaternions of " + name_);
   } else {
-    operands_.push_back(operand(poses, {4, 4}, name));
+    operands_.push_back(operand(poses, {4, 4}, name_, where));
     shape_ = operands_[0].shape;
   }
   broadcast(shape_);
+}
+
+bool Poses::onDevice() const {
+  return std::any_of(operands_.begin(), operands_.end(), [](const Operand& one) { return one.onDevice(); });
 }
 
 void Poses::broadcast(const std::vector<std::size_t>& shape) {
@@ -117,7 +131,7 @@ innersphere::Poses Poses::inPlace() const {
   innersphere::Poses poses;
   if (operands_.empty()) return poses;
   for (const Operand& one : operands_) {
-    if (!one.isInRow()) return poses;
+    if (!one.isInRow() || one.onDevice() != operands_[0].onDevice()) return poses;
   }
   poses.count = 1;
   for (const std::size_t n : shape_) poses.count *= n;
@@ -131,35 +145,33 @@ innersphere::Poses Poses::inPlace() const {
 }
 
 Placement Poses::placement(std::size_t number, const std::vector<std::size_t>& at) const {
-  Placement place;
-  if (operands_.empty()) return place;
-  const double* first = operands_[0].at(at);
-  const std::vector<std::int64_t>& step = operands_[0].inner;
+  if (operands_.empty()) return {};
+  double matrix[16], quaternion[4];
+  const auto gather = [&](const Operand& from, double* to) {
+    const double* first = from.at(at);
+    const std::int64_t rows = from.inner.size() == 2 ? 4 : 1;
+    const std::int64_t columns = static_cast<std::int64_t>(from.array.shape(from.array.ndim() - 1));
+    for (std::int64_t i = 0; i < rows; ++i) {
+      for (std::int64_t j = 0; j < columns; ++j)
+        *to++ = first[(rows > 1 ? i * from.inner[0] : 0) + j * from.inner.back()];
+    }
+  };
+  innersphere::Poses one;
+  one.count = 1;
+  gather(operands_[0], matrix);
   if (operands_.size() == 1) {
-    const auto element = [&](int i, int j) { return first[i * step[0] + j * step[1]]; };
-    constexpr double kRounding = 1e-6;
-    for (int j = 0; j < 4; ++j) {
-      if (!(std::fabs(element(3, j) - (j == 3 ? 1 : 0)) <= kRounding)) {
-        throw Error(ErrorCode::bad_argument, "query " + std::to_string(number) + ": the last row of " +
-                                                 name_ + " is not 0 0 0 1; matrices act on columns");
-      }
-    }
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) place.rotation[3 * i + j] = element(i, j);
-      place.translation[i] = element(i, 3);
-    }
-    return place;
+    one.matrices = matrix;
+  } else {
+    gather(operands_[1], quaternion);
+    one.positions = matrix;
+    one.quaternions = quaternion;
   }
-  for (int i = 0; i < 3; ++i) place.translation[i] = first[i * step[0]];
-  // Not normalised: a quaternion that is none gives a matrix that is no rotation, which the query refuses.
-  const double* q = operands_[1].at(at);
-  const std::int64_t next = operands_[1].inner[0];
-  const double x = q[0], y = q[next], z = q[2 * next], w = q[3 * next];
-  place.rotation = {
-      w * w + x * x - y * y - z * z, 2 * (x * y - z * w),           2 * (x * z + y * w),
-      2 * (x * y + z * w),           w * w - x * x + y * y - z * z, 2 * (y * z - x * w),
-      2 * (x * z - y * w),           2 * (y * z + x * w),           w * w - x * x - y * y + z * z};
-  return place;
+  const std::optional<Placement> place = placementAt(one, 0);
+  if (!place) {
+    throw Error(ErrorCode::bad_argument, "query " + std::to_string(number) + ": the last row of " + name_ +
+                                             " is not 0 0 0 1; matrices act on columns");
+  }
+  return *place;
 }
 
 }  // namespace innersphere::python

@@ -11,13 +11,17 @@
 
 namespace innersphere::python {
 
+/// Says where poses may be read from.
+enum class Where { host, anywhere };
+
 /// Holds the poses of one body, without a copy where the array is of double precision.
 class Poses {
  public:
   /// Takes None (the identity), an array (..., 4, 4), or a tuple of positions (..., 3) and quaternions
-  /// (..., 4), x y z w. `name` is that of the argument. Throws Python's TypeError and ValueError. Needs the
-  /// GIL, in the destructor, too.
-  Poses(nb::handle poses, const std::string& name);
+  /// (..., 4), x y z w. `name` is that of the argument. What is on a device stays there if it may, and if it
+  /// lies in a row in double precision; else it is copied. Throws Python's TypeError and ValueError. Needs
+  /// the GIL, in the destructor, too.
+  Poses(nb::handle poses, const std::string& name, Where where = Where::host);
 
   /// Returns the shape without the dimensions of a single pose.
   const std::vector<std::size_t>& shape() const { return shape_; }
@@ -30,6 +34,9 @@ class Poses {
 
   /// Returns the numbers as they lie in memory, one pose after the other, if they do; else null arrays.
   innersphere::Poses inPlace() const;
+
+  /// Returns whether they are in the memory of a device, where forEach() cannot read them.
+  bool onDevice() const;
 
   /// Calls `use(i, placement)` for each element of the shape, in C's order. Does not need the GIL. Throws
   /// Error bad_argument, which names the element, for a matrix whose last row is not 0 0 0 1.
@@ -46,7 +53,7 @@ class Poses {
   }
 
  private:
-  using Array = nb::ndarray<const double, nb::device::cpu>;
+  using Array = nb::ndarray<const double>;
 
   struct Operand {
     Array array;
@@ -56,9 +63,12 @@ class Poses {
     const double* at(const std::vector<std::size_t>& index) const;
     void broadcast(const std::vector<std::size_t>& to);
     bool isInRow() const;
+    bool onDevice() const { return array.device_type() == nb::device::cuda::value; }
   };
 
-  Operand operand(nb::handle array, const std::vector<std::size_t>& inner_shape, const std::string& name);
+  void take(nb::handle poses, Where where);
+  static Operand operand(nb::handle array, const std::vector<std::size_t>& inner_shape,
+                         const std::string& name, Where where);
   Placement placement(std::size_t number, const std::vector<std::size_t>& at) const;
 
   std::string name_;

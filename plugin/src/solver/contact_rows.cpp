@@ -186,14 +186,14 @@ void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneB
     impulse = open ? none : point.soft_impulse;
   } else {
     bias = open ? bias : none;
-    // What is to bounce goes on until its substep; a spring of the user's is no error to be given back.
-    const Lanes goes_on =
-        speed * point.restitution < inAll(-bounce_threshold_) * point.restitution ? none : one;
-    acts = open ? goes_on : one - point.spring;
+    acts = open ? one : one - point.spring;  // a spring of the user's is no error to be given back
   }
+  // What has been thrown against the next body in this substep is to bounce off it in the next one.
+  acts = speed * point.restitution < inAll(-bounce_threshold_) * point.restitution ? none : acts;
   bias = bounces ? point.bounce * inAll(-1) : bias;
   mass = bounces ? one : mass;
   impulse = bounces ? none : impulse;
+  acts = bounces ? one : acts;
   const Lanes change = acts * (none - point.mass * mass * (speed + bias) - impulse * point.impulse);
   const Lanes total = larger(point.impulse + change, none);
   const Lanes3 push = point.normal * (total - point.impulse);

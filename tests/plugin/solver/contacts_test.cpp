@@ -72,6 +72,23 @@ TEST(SubstepContacts, BallsCollideAsMomentumAndRestitutionSay) {
   }
 }
 
+TEST(SubstepContacts, ARowOfBallsHandsTheSpeedToTheLastOne) {
+  // They touch, and distances are exact.
+  constexpr btScalar kRadius = btScalar(0.125), kSpeed = 2;
+  constexpr std::size_t kBalls = 4;
+  SolverWorld world;
+  world.world.setGravity(btVector3(0, 0, 0));
+  for (std::size_t i = 0; i < kBalls; ++i) {
+    btRigidBody& ball = world.addBall(kRadius, 1, btVector3(btScalar(i) * 2 * kRadius, 0, 0));
+    ball.setRestitution(1);
+    ball.setFriction(0);
+  }
+  world.bodies[0]->setLinearVelocity(btVector3(kSpeed, 0, 0));
+  world.run(0.1);
+  for (std::size_t i = 0; i < kBalls; ++i)
+    EXPECT_NEAR(world.bodies[i]->getLinearVelocity().x(), i + 1 == kBalls ? kSpeed : 0, 0.001 * kSpeed) << i;
+}
+
 TEST(SubstepContacts, ABoxBouncesToTheSquareOfItsRestitution) {
   SolverWorld world;
   world.addSlab().setRestitution(1);

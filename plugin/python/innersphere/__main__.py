@@ -1,0 +1,88 @@
+"""python -m innersphere overlap A B: volumes that two solids share, beside exact ones."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from typing import Any
+
+import numpy as np
+
+from . import Error, Packing, Query, exact_overlap, pack, random_poses, read, solid
+
+
+def _solid_and_packing(name: str, spheres: int) -> tuple[Any, Packing]:
+    if os.path.splitext(name)[1] in (".cbor", ".json"):
+        packing = read(name)
+        return packing, packing[:spheres] if spheres < len(packing) else packing
+    mesh: Any = name if os.path.exists(name) else solid(name)
+    return mesh, pack(mesh, spheres=spheres, overlap_errors=False)
+
+
+def _poses(path: str | None, a: Packing, b: Packing) -> Any:
+    if path is not None:
+        with open(path) as file:
+            rows = [line for line in file if line.strip() and not line.startswith("#")]
+        table = np.genfromtxt(rows, delimiter=",", names=True, ndmin=1)
+        poses = np.tile(np.eye(4), (len(table), 1, 1))
+        for i, j in np.ndindex(3, 4):
+            poses[:, i, j] = table[f"m{i}{j}"]
+        return poses
+    reach = (np.ptp(a.vertices, axis=0) + np.ptp(b.vertices, axis=0)) / 4
+    middle = a.center_of_mass - b.center_of_mass
+    return random_poses(100, middle - reach, middle + reach, seed=1)
+
+
+def overlap(words: argparse.Namespace) -> None:
+    """Writes a row for each pose; what it comes to goes to the standard error stream."""
+    (mesh_a, a), (mesh_b, b) = (_solid_and_packing(name, words.spheres) for name in (words.a, words.b))
+    poses = _poses(words.poses, a, b)
+    query = Query("cpu", threads=1)
+    query.overlap(a, b, None, poses, want="volume")  # builds what queries look up
+    start = time.process_time()
+    found = query.overlap(a, b, None, poses, want="volume")["volume"]
+    took = time.process_time() - start
+    if not words.exact:
+        print("pose,volume")
+        for i, volume in enumerate(found):
+            print(f"{i},{volume:.9g}")
+        return
+    start = time.process_time()
+    exact = exact_overlap(mesh_a, mesh_b, None, poses)["volume"]
+    took_exactly = time.process_time() - start
+    print("pose,volume,exact")
+    for i, (volume, true) in enumerate(zip(found, exact)):
+        print(f"{i},{volume:.9g},{true:.9g}")
+    deep = exact > 0.01 * min(a.volume, b.volume)
+    errors = np.abs(found[deep] / exact[deep] - 1)
+    mean = f"{100 * errors.mean():.2f} %, at most {100 * errors.max():.2f} %" if deep.any() else "unknown"
+    print(
+        f"{len(found)} poses, {deep.sum()} in which more than 1 % of the smaller solid is shared: there the mean error is {mean}.\n"
+        f"Processor time of a pose: {1e6 * took / max(len(found), 1):.0f} us; exactly: {1e6 * took_exactly / max(len(found), 1):.0f} us.",
+        file=sys.stderr,
+    )
+
+
+def main() -> int:
+    """Returns the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m innersphere", description="Overlaps of solids, and how exact they are.")
+    command = parser.add_subparsers(required=True).add_parser("overlap", help="volumes that two solids share in many poses")
+    command.add_argument("a", metavar="A", help="mesh, packing (.cbor, .json) or name of a solid; it stands still")
+    command.add_argument("b", metavar="B", help="the same for the body that is moved")
+    command.add_argument("--poses", metavar="FILE", help="CSV with the columns m00 to m23 of B's 3x4 matrices; else 100 random poses")
+    command.add_argument("--spheres", type=int, default=4000, help="of each packing; 4000")
+    command.add_argument("--exact", action="store_true", help="the exact volumes, too, by Manifold (pip install manifold3d)")
+    command.set_defaults(run=overlap)
+    words = parser.parse_args()
+    try:
+        words.run(words)
+    except (Error, OSError, ValueError) as error:
+        print(f"innersphere: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,104 @@
+"""Exact overlaps by Manifold, beside closed forms."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import BOX_FACES, BOX_VERTICES, random_quaternions
+
+import innersphere
+
+CUBE = BOX_VERTICES / [1, 2, 3], BOX_FACES  # from the origin to (1, 1, 1)
+
+
+def test_without_manifold_it_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "manifold3d", None)
+    with pytest.raises(innersphere.MissingLibraryError, match="pip install manifold3d"):
+        innersphere.exact_overlap(CUBE, CUBE)
+
+
+def test_boxes_and_an_octagon():
+    pytest.importorskip("manifold3d")
+    shift = np.array([[0.25, 0.5, -0.5], [2, 0, 0]])
+    found = innersphere.exact_overlap(CUBE, CUBE, pose_b=(shift, [0, 0, 0, 1]))
+    np.testing.assert_allclose(found["volume"], [0.75 * 0.5 * 0.5, 0], atol=1e-12)
+    np.testing.assert_allclose(found["centroid"][0], [0.625, 0.75, 0.25], atol=1e-12)
+    # Both turned and moved alike share the same, and the centroid is told from where A is.
+    turn = random_quaternions(np.random.default_rng(2))
+    pose = innersphere.exact_overlap(CUBE, CUBE, ([5, 6, 7], turn), ([5, 6, 7], turn))
+    assert pose.shape == () and pose["volume"] == pytest.approx(1)
+    assert np.linalg.norm(pose["centroid"]) == pytest.approx(np.sqrt(3) / 2)
+    # A square and one that is turned by 45 degrees share an octagon.
+    centred = CUBE[0] - 0.5, CUBE[1]
+    eighth = np.eye(4)
+    eighth[:2, :2] = np.array([[1, -1], [1, 1]]) / np.sqrt(2)
+    both = np.broadcast_to(eighth, (2, 3, 4, 4))
+    np.testing.assert_allclose(innersphere.exact_overlap(centred, centred, None, both)["volume"], 2 * np.sqrt(2) - 2)
+
+
+def test_packings_and_solids(box):
+    pytest.importorskip("manifold3d")
+    pose = ([0.5, 0.5, 0.5], [0, 0, 0, 1])
+    exact = innersphere.exact_overlap(box, box, None, pose)["volume"]
+    assert exact == pytest.approx(0.5 * 1.5 * 2.5)
+    assert innersphere.Query().overlap(box, box, None, pose)["volume"] == pytest.approx(exact, rel=0.05)
+
+
+def test_the_triangles_of_packings_share_what_manifold_says():
+    pytest.importorskip("manifold3d")
+    gear = innersphere.pack(innersphere.solid("gear"), spheres=64, overlap_errors=False)
+    poses = innersphere.random_poses(30, -0.6, 0.6, seed=4)
+    exact = innersphere.exact_overlap(gear, gear, None, poses)
+    found = innersphere.Query().overlap(gear, gear, None, poses, estimator="surface", want="volume")
+    assert (exact["volume"] > 0).sum() > 20
+    np.testing.assert_allclose(found["volume"], exact["volume"], rtol=1e-5, atol=1e-7 * gear.volume)
+    np.testing.assert_allclose(found["centroid"], exact["centroid"], atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    "mesh, pose, error, message",
+    [
+        ((CUBE[0], BOX_FACES[1:]), None, innersphere.NotASolidError, "open"),
+        (CUBE, 2 * np.eye(4), innersphere.InvalidArgumentError, "query 0: the placement of B"),
+        (CUBE, ([np.nan, 0, 0], [0, 0, 0, 1]), innersphere.NotFiniteError, "query 0: the placement of B"),
+        (CUBE, np.eye(3), ValueError, "pose_b has the shape"),
+        (CUBE, (np.zeros(3),), ValueError, "a tuple"),
+        (3, None, TypeError, "mesh"),
+    ],
+)
+def test_bad_input(mesh, pose, error, message):
+    pytest.importorskip("manifold3d")
+    with pytest.raises(error, match=message):
+        innersphere.exact_overlap(mesh, CUBE, None, pose)
+
+
+def test_the_command(tmp_path):
+    def run(*words):
+        return subprocess.run(
+            [sys.executable, "-m", "innersphere", "overlap", *words], cwd=tmp_path, capture_output=True, text=True
+        )
+
+    names = [f"m{i}{j}" for i in range(3) for j in range(4)]
+    rows = np.tile(np.eye(4)[:3].ravel(), (3, 1))
+    rows[:, 3] = [0.1, 0.5, 3]
+    (tmp_path / "poses.csv").write_text("# moved along x\n" + ",".join(names) + "\n")
+    with open(tmp_path / "poses.csv", "a") as file:
+        np.savetxt(file, rows, delimiter=",")
+    got = run("box", "box", "--poses", "poses.csv", "--spheres", "500")
+    assert got.returncode == 0, got.stderr
+    header, *lines = got.stdout.splitlines()
+    assert header == "pose,volume" and len(lines) == 3 and lines[2] == "2,0"
+    assert run("nothing", "box").returncode == 1
+    exact = run("box", "box", "--poses", "poses.csv", "--spheres", "500", "--exact")
+    try:
+        import manifold3d  # noqa: F401
+    except ImportError:
+        assert exact.returncode == 1 and "pip install manifold3d" in exact.stderr
+        return
+    assert exact.returncode == 0, exact.stderr
+    table = np.array([[float(x) for x in line.split(",")] for line in exact.stdout.splitlines()[1:]])
+    sides = np.ptp(innersphere.solid("box")[0], axis=0)
+    np.testing.assert_allclose(table[:, 2], np.maximum(sides[0] - rows[:, 3], 0) * sides[1] * sides[2], rtol=1e-6)
+    np.testing.assert_allclose(table[:, 1], table[:, 2], rtol=0.1)
+    assert "mean error" in exact.stderr
