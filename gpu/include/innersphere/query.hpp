@@ -126,6 +126,21 @@ class QueryContext {
   /// prepares the poses, and the arrays must be in its memory.
   void sweep(const PairQuery& pair, const Poses& poses, const QueryOptions& options, Overlap* overlaps);
 
+  /// Puts a sweep into a stream of CUDA's and returns, without waiting for a device. What was put into the
+  /// stream before, such as kernels that write the poses, is done first, and what comes after it finds the
+  /// overlaps. `stream` is a cudaStream_t of the context's device, null for the default one; it must live
+  /// until waitSweep(), as must the models. The arrays must be in memory of the device, or pinned, and are
+  /// used in place: nothing is copied. More sweeps may follow in the same stream; the context has no other
+  /// query under way until waitSweep(), which throws all errors. With Backend::automatic the sweep runs on a
+  /// device if a stream is given or an array is in its memory. On the CPU this does all the work. Not for
+  /// kAllDevices. A pose that is none gets an overlap of zeros. The host launches each part of up to 16,384
+  /// poses, so that some millions of them keep it busy.
+  void startSweep(const PairQuery& pair, const Poses& poses, const QueryOptions& options, Overlap* overlaps,
+                  void* stream = nullptr);
+  /// Waits until the stream has done all sweeps that startSweep() put into it. Throws what sweep() would, for
+  /// the first of them that fails; does nothing if there is none.
+  void waitSweep();
+
   /// Starts run(), whose second half is wait(), so that the caller can do other things while a device works.
   /// It copies what it needs of the queries and returns; wait() gives what run() would, to the bit. On the
   /// CPU start() does all the work. A context has one query under way, and models must live until wait(). All

@@ -8,6 +8,7 @@
 #include "batch/prepare.hpp"
 #include "core/poses.hpp"
 #include "core/sums.hpp"
+#include "innersphere/error.hpp"
 #include "innersphere/query.hpp"
 
 namespace innersphere {
@@ -54,6 +55,17 @@ class QueryBackend {
   /// Writes the overlap at each pose. Throws Error for the first pose that is none, by number, and then
   /// leaves some overlaps written and others not.
   virtual void sweep(const Sweep& sweep, Overlap* overlaps) = 0;
+
+  /// Begins a sweep in a stream of the user's, after those that are in it already. Null for the CPU, where
+  /// this is sweep().
+  virtual void startSweep(const Sweep& sweep, Overlap* overlaps, void* stream) {
+    if (stream)
+      throw Error(ErrorCode::bad_argument,
+                  "a sweep in a stream needs one device: neither the CPU nor several");
+    this->sweep(sweep, overlaps);
+  }
+  /// Waits for the sweeps that were begun. Throws as sweep() does.
+  virtual void finishSweeps() {}
 
   /// Returns the time that a device worked on the last batch [s]; 0 if it is not measured.
   virtual double kernelTime() const { return 0; }

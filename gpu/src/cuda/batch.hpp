@@ -90,7 +90,8 @@ struct HostSignal {
   unsigned long long halves[2 * (kResultWords + 1)];
   /// The number of the last batch that is done, and its overlapping pairs.
   unsigned done;
-  unsigned fault;
+  unsigned fault;               ///< the first one since the host has cleared it
+  unsigned long long in_poses;  ///< where the part begins that it is in
   unsigned long long found;
 };
 
@@ -108,8 +109,9 @@ struct Batch {
   unsigned long long capacity;
   unsigned bits_a, bits_b;
   HostSignal* signal;
-  core::Totals* results;  ///< in the memory of the host; unused by a single query
-  Overlap* overlaps;      ///< of a sweep, which has these in place of results; else null
+  core::Totals* results;          ///< in the memory of the host; unused by a single query
+  Overlap* overlaps;              ///< of a sweep, which has these in place of results; else null
+  unsigned long long first_pose;  ///< of a sweep
   unsigned run;
 };
 

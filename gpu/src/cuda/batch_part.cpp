@@ -109,7 +109,19 @@ std::size_t BatchPart::mostPoses(const Sweep& sweep) {
 }
 
 void BatchPart::startSweep(const Device& device, const Sweep& sweep, Range range, Overlap* overlaps) {
+  clearFault();
+  launchSweep(device, sweep, range, overlaps);
+}
+
+void BatchPart::streamSweep(const Device& device, const Sweep& sweep, Overlap* overlaps) {
+  const std::size_t at_once = mostPoses(sweep);
+  for (std::size_t first = 0; first < sweep.poses.count; first += at_once)
+    launchSweep(device, sweep, {first, std::min(first + at_once, sweep.poses.count)}, overlaps);
+}
+
+void BatchPart::launchSweep(const Device& device, const Sweep& sweep, Range range, Overlap* overlaps) {
   begin(device, range, sweep.want);
+  batch_.first_pose = range.begin;
   sweep_ = &sweep;
   overlaps_ = overlaps + range.begin;
   most_clusters_ = static_cast<unsigned>(sweep.clusters());
@@ -157,8 +169,7 @@ void BatchPart::prepareSweep() {
 
 SweepFault BatchPart::collectSweep() {
   wait();
-  const unsigned fault = signal_.data()->fault;
-  if (fault != 0) return {range_.begin + poseOf(fault), faultOf(fault)};
+  if (const SweepFault first = fault(); first.fault != core::Fault::none) return first;
   if (!overlaps_are_staged_) return {};
   const std::size_t bytes = range_.size() * sizeof(Overlap);
   if (memoryOf(overlaps_).on_device) {  // of another device
@@ -167,6 +178,16 @@ SweepFault BatchPart::collectSweep() {
     std::memcpy(static_cast<void*>(overlaps_), staged_overlaps_.data(), bytes);
   }
   return {};
+}
+
+SweepFault BatchPart::fault() const {
+  const HostSignal& signal = *signal_.data();
+  if (signal.fault == 0) return {};
+  return {signal.in_poses + poseOf(signal.fault), faultOf(signal.fault)};
+}
+
+void BatchPart::clearFault() {
+  if (signal_.capacity() > 0) signal_.data()->fault = 0;
 }
 
 void BatchPart::gather(std::span<const PreparedQuery> queries, Workers& workers) {

@@ -41,6 +41,12 @@ class BatchPart {
   void startSweep(const Device& device, const Sweep& sweep, Range range, Overlap* overlaps);
   /// Waits for the poses and brings their overlaps home. Returns the first pose that is none.
   SweepFault collectSweep();
+  /// Puts all poses into a stream of the user's, and waits for none of them. All arrays are reached from the
+  /// device. Its faults stay until clearFault().
+  void streamSweep(const Device& device, const Sweep& sweep, Overlap* overlaps);
+  /// Returns the first pose that was none, once the stream is done.
+  SweepFault fault() const;
+  void clearFault();
 
   /// Moves on what the device is done with. Returns true if results() are there.
   bool advance();
@@ -56,6 +62,7 @@ class BatchPart {
   enum class Stage { traversal, traversed, sorting, done };
 
   void begin(const Device& device, Range range, Want want);
+  void launchSweep(const Device& device, const Sweep& sweep, Range range, Overlap* overlaps);
   void gather(std::span<const PreparedQuery> queries, Workers& workers);
   void launch();
   void prepareSweep();

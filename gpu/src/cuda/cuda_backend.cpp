@@ -27,6 +27,7 @@ class CudaBackend : public OneDevice {
   }
   ~CudaBackend() override {
     if (!device_.stream) return;
+    if (streaming_) cudaStreamSynchronize(users_.stream);
     cudaStreamSynchronize(device_.stream);
     cudaStreamDestroy(device_.stream);
   }
@@ -103,6 +104,38 @@ class CudaBackend : public OneDevice {
     return fault;
   }
 
+  void startSweep(const Sweep& sweep, Overlap* overlaps, void* stream) override {
+    open();
+    const CurrentDevice current(device_.number);
+    const Poses& poses = sweep.poses;
+    for (const void* array :
+         {static_cast<const void*>(overlaps), static_cast<const void*>(poses.matrices),
+          static_cast<const void*>(poses.positions), static_cast<const void*>(poses.quaternions)}) {
+      if (array && !memoryOf(array).isReachedFrom(device_.number))
+        throw Error(ErrorCode::bad_argument,
+                    "an array of a sweep in a stream is neither in memory of the device nor pinned");
+    }
+    if (!streaming_) {
+      discard();
+      parts_[0].clearFault();
+      users_ = device_;
+      users_.stream = static_cast<cudaStream_t>(stream);
+      users_.time_kernels = false;
+      kernel_time_ = 0;
+    } else if (users_.stream != stream) {
+      throw Error(ErrorCode::bad_argument, "sweeps are under way in another stream; wait for them first");
+    }
+    streaming_ = true;
+    parts_[0].streamSweep(users_, sweep, overlaps);
+  }
+
+  void finishSweeps() override {
+    if (!std::exchange(streaming_, false)) return;
+    const CurrentDevice current(device_.number);
+    INNERSPHERE_CUDA(cudaStreamSynchronize(users_.stream));
+    parts_[0].fault().throwIfAny();
+  }
+
  private:
   void open() {
     if (device_.stream) return;
@@ -175,6 +208,8 @@ class CudaBackend : public OneDevice {
   std::size_t first_ = 0;      ///< number of the oldest part under way
   std::size_t under_way_ = 0;  ///< parts
   QueryResult staged_;
+  device::Device users_;    ///< with the stream of the user's that sweeps are in
+  bool streaming_ = false;  ///< sweeps are under way there
   double kernel_time_ = 0;
 };
 

@@ -333,7 +333,10 @@ __global__ void finishBatch(const __grid_constant__ Batch batch) {
   __threadfence_system();
   if (!isLastBlock(batch) || threadIdx.x != 0) return;
   batch.signal->found = batch.counters->found;
-  batch.signal->fault = batch.counters->fault;
+  if (batch.counters->fault != 0 && batch.signal->fault == 0) {
+    batch.signal->fault = batch.counters->fault;
+    batch.signal->in_poses = batch.first_pose;
+  }
   __threadfence_system();
   *static_cast<volatile unsigned*>(&batch.signal->done) = batch.run;
 }

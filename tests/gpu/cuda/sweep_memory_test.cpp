@@ -90,6 +90,71 @@ TEST_F(DeviceSweep, ThatIsPinnedIsUsedInPlace) {
   expectAsExpected(overlaps.data());
 }
 
+/// A stream that lives as long as a test.
+struct Stream {
+  Stream() { EXPECT_EQ(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), cudaSuccess); }
+  ~Stream() { cudaStreamDestroy(stream); }
+  cudaStream_t stream = nullptr;
+};
+
+/// Poses come by a copy that is in the stream before, and results leave by one that is after: the host waits
+/// once, at the end.
+TEST_F(DeviceSweep, InAStreamKeepsItsOrder) {
+  const Stream users;
+  Array<double> poses(onDevice, cudaFree, matrices.size());
+  Array<Overlap> overlaps(onDevice, cudaFree, kCount), home(pinned, cudaFreeHost, kCount);
+  ASSERT_EQ(cudaMemset(poses.data(), 0xff, matrices.size() * sizeof(double)), cudaSuccess);
+  QueryContext context;  // automatic: the stream says where it runs
+  for (int again = 0; again < 2; ++again) {
+    ASSERT_EQ(cudaMemcpyAsync(poses.data(), matrices.data(), matrices.size() * sizeof(double),
+                              cudaMemcpyDefault, users.stream),
+              cudaSuccess);
+    context.startSweep(pair, {kCount, poses.data(), nullptr, nullptr}, {}, overlaps.data(), users.stream);
+    EXPECT_EQ(context.lastBackend(), Backend::cuda);
+    ASSERT_EQ(cudaMemcpyAsync(home.data(), overlaps.data(), kCount * sizeof(Overlap), cudaMemcpyDefault,
+                              users.stream),
+              cudaSuccess);
+    ASSERT_EQ(cudaMemsetAsync(poses.data(), 0xff, matrices.size() * sizeof(double), users.stream),
+              cudaSuccess);
+  }
+  ASSERT_EQ(cudaStreamSynchronize(users.stream), cudaSuccess);
+  expectAsExpected(home.data());
+  EXPECT_NO_THROW(context.waitSweep());
+}
+
+TEST_F(DeviceSweep, InAStreamNamesTheFirstPoseThatIsNone) {
+  const std::size_t count = cases(40000, 40), bad = count - 5;
+  const Stream users, other;
+  std::vector<double> many;
+  for (std::size_t i = 0; i < count; ++i)
+    many.insert(many.end(), matrices.begin() + static_cast<std::ptrdiff_t>(16 * (i % kCount)),
+                matrices.begin() + static_cast<std::ptrdiff_t>(16 * (i % kCount + 1)));
+  Array<double> poses(pinned, cudaFreeHost, many.size());
+  Array<Overlap> overlaps(pinned, cudaFreeHost, count);
+  std::copy(many.begin(), many.end(), poses.data());
+  poses.data()[16 * bad] = poses.data()[16 * (bad + 2)] = 7;
+  QueryContext context({Backend::cuda});
+  const Poses some{count, poses.data(), nullptr, nullptr};
+  context.startSweep(pair, some, {}, overlaps.data(), users.stream);
+  context.startSweep(pair, {kCount, poses.data(), nullptr, nullptr}, {}, overlaps.data(), users.stream);
+  try {
+    context.waitSweep();
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_argument) << error.what();
+    EXPECT_NE(std::string(error.what()).find("query " + std::to_string(bad) + ": "), std::string::npos)
+        << error.what();
+  }
+  // Of two streams it takes the first; both are done when the wait returns, and what failed is forgotten.
+  context.startSweep(pair, {kCount, poses.data(), nullptr, nullptr}, {}, overlaps.data(), users.stream);
+  context.startSweep(pair, {kCount, poses.data(), nullptr, nullptr}, {}, overlaps.data(), other.stream);
+  EXPECT_THROW(context.waitSweep(), Error);
+  expectAsExpected(overlaps.data());
+  context.startSweep(pair, {kCount, poses.data(), nullptr, nullptr}, {}, overlaps.data(), users.stream);
+  EXPECT_NO_THROW(context.waitSweep());
+  expectAsExpected(overlaps.data());
+}
+
 TEST_F(DeviceSweep, OfADeviceIsRefusedOnTheCpu) {
   Array<Overlap> overlaps(onDevice, cudaFree, kCount);
   QueryContext context({Backend::cpu});

@@ -180,6 +180,28 @@ TEST_P(SweepConformance, RefusesWhatIsNoSweep) {
   context.wait(result);
 }
 
+TEST_P(SweepConformance, InAStreamNeedsArraysThatTheBackendReaches) {
+  QueryContext context = makeContext();
+  EXPECT_NO_THROW(context.waitSweep());  // nothing is under way
+  const Swept swept(20);
+  std::vector<Overlap> expected(20), overlaps(20), more(20);
+  context.sweep(swept.pair, swept.asMatrices(), {}, expected.data());
+  context.startSweep(swept.pair, swept.asMatrices(), {}, overlaps.data());
+  context.startSweep(swept.pair, swept.asMatrices(), {}, more.data());
+  if (GetParam() == Backend::cpu) {
+    EXPECT_THROW(context.sweep(swept.pair, swept.asMatrices(), {}, more.data()), Error);  // under way
+    context.waitSweep();
+    for (std::size_t i = 0; i < 20; ++i) {
+      EXPECT_TRUE(sameBits(overlaps[i], expected[i])) << i;
+      EXPECT_TRUE(sameBits(more[i], expected[i])) << i;
+    }
+    int stream = 0;
+    context.startSweep(swept.pair, swept.asMatrices(), {}, overlaps.data(), &stream);
+  }
+  EXPECT_THROW(context.waitSweep(), Error);
+  EXPECT_TRUE(sameBits(context.overlap(swept.queries[1]), expected[1]));  // it lives on
+}
+
 INNERSPHERE_FOR_EACH_BACKEND(SweepConformance);
 
 TEST(Devices, ThatAreNotThereAreAnError) {
