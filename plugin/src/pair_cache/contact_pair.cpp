@@ -141,8 +141,8 @@ void ContactPair::publish(const StepSettings& settings, const BodySnapshot& body
 void ContactPair::write(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
                         btManifoldResult* result) {
   depth = deepest(found->patches());
-  manifolds.write(*a.object, *b.object, {body_a.start(), body_b.start()}, motionOf(body_a, body_b, settings.time_step), origin(),
-                  found->patches(), lawOf(settings),
+  manifolds.write(*a.object, *b.object, {body_a.start(), body_b.start()},
+                  motionOf(body_a, body_b, settings.time_step), origin(), found->patches(), lawOf(settings),
                   speculativeDistance(body_a.motion(), body_b.motion(), settings.time_step), result);
 }
 

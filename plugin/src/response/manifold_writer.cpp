@@ -231,9 +231,8 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     NewPoint& point = points[i];
     point.friction = friction;
     // Where Bullet, which has moved kinematic bodies, will say that it is.
-    const btVector3 local_a = motion.a().has_arrived
-                                  ? a.getWorldTransform().invXform(start.a * point.local_a)
-                                  : point.local_a;
+    const btVector3 local_a =
+        motion.a().has_arrived ? a.getWorldTransform().invXform(start.a * point.local_a) : point.local_a;
     // Bullet keeps impulses and lifetime of the cached point nearest to the new one: move the match there
     // first.
     if (match[i] >= 0) {

@@ -28,8 +28,8 @@ class ManifoldWriter {
   /// Replaces the contacts between `a` and `b`, which were at `start` when the step began and move like
   /// `motion`. `origin` is that of A's packing in the world. Points up to `separation` [m] apart are kept.
   void write(const btCollisionObject& a, const btCollisionObject& b, const Placed& start,
-             const PairMotion& motion, const btVector3& origin, const std::vector<ContactPatch>& patches, const ContactLaw& law,
-             btScalar separation, btManifoldResult* result);
+             const PairMotion& motion, const btVector3& origin, const std::vector<ContactPatch>& patches,
+             const ContactLaw& law, btScalar separation, btManifoldResult* result);
 
   /// Only tells `result` of the contacts, as closest-point queries want it: keeps nothing and makes no
   /// manifold.

@@ -15,10 +15,11 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 btScalar mostFriction(const btPersistentManifold& manifold);
 
 /// Returns how far A has slipped on B at this point, along the surface [m]. The cached point carries it from
-/// step to step, as the distance of its two places on the bodies, which were at `start`: Bullet's friction knows no more than speeds, and what ten
-/// iterations leave of them adds up to bodies that creep. As a bristle that bends until it slides, it is no
-/// longer than `largest` [m]: a longer one would ask for more than friction bears, in all directions that the
-/// solver's pyramid has, whose corners bear more than the cone does. It is 0 beyond `farthest` [m].
+/// step to step, as the distance of its two places on the bodies, which were at `start`: Bullet's friction
+/// knows no more than speeds, and what ten iterations leave of them adds up to bodies that creep. As a
+/// bristle that bends until it slides, it is no longer than `largest` [m]: a longer one would ask for more
+/// than friction bears, in all directions that the solver's pyramid has, whose corners bear more than the
+/// cone does. It is 0 beyond `farthest` [m].
 btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const btVector3& normal,
                  btScalar largest, btScalar farthest);
 

@@ -31,7 +31,7 @@ void Colouring::colour(const SolverBodies& bodies, const ConstraintRows& constra
   for (int i = 0; i < constraints.count(); ++i)
     joint_colour_.push_back(colourOf(constraints.bodyA(i), constraints.bodyB(i), movable));
   pair_colour_.clear();
-  for (const ContactPair& pair : contacts.pairs())
+  for (const TouchingPair& pair : contacts.pairs())
     pair_colour_.push_back(pair.b == movable ? kFixed : colourOf(pair.a, pair.b, movable));
 
   const auto sorted = [](std::vector<int>& order, std::size_t count, const auto& before) {

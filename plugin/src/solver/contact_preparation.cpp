@@ -62,7 +62,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
   for (int lane = 0; lane < kLanes; ++lane) {
     block.a[lane] = block.b[lane] = bodies.movable();
     if (block.pair[lane] < 0) continue;
-    const ContactPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
+    const TouchingPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
     block.a[lane] = pair.a;
     block.b[lane] = pair.b;
     block.share[lane] = bodies.isMovable(pair.b) ? btScalar(0.5) : btScalar(0);
@@ -81,7 +81,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
     fillMasses(points_[static_cast<std::size_t>(i)], a, b, block.rolls);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.pair[lane] < 0) continue;
-    const ContactPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
+    const TouchingPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
     for (int i = 0; i < pair.count; ++i) {
       const btManifoldPoint& point = *sources_[static_cast<std::size_t>(pair.begin + i)].point;
       fillSoftness(points_[static_cast<std::size_t>(block.begin + i)], lane, point, pair, bodies);
@@ -90,7 +90,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
 }
 
 /// Where the bodies touch, and what they have borne there.
-void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, const ContactPair& pair,
+void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, const TouchingPair& pair,
                             const SolverBodies& bodies) const {
   const btManifoldPoint& point = *source.point;
   const btScalar sign = source.flipped ? btScalar(-1) : btScalar(1);
@@ -162,7 +162,7 @@ void ContactRows::fillCurves(PointLanes& lanes, int lane, const Source& source, 
 
 /// What the point has been told of forces, and what it bore.
 void ContactRows::fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point,
-                             const ContactPair& pair, const SolverBodies& bodies) {
+                             const TouchingPair& pair, const SolverBodies& bodies) {
   for (int body : {pair.a, pair.b}) {
     const btRigidBody* rigid = bodies.rigid(body);
     if (rigid == nullptr || !rigid->hasAnisotropicFriction(btCollisionObject::CF_ANISOTROPIC_FRICTION))
@@ -202,7 +202,7 @@ void ContactRows::fillMasses(PointLanes& point, const LaneBodies& a, const LaneB
 
 /// How they give way.
 void ContactRows::fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point,
-                               const ContactPair& pair, const SolverBodies& bodies) const {
+                               const TouchingPair& pair, const SolverBodies& bodies) const {
   const bool both_move = bodies.isMovable(pair.b);
   const btScalar size = both_move ? std::min(bodies.size(pair.a), bodies.size(pair.b)) : bodies.size(pair.a);
   Softness soft = both_move ? soft_ : soft_on_fixed_;

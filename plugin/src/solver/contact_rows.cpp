@@ -63,7 +63,7 @@ void ContactRows::collect(btPersistentManifold** manifolds, int count, SolverBod
     }
   }
   pairs_.erase(
-      std::remove_if(pairs_.begin(), pairs_.end(), [](const ContactPair& p) { return p.count == 0; }),
+      std::remove_if(pairs_.begin(), pairs_.end(), [](const TouchingPair& p) { return p.count == 0; }),
       pairs_.end());
 }
 
@@ -230,7 +230,7 @@ void ContactRows::writeBack(int index) {
   const Block& block = blocks_[static_cast<std::size_t>(index)];
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.pair[lane] < 0) continue;
-    const ContactPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
+    const TouchingPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
     for (int i = 0; i < pair.count; ++i) {
       const PointLanes& from = points_[static_cast<std::size_t>(block.begin + i)];
       const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];

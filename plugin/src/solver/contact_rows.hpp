@@ -15,7 +15,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Two bodies that touch, and the points at which they do. Normals lead from b to a.
-struct ContactPair {
+struct TouchingPair {
   int a = 0, b = 0;  ///< places of the bodies, a can be moved
   int begin = 0;     ///< of its points in ContactRows
   int count = 0;     ///< of its points
@@ -33,7 +33,7 @@ class ContactRows {
  public:
   /// Finds all points that push, and the pairs that they are of.
   void collect(btPersistentManifold** manifolds, int count, SolverBodies& bodies);
-  const std::vector<ContactPair>& pairs() const { return pairs_; }
+  const std::vector<TouchingPair>& pairs() const { return pairs_; }
 
   void clearBlocks();
   /// Puts up to kLanes pairs, no two of which share a body that can be moved, into a block.
@@ -94,13 +94,13 @@ class ContactRows {
     bool flipped;
   };
 
-  void fillPlace(PointLanes& lanes, int lane, const Source& source, const ContactPair& pair,
+  void fillPlace(PointLanes& lanes, int lane, const Source& source, const TouchingPair& pair,
                  const SolverBodies& bodies) const;
   static void fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a, btScalar size_b);
-  static void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
+  static void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                          const SolverBodies& bodies);
   static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls);
-  void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const ContactPair& pair,
+  void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                     const SolverBodies& bodies) const;
   static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
   void startBounces(Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) const;
@@ -109,7 +109,7 @@ class ContactRows {
 
   std::vector<Entry> entries_;
   std::vector<Source> sources_;
-  std::vector<ContactPair> pairs_;
+  std::vector<TouchingPair> pairs_;
   std::vector<Block> blocks_;
   std::vector<PointLanes> points_;  ///< some of them of an earlier, larger step
   int point_count_ = 0;

@@ -29,8 +29,8 @@ inline Curvatures curvaturesOf(const btManifoldPoint& point) {
   return {point.m_contactMotion1, point.m_contactMotion2};
 }
 
-/// Bullet's own shapes touch where the bodies are: kinematic ones where the step ends, others where it begins.
-/// A point with this flag, which Bullet has no use for, is of the beginning for both.
+/// Bullet's own shapes touch where the bodies are: kinematic ones where the step ends, others where it
+/// begins. A point with this flag, which Bullet has no use for, is of the beginning for both.
 constexpr int kContactOfStart = 1 << 16;
 inline bool isOfStart(const btManifoldPoint& point) {
   return (point.m_contactPointFlags & kContactOfStart) != 0;

@@ -34,7 +34,8 @@ struct BodyState {
 /// Bodies that can be moved come first; then the fixed world, and whatever else moves by itself.
 class SolverBodies {
  public:
-  /// Takes over the bodies of a group for a step of `time_step` [s], and gives each its place as companion id.
+  /// Takes over the bodies of a group for a step of `time_step` [s], and gives each its place as companion
+  /// id.
   void begin(btCollisionObject** objects, int count, btScalar time_step);
   /// Returns the place of a body: that of the fixed world for whatever stands still.
   int indexOf(const btCollisionObject& object);

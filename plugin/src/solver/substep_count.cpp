@@ -9,7 +9,7 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 int substepsFor(const SubstepOptions& options, btScalar time_step, const SolverBodies& bodies,
-                const std::vector<ContactPair>& pairs, const ConstraintRows& constraints) {
+                const std::vector<TouchingPair>& pairs, const ConstraintRows& constraints) {
   if (options.substeps > 0) return options.substeps;
   // The largest load over what may give way [1/m].
   btScalar worst = 0;
@@ -19,7 +19,7 @@ int substepsFor(const SubstepOptions& options, btScalar time_step, const SolverB
     const btScalar give = bodies.mass(a) * bodies.size(a);
     if (give > 0) worst = std::max(worst, bodies.mass(b) / give);
   };
-  for (const ContactPair& pair : pairs) notice(pair.a, pair.b);
+  for (const TouchingPair& pair : pairs) notice(pair.a, pair.b);
   for (int i = 0; i < constraints.count(); ++i) notice(constraints.bodyA(i), constraints.bodyB(i));
   const btScalar by_load =
       time_step / kContactPhase * std::sqrt(worst * bodies.largestAcceleration() / options.depth);

@@ -18,7 +18,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// with h the substep and p = kContactPhase, the phase of the spring. R is the largest ratio of two masses
 /// that meet.
 int substepsFor(const SubstepOptions& options, btScalar time_step, const SolverBodies& bodies,
-                const std::vector<ContactPair>& pairs, const ConstraintRows& constraints);
+                const std::vector<TouchingPair>& pairs, const ConstraintRows& constraints);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere
