@@ -48,9 +48,10 @@ struct SubstepOptions {
 /// never calls this one; the log says so once. Continuous collision detection of Bullet's convex shapes
 /// (setCcdMotionThreshold) looks along the last part of a body's way in a step.
 ///
-/// One solver may serve several worlds, one after the other, not at the same time. Bodies with infinite or
-/// undefined velocities stand still and touch nothing, and the log says so once. Results are the same bits
-/// for any number of threads (oneTBB; limit them by tbb::global_control or in a tbb::task_arena).
+/// One solver may serve several worlds: those that step at the same time wait for each other. Bodies with
+/// infinite or undefined velocities, forces or places are stopped and touch nothing in such a step, contacts
+/// and rows of constraints that are not finite are left out, and the log says so once. Results are the same
+/// bits for any number of threads (oneTBB; limit them by tbb::global_control or in a tbb::task_arena).
 class SubstepSolver : public btConstraintSolver {
  public:
   /// Throws Error bad_argument if an option is out of range.

@@ -18,10 +18,17 @@ constexpr unsigned kRemembered = 256;
 /// A row of which no more than this share is left by the others is one of them.
 constexpr btScalar kRedundant = 32 * SIMD_EPSILON;
 
+int rowsOf(btTypedConstraint& constraint) {
+  btTypedConstraint::btConstraintInfo1 size{};
+  constraint.getInfo1(&size);
+  return std::max(0, size.m_numConstraintRows);
+}
+
 }  // namespace
 
 void ConstraintRows::beginStep(const btContactSolverInfo& info, int substeps) {
   info_ = info;
+  broken_ = 0;
   substep_ = info.m_timeStep / btScalar(substeps);
   // What gives way as fast as the world's error reduction says.
   const btScalar erp = std::clamp(info.m_erp, btScalar(0.01), btScalar(1));
@@ -31,11 +38,9 @@ void ConstraintRows::beginStep(const btContactSolverInfo& info, int substeps) {
 
 /// Limits are impulses. Some constraints form them of a force and the step, some have impulses of a step.
 bool ConstraintRows::hasForces(const Joint& joint) {
-  btTypedConstraint::btConstraintInfo1 size{};
-  joint.constraint->getInfo1(&size);
-  if (size.m_numConstraintRows > joint.room) return false;
   Joint asked = joint;
-  asked.count = size.m_numConstraintRows;
+  asked.count = rowsOf(*joint.constraint);
+  if (asked.count > joint.room) return false;
   const auto begin = rows_.begin() + static_cast<std::ptrdiff_t>(joint.begin);
   const auto known = [](btScalar limit) { return limit != 0 && std::fabs(limit) < SIMD_INFINITY; };
   before_.assign(begin, begin + joint.room);
@@ -66,11 +71,8 @@ void ConstraintRows::collect(btTypedConstraint** constraints, int count, SolverB
     const int a = bodies.indexOf(constraint.getRigidBodyA()), b = bodies.indexOf(constraint.getRigidBodyB());
     if (a == SolverBodies::kBroken || b == SolverBodies::kBroken) continue;
     if (!bodies.isMovable(a) && !bodies.isMovable(b)) continue;
-    btTypedConstraint::btConstraintInfo1 size{};
-    constraint.getInfo1(&size);
     Joint& joint = joints_.emplace_back();
-    joint = {&constraint, a, b, rows_.size(), factors_.size(), 0, std::max(kRoom, size.m_numConstraintRows),
-             1,           1};
+    joint = {&constraint, a, b, rows_.size(), factors_.size(), 0, std::max(kRoom, rowsOf(constraint)), 1, 1};
     const std::size_t room = static_cast<std::size_t>(joint.room);
     rows_.resize(rows_.size() + room);
     factors_.resize(factors_.size() + room * room);
@@ -101,16 +103,20 @@ void ConstraintRows::recall(Joint& joint, btScalar borne) {
   }
 }
 
+void ConstraintRows::clear(Row& row) {
+  row.linear_a.setZero();
+  row.angular_a.setZero();
+  row.linear_b.setZero();
+  row.angular_b.setZero();
+  row.error = 0;
+}
+
 /// Asks for as many rows as there are, into the first places of the joint.
 void ConstraintRows::ask(Joint& joint, btScalar erp, btScalar step) {
   Row* first = &rows_[joint.begin];
   for (int i = 0; i < joint.count; ++i) {
     Row& row = first[i];
-    row.linear_a.setZero();
-    row.angular_a.setZero();
-    row.linear_b.setZero();
-    row.angular_b.setZero();
-    row.error = 0;
+    clear(row);
     row.cfm = info_.m_globalCfm;
     row.low = -SIMD_INFINITY;
     row.high = SIMD_INFINITY;
@@ -168,14 +174,13 @@ void ConstraintRows::match(Joint& joint, const Row* before, int count_before, co
 
 void ConstraintRows::refresh(int index, const SolverBodies& bodies) {
   Joint& joint = joints_[static_cast<std::size_t>(index)];
-  btTypedConstraint::btConstraintInfo1 size{};
-  joint.constraint->getInfo1(&size);
+  const int count = rowsOf(*joint.constraint);
   // Where a constraint of the user's own grows within a step, its rows stay as they were until the next one.
-  if (size.m_numConstraintRows > joint.room) return;
+  if (count > joint.room) return;
   const int count_before = joint.count;
   Row* const first = &rows_[joint.begin];
   before_.assign(first, first + count_before);
-  joint.count = size.m_numConstraintRows;
+  joint.count = count;
   if (joint.count == 0) return;
   ask(joint, info_.m_erp / 2, substep_);
   for (int i = 0; i < joint.count; ++i) first[i].relaxed = first[i].error;
@@ -194,7 +199,8 @@ void ConstraintRows::refresh(int index, const SolverBodies& bodies) {
   factor(joint, bodies.state(joint.a), bodies.state(joint.b));
 }
 
-/// What couples the rows, as L D L^T. A row that says what others say already, or nothing, is left out.
+/// What couples the rows, as L D L^T. A row that says what others say already, or nothing, or what is not
+/// finite, is left out.
 void ConstraintRows::factor(const Joint& joint, const BodyState& a, const BodyState& b) {
   const std::size_t size = static_cast<std::size_t>(joint.count);
   btScalar* const factors = &factors_[joint.matrix];
@@ -211,11 +217,16 @@ void ConstraintRows::factor(const Joint& joint, const BodyState& a, const BodySt
              other.angular_b.dot(angular_b);
     };
     row.yields = coupledTo(row);
-    const bool sound = row.yields > 0 && std::isfinite(row.yields) && std::isfinite(row.error) &&
-                       std::isfinite(row.relaxed) && std::isfinite(row.cfm);
-    if (!sound) row.yields = row.impulse = 0;
+    const bool sound = std::isfinite(row.yields) && std::isfinite(row.relaxed) && std::isfinite(row.cfm) &&
+                       std::isfinite(row.impulse) && !std::isnan(row.low) && !std::isnan(row.high);
+    if (!sound) {
+      clear(row);
+      row.yields = row.sum = 0;
+      ++broken_;
+    }
+    if (!(row.yields > 0)) row.yields = row.impulse = 0;
     at(i, i) = 0;
-    if (!sound || !row.free) continue;
+    if (row.yields == 0 || !row.free) continue;
     btScalar rest = row.yields;
     for (std::size_t j = 0; j < i; ++j) {
       if (at(j, j) == 0) continue;

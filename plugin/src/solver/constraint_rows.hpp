@@ -31,6 +31,8 @@ class ConstraintRows {
   /// Takes over what holds for all rows of a step.
   void beginStep(const btContactSolverInfo& info, int substeps);
   int count() const { return static_cast<int>(joints_.size()); }
+  /// Returns how many rows of this step were left out because they are not finite.
+  int broken() const { return broken_; }
   int bodyA(int joint) const { return joints_[static_cast<std::size_t>(joint)].a; }
   int bodyB(int joint) const { return joints_[static_cast<std::size_t>(joint)].b; }
 
@@ -72,6 +74,7 @@ class ConstraintRows {
     unsigned last_step = 0;
   };
 
+  static void clear(Row& row);
   void factor(const Joint& joint, const BodyState& a, const BodyState& b);
   void solveFree(const Joint& joint, Pass pass, std::vector<BodyState>& states);
   btScalar missing(const Joint& joint, const Row& row, Pass pass, const std::vector<BodyState>& states) const;
@@ -90,6 +93,7 @@ class ConstraintRows {
   btScalar substep_ = 0;
   Softness soft_;
   int movable_ = 0;
+  int broken_ = 0;
   unsigned step_ = 0;
 };
 

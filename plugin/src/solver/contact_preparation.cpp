@@ -128,9 +128,13 @@ void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, c
     const btVector3 borne = (point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
                              point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2) *
                             (sign / substeps_);
-    lanes.impulse[lane] = std::max(point.m_prevRHS / substeps_, btScalar(0));
-    lanes.impulse_1[lane] = borne.dot(side_1);
-    lanes.impulse_2[lane] = borne.dot(side_2);
+    // Impulses that are not finite are forgotten.
+    const btScalar impulse = point.m_prevRHS / substeps_;
+    if (impulse > 0 && std::isfinite(impulse) && isFinite(borne)) {
+      lanes.impulse[lane] = impulse;
+      lanes.impulse_1[lane] = borne.dot(side_1);
+      lanes.impulse_2[lane] = borne.dot(side_2);
+    }
   }
   lanes.side_1.set(lane, side_1);
   lanes.side_2.set(lane, side_2);

@@ -16,7 +16,9 @@ constexpr int kBounceRounds = 8;
 
 bool isSound(const btManifoldPoint& point) {
   return isFinite(point.getPositionWorldOnA()) && isFinite(point.getPositionWorldOnB()) &&
-         isFinite(point.m_normalWorldOnB) && std::isfinite(point.getDistance());
+         isFinite(point.m_normalWorldOnB) && std::isfinite(point.getDistance()) &&
+         std::isfinite(point.m_combinedFriction) && std::isfinite(point.m_combinedRestitution) &&
+         std::isfinite(point.m_combinedRollingFriction) && std::isfinite(point.m_combinedSpinningFriction);
 }
 
 /// Both parts of an impulse across the normal, which together are no larger than `most`.

@@ -36,7 +36,8 @@ bool hasNumbers(const btRigidBody& body) {
   return isFinite(body.getWorldTransform()) && std::isfinite(body.getLinearVelocity().length2()) &&
          std::isfinite(body.getAngularVelocity().length2()) && isFinite(body.getTotalForce()) &&
          isFinite(body.getTotalTorque()) && std::isfinite(body.getInvMass()) &&
-         isFinite(body.getInvInertiaDiagLocal());
+         isFinite(body.getInvInertiaDiagLocal()) && isFinite(body.getLinearFactor()) &&
+         isFinite(body.getAngularFactor());
 }
 
 bool canBeMoved(const btRigidBody& body) {
@@ -55,6 +56,7 @@ void SolverBodies::begin(btCollisionObject** objects, int count, btScalar time_s
   states_.clear();
   bodies_.clear();
   broken_.clear();
+  broken_driven_ = 0;
   for (int i = 0; i < count; ++i) {
     btRigidBody* rigid = btRigidBody::upcast(objects[i]);
     if (rigid == nullptr || !canBeMoved(*rigid)) continue;
@@ -108,9 +110,10 @@ int SolverBodies::indexOf(const btCollisionObject& object) {
   const btRigidBody* rigid = btRigidBody::upcast(&object);
   if (rigid == nullptr || (rigid->getLinearVelocity().isZero() && rigid->getAngularVelocity().isZero()))
     return movable_;
-  if (!std::isfinite(rigid->getLinearVelocity().length2()) ||
-      !std::isfinite(rigid->getAngularVelocity().length2()))
+  if (!hasNumbers(*rigid)) {
+    ++broken_driven_;
     return kBroken;
+  }
   if (bodies_.back().rigid == rigid) return static_cast<int>(bodies_.size()) - 1;
   Body& body = bodies_.emplace_back();
   BodyState& state = states_.emplace_back();
@@ -223,7 +226,12 @@ btVector3 SolverBodies::startOf(int index, const btVector3& point) const {
 
 int SolverBodies::finish() {
   int lost = 0;
-  for (btRigidBody* body : broken_) body->setCompanionId(-1);
+  for (btRigidBody* body : broken_) {
+    // Else Bullet would take them to nowhere, and what they touch after them.
+    body->setLinearVelocity(btVector3(0, 0, 0));
+    body->setAngularVelocity(btVector3(0, 0, 0));
+    body->setCompanionId(-1);
+  }
   for (std::size_t i = static_cast<std::size_t>(movable_) + 1; i < bodies_.size(); ++i) {
     if (bodies_[i].followed) bodies_[i].rigid->setWorldTransform(bodies_[i].given);
   }

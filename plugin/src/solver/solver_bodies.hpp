@@ -69,8 +69,8 @@ class SolverBodies {
   /// did. Returns the number of bodies that have got lost in infinity: they keep their places and stop.
   int finish();
   /// Returns the number of bodies that came with infinite or undefined velocities, forces or places: they
-  /// stand still, and nothing touches them.
-  int broken() const { return static_cast<int>(broken_.size()); }
+  /// are stopped, and nothing touches them. What moves by itself counts once for each that asks for it.
+  int broken() const { return static_cast<int>(broken_.size()) + broken_driven_; }
   static constexpr int kBroken = -1;  ///< the place of one of them
 
  private:
@@ -99,6 +99,7 @@ class SolverBodies {
   std::vector<Body> bodies_;
   int movable_ = 0;
   std::vector<btRigidBody*> broken_;
+  int broken_driven_ = 0;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

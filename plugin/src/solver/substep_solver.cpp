@@ -1,6 +1,8 @@
 #include "innersphere/substep_solver.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <mutex>
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
@@ -36,6 +38,7 @@ class SubstepSolver::Impl {
  public:
   SubstepOptions options;
   int last_substeps = 0;
+  std::mutex mutex;  ///< worlds that share the solver wait for each other
 
   void solve(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds, int manifold_count,
              btTypedConstraint** constraints, int constraint_count, const btContactSolverInfo& info);
@@ -56,13 +59,12 @@ class SubstepSolver::Impl {
   ConstraintRows constraints_;
   Colouring colouring_;
   Crew crew_;
-  bool called_ = false;  ///< in this step
+  bool called_ = false;  ///< ever
   bool reported_ = false, reported_world_ = false;
 };
 
 void SubstepSolver::Impl::beginStep() {
   last_substeps = 0;
-  called_ = false;
 }
 
 /// A btDiscreteDynamicsWorld hands over a group in each step, if only an empty one.
@@ -71,8 +73,7 @@ void SubstepSolver::Impl::endStep() {
   if (called_ || reported_world_) return;
   reported_world_ = true;
   log("SubstepSolver is told of steps, but not given anything to solve: a btMultiBodyDynamicsWorld solves "
-      "with a "
-      "btMultiBodyConstraintSolver of its own. This is said once.");
+      "with a btMultiBodyConstraintSolver of its own. This is said once.");
 }
 
 /// Calls for all constraints and for all blocks of contacts, colour by colour.
@@ -119,7 +120,7 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
                                 const btContactSolverInfo& info) {
   called_ = true;
   const btScalar time_step = info.m_timeStep;
-  if (!(time_step > 0)) return;
+  if (!(time_step > 0) || !std::isfinite(time_step)) return;
   bodies_.begin(bodies, body_count, time_step);
   if (bodies_.movable() == 0) return report(bodies_.finish());
   contacts_.collect(manifolds, manifold_count, bodies_);
@@ -146,10 +147,11 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
 }
 
 void SubstepSolver::Impl::report(int lost) {
-  if (reported_ || lost + bodies_.broken() + contacts_.broken() == 0) return;
+  if (reported_ || lost + bodies_.broken() + contacts_.broken() + constraints_.broken() == 0) return;
   reported_ = true;
-  log("SubstepSolver leaves out bodies or contacts whose velocities, forces or places are infinite or not "
-      "numbers: such bodies stand still, and nothing touches them. This is said once.");
+  log("SubstepSolver leaves out bodies, contacts and rows of constraints that have infinite or undefined "
+      "velocities, forces, places or properties: such bodies are stopped, and nothing touches them. This is "
+      "said once.");
 }
 
 SubstepSolver::SubstepSolver(const SubstepOptions& options) : impl_(std::make_unique<Impl>()) {
@@ -167,10 +169,12 @@ void SubstepSolver::setOptions(const SubstepOptions& options) {
 }
 
 int SubstepSolver::substeps() const {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
   return impl_->last_substeps;
 }
 
 void SubstepSolver::prepareSolve(int, int) {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
   impl_->beginStep();
 }
 
@@ -178,15 +182,18 @@ btScalar SubstepSolver::solveGroup(btCollisionObject** bodies, int body_count,
                                    btPersistentManifold** manifolds, int manifold_count,
                                    btTypedConstraint** constraints, int constraint_count,
                                    const btContactSolverInfo& info, btIDebugDraw*, btDispatcher*) {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
   impl_->solve(bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info);
   return 0;
 }
 
 void SubstepSolver::allSolved(const btContactSolverInfo&, btIDebugDraw*) {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
   impl_->endStep();
 }
 
 void SubstepSolver::reset() {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
   impl_->reset();
 }
 

@@ -91,4 +91,28 @@ class SolverWorld {
   std::vector<std::unique_ptr<btTypedConstraint>> constraints;
 };
 
+/// Boxes that lie in layers, and a chain of hinges over them.
+inline void fill(SolverWorld& world, int across, int layers) {
+  world.addFloor();
+  for (int z = 0; z < layers; ++z) {
+    for (int x = 0; x < across; ++x) {
+      for (int y = 0; y < across; ++y) {
+        const btScalar shift = btScalar(0.1) * btScalar(z % 2);
+        world.addBox(btVector3(0.2f, 0.2f, 0.2f), 1,
+                     btVector3(btScalar(0.41) * btScalar(x) + shift, btScalar(0.41) * btScalar(y) + shift,
+                               btScalar(0.2) + btScalar(0.4) * btScalar(z)));
+      }
+    }
+  }
+  btRigidBody* above = nullptr;
+  for (int i = 0; i < 8; ++i) {
+    btRigidBody& link =
+        world.addBox(btVector3(0.1f, 0.05f, 0.05f), 1, btVector3(btScalar(0.2) * btScalar(i), 0, 9));
+    if (above != nullptr)
+      world.join<btHingeConstraint>(*above, link, btVector3(0.1f, 0, 0), btVector3(-0.1f, 0, 0),
+                                    btVector3(0, 1, 0), btVector3(0, 1, 0));
+    above = &link;
+  }
+}
+
 }  // namespace innersphere::test
