@@ -11,7 +11,7 @@
 #include <map>
 #include <string>
 
-#include "bin_of_tori.hpp"
+#include "bin_of_bodies.hpp"
 #include "innersphere/contact_drawer.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/packer.hpp"
@@ -89,6 +89,10 @@ class NoScreen : public btIDebugDraw {
   int getDebugMode() const override { return DBG_DrawWireframe; }
 };
 
+btCollisionDispatcher* dispatcherOf(btDiscreteDynamicsWorld& world) {
+  return static_cast<btCollisionDispatcher*>(world.getDispatcher());
+}
+
 class Benchmark {
  public:
   Benchmark(const Settings& settings, const Models& model) : settings_(settings), model_(model) {
@@ -101,7 +105,9 @@ class Benchmark {
     own.backend = settings_.backend;
     add(
         name, batched,
-        [own](btCollisionDispatcher& d) { PackingCollisionAlgorithm::registerAlgorithm(&d, own); },
+        [own](btDiscreteDynamicsWorld& world) {
+          PackingCollisionAlgorithm::registerAlgorithm(dispatcherOf(world), own);
+        },
         [=](int) {
           auto shape = std::make_shared<PackingShape>(model);
           shape->setSphereCount(spheres);
@@ -109,15 +115,16 @@ class Benchmark {
           return shape;
         });
   }
-  void add(const std::string& name, bool batched, const std::function<void(btCollisionDispatcher&)>& prepare,
+  void add(const std::string& name, bool batched,
+           const std::function<void(btDiscreteDynamicsWorld&)>& prepare,
            const std::function<std::shared_ptr<btCollisionShape>(int)>& make) {
-    kinds_.push_back({name,
-                      std::make_unique<BinOfTori>(settings_.bodies, batched, prepare, make, inertia_),
-                      {},
-                      {},
-                      {},
-                      {},
-                      0});
+    BinOptions bin;
+    bin.bodies = settings_.bodies;
+    bin.batched = batched;
+    bin.prepare = prepare;
+    bin.make = make;
+    bin.inertia = inertia_;
+    kinds_.push_back({name, std::make_unique<BinOfBodies>(bin), {}, {}, {}, {}, 0});
   }
 
   /// Of the kind that was added last.
@@ -127,7 +134,7 @@ class Benchmark {
 
   /// The first kind leads.
   void run() {
-    BinOfTori& lead = *kinds_.front().world;
+    BinOfBodies& lead = *kinds_.front().world;
     const int settle = static_cast<int>(settings_.settle / settings_.dt);
     for (int i = 0; i < settle; ++i) lead.step(settings_.dt);
     for (int sample = 0; sample < settings_.samples; ++sample) {
@@ -174,7 +181,7 @@ class Benchmark {
  private:
   struct Kind {
     std::string name;
-    std::unique_ptr<BinOfTori> world;
+    std::unique_ptr<BinOfBodies> world;
     std::vector<double> all, narrow, rest, processors;
     int contacts;
   };
@@ -199,10 +206,12 @@ void run(const Settings& settings) {
   if (settings.compare) {
     benchmark.add(
         "GImpact, 1,024 triangles", false,
-        [](btCollisionDispatcher& d) { btGImpactCollisionAlgorithm::registerAlgorithm(&d); },
+        [](btDiscreteDynamicsWorld& world) {
+          btGImpactCollisionAlgorithm::registerAlgorithm(dispatcherOf(world));
+        },
         [](int) { return gimpactTorus(); });
     benchmark.add(
-        "btCompoundShape of 64 spheres", false, [](btCollisionDispatcher&) {},
+        "btCompoundShape of 64 spheres", false, [](btDiscreteDynamicsWorld&) {},
         [&](int) { return compoundTorus(*packing); });
     for (const std::size_t count : {1024, 256, 64}) {
       benchmark.addPackings("packing, its first " + std::to_string(count), model, {}, count);
@@ -221,9 +230,7 @@ void run(const Settings& settings) {
     benchmark.addPackings("packing without a surface", std::make_shared<CollisionModel>(bare), {});
     benchmark.addPackings("packing, margin 0.01 m", model, {}, 0, false, 0.01);
     benchmark.addPackings("packing, pairOverlaps() after each step", model, {});
-    benchmark.afterEachStep([](btDiscreteDynamicsWorld& world) {
-      pairOverlaps(static_cast<btCollisionDispatcher*>(world.getDispatcher()));
-    });
+    benchmark.afterEachStep([](btDiscreteDynamicsWorld& world) { pairOverlaps(dispatcherOf(world)); });
     const std::pair<const char*, Reuse> least[] = {{"nothing idle", Reuse::transport},
                                                    {"nothing transported", Reuse::refine},
                                                    {"nothing reused", Reuse::search}};

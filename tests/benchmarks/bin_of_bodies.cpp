@@ -1,4 +1,4 @@
-#include "bin_of_tori.hpp"
+#include "bin_of_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace innersphere::benchmarks {
 
-void BinOfTori::World::performDiscreteCollisionDetection() {
+void BinOfBodies::World::performDiscreteCollisionDetection() {
   updateAabbs();
   computeOverlappingPairs();
   narrow_phase += timeOf([&] {
@@ -18,16 +18,19 @@ void BinOfTori::World::performDiscreteCollisionDetection() {
   });
 }
 
-BinOfTori::BinOfTori(int bodies, bool batched, const std::function<void(btCollisionDispatcher&)>& prepare,
-                     const std::function<std::shared_ptr<btCollisionShape>(int)>& make,
-                     const btVector3& inertia)
-    : dispatcher_(batched ? std::make_unique<BatchedDispatcher<>>(&configuration_)
-                          : std::make_unique<btCollisionDispatcher>(&configuration_)),
-      world_(dispatcher_.get(), &broadphase_, &solver_, &configuration_) {
-  prepare(*dispatcher_);
+void BinOfBodies::World::solveConstraints(btContactSolverInfo& info) {
+  solver += timeOf([&] { btDiscreteDynamicsWorld::solveConstraints(info); });
+}
+
+BinOfBodies::BinOfBodies(const BinOptions& options)
+    : dispatcher_(options.batched ? std::make_unique<BatchedDispatcher<>>(&configuration_)
+                                  : std::make_unique<btCollisionDispatcher>(&configuration_)),
+      solver_(options.solver),
+      world_(dispatcher_.get(), &broadphase_, solver_.get(), &configuration_) {
+  options.prepare(world_);
   world_.setGravity(btVector3(0, 0, btScalar(-9.81)));
-  const int side = std::max(2, static_cast<int>(std::cbrt(bodies)));
-  const btScalar pitch = btScalar(2 * (kRing + kTube) + 0.1), half = pitch * btScalar(side) / 2;
+  const int side = std::max(2, static_cast<int>(std::cbrt(options.bodies)));
+  const btScalar pitch = btScalar(options.pitch), half = pitch * btScalar(side) / 2;
   const auto addWall = [&](const btVector3& normal, btScalar at) {
     shapes_.push_back(std::make_shared<btStaticPlaneShape>(normal, at));
     walls_.push_back(std::make_unique<btRigidBody>(btScalar(0), nullptr, shapes_.back().get()));
@@ -40,13 +43,13 @@ BinOfTori::BinOfTori(int bodies, bool batched, const std::function<void(btCollis
   }
   std::mt19937 engine(1);
   const auto tilt = [&] { return btScalar(double(engine() % 1000) / 1000 - 0.5); };
-  for (int i = 0; i < bodies; ++i) {
-    shapes_.push_back(make(i));
-    btRigidBody::btRigidBodyConstructionInfo info(1, nullptr, shapes_.back().get(), inertia);
+  for (int i = 0; i < options.bodies; ++i) {
+    shapes_.push_back(options.make(i));
+    btRigidBody::btRigidBodyConstructionInfo info(1, nullptr, shapes_.back().get(), options.inertia);
     const int layer = i / (side * side), x = i % side, y = i / side % side;
     info.m_startWorldTransform.setOrigin(btVector3((btScalar(x) + btScalar(0.5)) * pitch - half,
                                                    (btScalar(y) + btScalar(0.5)) * pitch - half,
-                                                   btScalar(1 + 1.2 * layer)));
+                                                   btScalar(1 + options.layer * layer)));
     info.m_startWorldTransform.setRotation(btQuaternion(tilt(), tilt(), tilt()));
     bodies_.push_back(std::make_unique<btRigidBody>(info));
     bodies_.back()->setActivationState(DISABLE_DEACTIVATION);
@@ -54,13 +57,13 @@ BinOfTori::BinOfTori(int bodies, bool batched, const std::function<void(btCollis
   }
 }
 
-BinOfTori::~BinOfTori() {
+BinOfBodies::~BinOfBodies() {
   for (const auto& body : bodies_) world_.removeRigidBody(body.get());
   for (const auto& wall : walls_) world_.removeRigidBody(wall.get());
 }
 
-StepTime BinOfTori::step(double dt) {
-  world_.narrow_phase = 0;
+StepTime BinOfBodies::step(double dt) {
+  world_.narrow_phase = world_.solver = 0;
   StepTime time;
   const std::clock_t start = std::clock();
   time.all = timeOf([&] {
@@ -69,10 +72,11 @@ StepTime BinOfTori::step(double dt) {
   });
   time.processors = 1e6 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   time.narrow_phase = world_.narrow_phase;
+  time.solver = world_.solver;
   return time;
 }
 
-std::vector<BodyState> BinOfTori::state() const {
+std::vector<BodyState> BinOfBodies::state() const {
   std::vector<BodyState> all;
   for (const auto& body : bodies_) {
     all.push_back({body->getWorldTransform(), body->getLinearVelocity(), body->getAngularVelocity()});
@@ -80,7 +84,7 @@ std::vector<BodyState> BinOfTori::state() const {
   return all;
 }
 
-void BinOfTori::setState(const std::vector<BodyState>& state) {
+void BinOfBodies::setState(const std::vector<BodyState>& state) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     bodies_[i]->setCenterOfMassTransform(state[i].transform);
     bodies_[i]->setLinearVelocity(state[i].velocity);
@@ -88,7 +92,7 @@ void BinOfTori::setState(const std::vector<BodyState>& state) {
   }
 }
 
-int BinOfTori::contacts() const {
+int BinOfBodies::contacts() const {
   int count = 0;
   for (int i = 0; i < dispatcher_->getNumManifolds(); ++i) {
     count += dispatcher_->getManifoldByIndexInternal(i)->getNumContacts();

@@ -1,4 +1,4 @@
-// Tori in a bin, in a Bullet world, with one or another kind of collision shape.
+// Bodies in a bin, in a Bullet world, with one or another kind of collision shape and solver.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace innersphere::benchmarks {
 
-constexpr double kRing = 1, kTube = 0.3;  // [m]
+constexpr double kRing = 1, kTube = 0.3;  ///< of a torus [m]
 
 struct BodyState {
   btTransform transform;
@@ -23,16 +23,26 @@ struct BodyState {
 struct StepTime {
   double all = 0;
   double narrow_phase = 0;  ///< Bullet's dispatcher and all that it calls
+  double solver = 0;        ///< with Bullet's search for islands
   double processors = 0;    ///< the step's, of all threads: other programs on the machine do not add to it
 };
 
-/// A bin with `bodies` tori above it, in layers. All kinds have the same mass properties.
-class BinOfTori {
+struct BinOptions {
+  int bodies = 20;
+  /// Between two columns, and two layers, of bodies as they begin [m]; as tori need it.
+  double pitch = 2 * (kRing + kTube) + 0.1, layer = 1.2;
+  bool batched = false;  ///< with a BatchedDispatcher
+  std::function<void(btDiscreteDynamicsWorld&)> prepare = [](btDiscreteDynamicsWorld&) {};
+  std::function<std::shared_ptr<btCollisionShape>(int)> make;  ///< the shape of body i
+  btVector3 inertia{1, 1, 1};                                  ///< of 1 kg
+  std::shared_ptr<btConstraintSolver> solver = std::make_shared<btSequentialImpulseConstraintSolver>();
+};
+
+/// A bin of planes with bodies above it, in layers. Nothing sleeps.
+class BinOfBodies {
  public:
-  /// `make` gives the shape of body i; the bin's floor and walls are planes. `batched`: BatchedDispatcher.
-  BinOfTori(int bodies, bool batched, const std::function<void(btCollisionDispatcher&)>& prepare,
-            const std::function<std::shared_ptr<btCollisionShape>(int)>& make, const btVector3& inertia);
-  ~BinOfTori();
+  explicit BinOfBodies(const BinOptions& options);
+  ~BinOfBodies();
 
   /// What a program does with the world after each step; a part of the step in its times.
   std::function<void(btDiscreteDynamicsWorld&)> after_step;
@@ -43,17 +53,18 @@ class BinOfTori {
   int contacts() const;
 
  private:
-  /// Measures its narrow phase; else as Bullet's.
+  /// Measures its narrow phase and its solver; else as Bullet's.
   class World : public btDiscreteDynamicsWorld {
    public:
     using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
     void performDiscreteCollisionDetection() override;
-    double narrow_phase = 0;  ///< [us]
+    void solveConstraints(btContactSolverInfo& info) override;
+    double narrow_phase = 0, solver = 0;  ///< [us]
   };
   btDefaultCollisionConfiguration configuration_;
   std::unique_ptr<btCollisionDispatcher> dispatcher_;
   btDbvtBroadphase broadphase_;
-  btSequentialImpulseConstraintSolver solver_;
+  std::shared_ptr<btConstraintSolver> solver_;
   World world_;
   std::vector<std::shared_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btRigidBody>> walls_, bodies_;
