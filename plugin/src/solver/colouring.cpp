@@ -34,22 +34,17 @@ void Colouring::colour(const SolverBodies& bodies, const ConstraintRows& constra
   for (const TouchingPair& pair : contacts.pairs())
     pair_colour_.push_back(pair.b == movable ? kFixed : colourOf(pair.a, pair.b, movable));
 
-  const auto sorted = [](std::vector<int>& order, std::size_t count, const auto& before) {
-    order.resize(count);
-    for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<int>(i);
-    std::sort(order.begin(), order.end(), before);
-  };
-  const auto joint_colour = [&](int i) { return joint_colour_[static_cast<std::size_t>(i)]; };
-  const auto pair_colour = [&](int i) { return pair_colour_[static_cast<std::size_t>(i)]; };
-  const auto points = [&](int i) { return contacts.pairs()[static_cast<std::size_t>(i)].count; };
-  sorted(joints_, joint_colour_.size(), [&](int l, int r) {
-    return joint_colour(l) != joint_colour(r) ? joint_colour(l) < joint_colour(r) : l < r;
-  });
+  const auto jointColour = [&](int i) { return joint_colour_[static_cast<std::size_t>(i)]; };
+  const auto pairColour = [&](int i) { return pair_colour_[static_cast<std::size_t>(i)]; };
+  joints_ = &joint_order_.sort(constraints.count(), kAll, jointColour);
   // Pairs with as many points fill blocks best.
-  sorted(pairs_, pair_colour_.size(), [&](int l, int r) {
-    if (pair_colour(l) != pair_colour(r)) return pair_colour(l) < pair_colour(r);
-    return points(l) != points(r) ? points(l) > points(r) : l < r;
-  });
+  constexpr int kMostPoints = 32;
+  const auto pairKey = [&](int i) {
+    const int points = contacts.pairs()[static_cast<std::size_t>(i)].count;
+    return (pairColour(i) + 1) * kMostPoints - std::min(points, kMostPoints);
+  };
+  const std::vector<int>& pairs =
+      pair_order_.sort(static_cast<int>(contacts.pairs().size()), kAll * kMostPoints, pairKey);
 
   colours_.clear();
   contacts.clearBlocks();
@@ -58,15 +53,15 @@ void Colouring::colour(const SolverBodies& bodies, const ConstraintRows& constra
     Colour& made = colours_.emplace_back();
     made.alone = colour == kAlone;
     made.first_joint = static_cast<int>(joint);
-    while (joint < joints_.size() && joint_colour(joints_[joint]) == colour) ++joint;
+    while (joint < joints_->size() && jointColour((*joints_)[joint]) == colour) ++joint;
     made.joints = static_cast<int>(joint) - made.first_joint;
     made.first_block = contacts.blocks();
-    while (pair < pairs_.size() && pair_colour(pairs_[pair]) == colour) {
+    while (pair < pairs.size() && pairColour(pairs[pair]) == colour) {
       std::size_t end = pair + 1;
-      while (!made.alone && end < pairs_.size() && end - pair < static_cast<std::size_t>(kLanes) &&
-             pair_colour(pairs_[end]) == colour)
+      while (!made.alone && end < pairs.size() && end - pair < static_cast<std::size_t>(kLanes) &&
+             pairColour(pairs[end]) == colour)
         ++end;
-      contacts.addBlock(&pairs_[pair], static_cast<int>(end - pair));
+      contacts.addBlock(&pairs[pair], static_cast<int>(end - pair));
       pair = end;
     }
     made.blocks = contacts.blocks() - made.first_block;

@@ -6,6 +6,7 @@
 
 #include "solver/constraint_rows.hpp"
 #include "solver/contact_rows.hpp"
+#include "solver/counting_sort.hpp"
 #include "solver/solver_bodies.hpp"
 
 namespace innersphere {
@@ -28,14 +29,15 @@ class Colouring {
   void colour(const SolverBodies& bodies, const ConstraintRows& constraints, ContactRows& contacts);
   const std::vector<Colour>& colours() const { return colours_; }
   /// Returns the constraints in the order of their colours.
-  const std::vector<int>& joints() const { return joints_; }
+  const std::vector<int>& joints() const { return *joints_; }
 
  private:
   int colourOf(int a, int b, int movable);
 
   std::vector<std::uint64_t> taken_;  ///< of each body that can be moved, the colours it has
   std::vector<int> joint_colour_, pair_colour_;
-  std::vector<int> joints_, pairs_;
+  CountingSort joint_order_, pair_order_;
+  const std::vector<int>* joints_ = nullptr;
   std::vector<Colour> colours_;
 };
 

@@ -31,42 +31,78 @@ void holdWithin(Lanes most, Lanes& along_1, Lanes& along_2) {
 
 }  // namespace
 
-void ContactRows::collect(btPersistentManifold** manifolds, int count, SolverBodies& bodies) {
-  entries_.clear();
-  sources_.clear();
-  pairs_.clear();
-  broken_ = 0;
-  movable_ = bodies.movable();
+void ContactRows::begin(btPersistentManifold** manifolds, int count) {
+  entries_.resize(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
-    if (manifolds[i]->getNumContacts() == 0) continue;
-    int a = bodies.indexOf(*manifolds[i]->getBody0()), b = bodies.indexOf(*manifolds[i]->getBody1());
-    if (a == SolverBodies::kBroken || b == SolverBodies::kBroken) continue;
-    const bool flipped = a > b;
-    if (flipped) std::swap(a, b);
-    if (bodies.isMovable(a)) entries_.push_back({a, b, i, flipped});
+    entries_[static_cast<std::size_t>(i)].manifold = manifolds[i];
+    entries_[static_cast<std::size_t>(i)].number = i;
   }
-  std::sort(entries_.begin(), entries_.end(), [](const Entry& l, const Entry& r) {
-    return std::tie(l.a, l.b, l.manifold) < std::tie(r.a, r.b, r.manifold);
-  });
-  for (const Entry& entry : entries_) {
-    btPersistentManifold& manifold = *manifolds[entry.manifold];
-    if (pairs_.empty() || pairs_.back().a != entry.a || pairs_.back().b != entry.b)
-      pairs_.push_back({entry.a, entry.b, static_cast<int>(sources_.size()), 0});
+}
+
+void ContactRows::find(int begin, int end, const SolverBodies& bodies) {
+  static_assert(MANIFOLD_CACHE_SIZE <= 32, "Entry::points has a bit for each");
+  for (int i = begin; i < end; ++i) {
+    Entry& entry = entries_[static_cast<std::size_t>(i)];
+    btPersistentManifold& manifold = *entry.manifold;
+    entry.points = 0;
+    entry.broken = 0;
+    if (manifold.getNumContacts() == 0) continue;
+    entry.a = bodies.placeOf(*manifold.getBody0());
+    entry.b = bodies.placeOf(*manifold.getBody1());
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
-      btManifoldPoint& point = manifold.getContactPoint(k);
+      const btManifoldPoint& point = manifold.getContactPoint(k);
       // Bullet's own measure of which points its solver is to leave alone.
       if (point.getDistance() > manifold.getContactProcessingThreshold()) continue;
-      if (!isSound(point)) {
-        ++broken_;
-        continue;
-      }
-      sources_.push_back({&point, entry.flipped});
+      if (isSound(point))
+        entry.points |= 1u << k;
+      else
+        ++entry.broken;
+    }
+  }
+}
+
+void ContactRows::collect(SolverBodies& bodies) {
+  broken_ = 0;
+  movable_ = bodies.movable();
+  const auto pushes = [&](Entry& entry) {
+    broken_ += entry.broken;
+    if (entry.points == 0) return false;
+    // Those that are not known are few, and new to the bodies.
+    if (entry.a == SolverBodies::kOther) entry.a = bodies.indexOf(*entry.manifold->getBody0());
+    if (entry.b == SolverBodies::kOther) entry.b = bodies.indexOf(*entry.manifold->getBody1());
+    if (entry.a == SolverBodies::kBroken || entry.b == SolverBodies::kBroken) return false;
+    entry.flipped = entry.a > entry.b;
+    if (entry.flipped) std::swap(entry.a, entry.b);
+    return bodies.isMovable(entry.a);
+  };
+  std::size_t count = 0;
+  for (Entry& entry : entries_) {
+    if (pushes(entry)) entries_[count++] = entry;
+  }
+  entries_.resize(count);
+  sorted_.clear();
+  for (const int i : order_.sort(static_cast<int>(count), movable_,
+                                 [&](int k) { return entries_[static_cast<std::size_t>(k)].a; }))
+    sorted_.push_back(entries_[static_cast<std::size_t>(i)]);
+  for (auto begin = sorted_.begin(); begin != sorted_.end();) {
+    auto end = begin;
+    while (end != sorted_.end() && end->a == begin->a) ++end;
+    std::sort(begin, end, [](const Entry& l, const Entry& r) {
+      return std::tie(l.b, l.number) < std::tie(r.b, r.number);
+    });
+    begin = end;
+  }
+  sources_.clear();
+  pairs_.clear();
+  for (const Entry& entry : sorted_) {
+    if (pairs_.empty() || pairs_.back().a != entry.a || pairs_.back().b != entry.b)
+      pairs_.push_back({entry.a, entry.b, static_cast<int>(sources_.size()), 0});
+    for (int k = 0; k < MANIFOLD_CACHE_SIZE; ++k) {
+      if ((entry.points >> k & 1u) == 0) continue;
+      sources_.push_back({&entry.manifold->getContactPoint(k), entry.flipped});
       ++pairs_.back().count;
     }
   }
-  pairs_.erase(
-      std::remove_if(pairs_.begin(), pairs_.end(), [](const TouchingPair& p) { return p.count == 0; }),
-      pairs_.end());
 }
 
 void ContactRows::clearBlocks() {

@@ -6,6 +6,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
+#include "solver/counting_sort.hpp"
 #include "solver/lane_bodies.hpp"
 #include "solver/lanes.hpp"
 #include "solver/soft_step.hpp"
@@ -27,12 +28,15 @@ enum class Pass {
   relax  ///< without: the speed that this took is given back
 };
 
-/// The contacts of a group. Call collect(), then layOut() with the pairs in the order in which they are to be
-/// solved, then passes over blocks, then writeBack().
+/// The contacts of a group. Call begin(), find() and collect(), then addBlock() with the pairs in the order
+/// in which they are to be solved, then passes over blocks, then writeBack().
 class ContactRows {
  public:
-  /// Finds all points that push, and the pairs that they are of.
-  void collect(btPersistentManifold** manifolds, int count, SolverBodies& bodies);
+  void begin(btPersistentManifold** manifolds, int count);
+  /// Finds the points that push of the manifolds in [begin, end).
+  void find(int begin, int end, const SolverBodies& bodies);
+  /// Finds the pairs that all of them are of.
+  void collect(SolverBodies& bodies);
   const std::vector<TouchingPair>& pairs() const { return pairs_; }
 
   void clearBlocks();
@@ -89,8 +93,11 @@ class ContactRows {
     bool bouncing;               ///< in this substep
   };
   struct Entry {
+    btPersistentManifold* manifold;
+    int number;  ///< among those that Bullet gave
     int a, b;
-    int manifold;
+    unsigned points;  ///< those that push: a bit for each
+    int broken;       ///< the number of those that are not finite
     bool flipped;
   };
 
@@ -107,7 +114,9 @@ class ContactRows {
   static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
   void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
 
-  std::vector<Entry> entries_;
+  std::vector<Entry> entries_;  ///< one for each manifold, then one for each that pushes
+  std::vector<Entry> sorted_;
+  CountingSort order_;
   std::vector<Source> sources_;
   std::vector<TouchingPair> pairs_;
   std::vector<Block> blocks_;

@@ -1,63 +1,70 @@
 #include "solver/crew.hpp"
 
+#include <thread>
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-constexpr std::uint64_t kStage = std::uint64_t(1) << 32;
+constexpr std::uint64_t kStage = 256;  ///< from one stage to the next; what is left is its parts
+static_assert(Crew::kMostThreads < kStage);
+
+int partsOf(std::uint64_t stage) {
+  return static_cast<int>(stage % kStage);
+}
 
 /// Looks this often before it lets other programs have the processor.
 constexpr int kPatience = 256;
 
-/// Waits a moment, longer the more often it was asked.
-void pause(int& asked) {
-  if (++asked < kPatience) return;
+/// Waits a moment. Returns true if that was for long.
+bool pause(int& asked) {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();  // lets the other thread of the core go on
+#endif
+  if (++asked < kPatience) return false;
   asked = 0;
   std::this_thread::yield();
+  return true;
 }
 
 }  // namespace
 
-/// A part that is taken keeps its stage alive, so that what is read after that is of this stage. What was
-/// read before may be of another; then the ticket has changed.
-bool Crew::takePart() {
-  std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
-  for (;;) {
-    const int count = count_.load(std::memory_order_acquire);
-    const int begin = static_cast<int>(ticket % kStage) * grain_.load(std::memory_order_relaxed);
-    if (begin >= count) return false;
-    if (ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel)) break;
-  }
-  const int grain = grain_.load(std::memory_order_relaxed), count = count_.load(std::memory_order_relaxed);
-  const int begin = static_cast<int>(ticket % kStage) * grain;
-  part_.load(std::memory_order_relaxed)(job_.load(std::memory_order_relaxed), begin,
-                                        std::min(begin + grain, count));
-  done_.fetch_add(1, std::memory_order_release);
-  return true;
+/// A stage cannot end while a part of it is begun and not finished: what was begun under its number is of it.
+void Crew::take(int index, std::uint64_t stage) {
+  Part& part = parts_[static_cast<std::size_t>(index)];
+  std::uint64_t begun = part.begun.load(std::memory_order_relaxed);
+  if (begun >= stage || !part.begun.compare_exchange_strong(begun, stage, std::memory_order_acq_rel)) return;
+  const auto bound = [&](int i) { return static_cast<int>(std::int64_t(stage_.count) * i / partsOf(stage)); };
+  stage_.part(stage_.job, bound(index), bound(index + 1));
+  part.finished.store(stage, std::memory_order_release);
 }
 
-void Crew::publish(const Stage& stage) {
-  const int parts = (stage.count + stage.grain - 1) / stage.grain;
-  // Nobody finds a part while the count is that of no stage.
-  count_.store(0, std::memory_order_relaxed);
-  done_.store(0, std::memory_order_relaxed);
-  const std::uint64_t number = ticket_.load(std::memory_order_relaxed) / kStage + 1;
-  ticket_.store(number * kStage, std::memory_order_release);
-  part_.store(stage.part, std::memory_order_relaxed);
-  job_.store(stage.job, std::memory_order_relaxed);
-  grain_.store(stage.grain, std::memory_order_relaxed);
-  count_.store(stage.count, std::memory_order_release);
-  while (takePart()) {
+void Crew::publish(const Stage& stage, int parts) {
+  stage_ = stage;
+  const std::uint64_t before = current_.load(std::memory_order_relaxed) / kStage;
+  const std::uint64_t current = (before + 1) * kStage + static_cast<std::uint64_t>(parts);
+  current_.store(current, std::memory_order_release);
+  take(0, current);
+  for (int i = 1; i < parts; ++i) {
+    const Part& part = parts_[static_cast<std::size_t>(i)];
+    for (int asked = 0; part.finished.load(std::memory_order_acquire) != current;) {
+      if (pause(asked)) take(i, current);
+    }
   }
-  for (int asked = 0; done_.load(std::memory_order_acquire) != parts;) pause(asked);
 }
 
 void Crew::help() {
+  const int thread = threads_.fetch_add(1, std::memory_order_relaxed);
+  std::uint64_t seen = 0;
   for (int asked = 0; !ended_.load(std::memory_order_acquire);) {
-    if (takePart())
-      asked = 0;
-    else
+    const std::uint64_t current = current_.load(std::memory_order_acquire);
+    if (current == seen) {
       pause(asked);
+      continue;
+    }
+    seen = current;
+    asked = 0;
+    if (thread < partsOf(current)) take(thread, current);
   }
 }
 

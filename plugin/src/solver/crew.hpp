@@ -2,9 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
-#include <thread>
 
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
@@ -15,67 +15,72 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// A substep has dozens of stages of some microseconds, each of which needs the one before: too short for a
-/// task group each. So helpers are called once, and wait for the stages in a loop. Nothing depends on them:
-/// the thread that leads takes every part that no helper has begun, and helpers that come late find nothing
-/// to do.
+/// task group each. So helpers are called once, and wait for the stages in a loop. A stage has a part for
+/// each thread that is there, the same one in each pass, so that what it works on stays in the caches of its
+/// core. Nothing depends on helpers: the thread that leads does what they are long in beginning.
 class Crew {
  public:
+  static constexpr int kMostThreads = 64;
+
   /// Calls lead(), which may call forEach(), with up to so many helpers.
   template <typename Lead>
   void work(int helpers, const Lead& lead) {
+    helpers = std::min(helpers, kMostThreads - 1);
     if (helpers <= 0) return lead();
     tbb::this_task_arena::isolate([&] {
       tbb::task_group group;
       ended_.store(false, std::memory_order_relaxed);
       const Dismissal dismissal{*this, group};
-      helped_ = true;
       for (int i = 0; i < helpers; ++i) group.run([this] { help(); });
       lead();
     });
   }
 
-  /// Calls job(begin, end) for parts of [0, count) of up to `grain`, which may run at the same time.
+  /// Calls job(begin, end) for parts of [0, count), of `grain` at least, which may run at the same time.
   template <typename Job>
   void forEach(int count, int grain, const Job& job) {
-    if (!helped_ || count <= grain) {
+    const int parts = std::min((count + grain - 1) / grain, threads_.load(std::memory_order_relaxed));
+    if (parts <= 1) {
       if (count > 0) job(0, count);
       return;
     }
     const auto part = [](const void* context, int begin, int end) {
       (*static_cast<const Job*>(context))(begin, end);
     };
-    publish({part, &job, count, grain});
+    publish({part, &job, count}, parts);
   }
 
  private:
-  using Part = void (*)(const void*, int, int);
   struct Stage {
-    Part part;
-    const void* job;
-    int count, grain;
+    void (*part)(const void*, int, int) = nullptr;
+    const void* job = nullptr;
+    int count = 0;
+  };
+  /// The last stages of which this part has been begun, and finished. Each has a line of the caches.
+  struct alignas(64) Part {
+    std::atomic<std::uint64_t> begun{0}, finished{0};
   };
   struct Dismissal {
     Crew& crew;
     tbb::task_group& group;
     ~Dismissal() {
       crew.ended_.store(true, std::memory_order_release);
-      crew.helped_ = false;
       group.wait();
+      crew.threads_.store(1, std::memory_order_relaxed);
     }
   };
 
-  void publish(const Stage& stage);
-  bool takePart();
+  void publish(const Stage& stage, int parts);
+  void take(int part, std::uint64_t stage);
   void help();
 
-  bool helped_ = false;
+  /// Is written while no part of a stage is left, and read by those who have begun one.
+  Stage stage_;
+  /// The number of its parts in the lowest byte, its own above.
+  alignas(64) std::atomic<std::uint64_t> current_{0};
+  alignas(64) std::atomic<int> threads_{1};  ///< that are there
   std::atomic<bool> ended_{false};
-  /// The number of the stage in the upper half, the next part in the lower one: who raises it has that part.
-  std::atomic<std::uint64_t> ticket_{0};
-  std::atomic<int> done_{0};
-  std::atomic<Part> part_{nullptr};
-  std::atomic<const void*> job_{nullptr};
-  std::atomic<int> count_{0}, grain_{1};
+  std::array<Part, kMostThreads> parts_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

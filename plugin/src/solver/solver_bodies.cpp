@@ -12,9 +12,6 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Marks bodies that are of no use: the companion ids of Bullet itself are -2 and above.
-constexpr int kBrokenId = -3;
-
 /// The rotation of a spin [rad/s] that lasts for a time [s].
 btQuaternion rotationOf(const btVector3& spin, btScalar time) {
   const btScalar half = spin.length() * time / 2;
@@ -55,28 +52,30 @@ void SolverBodies::begin(btCollisionObject** objects, int count, btScalar time_s
   time_step_ = time_step;
   states_.clear();
   bodies_.clear();
-  broken_.clear();
-  broken_driven_ = 0;
+  broken_ = false;
   for (int i = 0; i < count; ++i) {
     btRigidBody* rigid = btRigidBody::upcast(objects[i]);
     if (rigid == nullptr || !canBeMoved(*rigid)) continue;
-    if (hasNumbers(*rigid)) {
-      add(*rigid);
-      continue;
-    }
-    rigid->setCompanionId(kBrokenId);
-    broken_.push_back(rigid);
+    rigid->setCompanionId(static_cast<int>(bodies_.size()));
+    bodies_.emplace_back().rigid = rigid;
   }
   movable_ = static_cast<int>(bodies_.size());
-  states_.emplace_back();  // the fixed world
-  bodies_.emplace_back();
+  bodies_.emplace_back();  // the fixed world
+  states_.resize(bodies_.size());
 }
 
-void SolverBodies::add(btRigidBody& rigid) {
-  rigid.setCompanionId(static_cast<int>(bodies_.size()));
-  Body& body = bodies_.emplace_back();
-  BodyState& state = states_.emplace_back();
-  body.rigid = &rigid;
+void SolverBodies::fill(int begin, int end) {
+  for (std::size_t i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+    bodies_[i].broken = !hasNumbers(*bodies_[i].rigid);
+    if (bodies_[i].broken)
+      broken_ = true;
+    else
+      fill(bodies_[i], states_[i]);
+  }
+}
+
+void SolverBodies::fill(Body& body, BodyState& state) {
+  const btRigidBody& rigid = *body.rigid;
   body.origin = rigid.getWorldTransform().getOrigin();
   body.rotation = rigid.getWorldTransform().getRotation().normalized();
   body.mass = rigid.getMass();
@@ -103,15 +102,20 @@ void SolverBodies::add(btRigidBody& rigid) {
   updateInertia(body, state);
 }
 
-int SolverBodies::indexOf(const btCollisionObject& object) {
+int SolverBodies::placeOf(const btCollisionObject& object) const {
   const int id = object.getCompanionId();
-  if (id == kBrokenId) return kBroken;
-  if (id >= 0 && id < movable_ && bodies_[static_cast<std::size_t>(id)].rigid == &object) return id;
+  if (id < 0 || id >= movable_ || bodies_[static_cast<std::size_t>(id)].rigid != &object) return kOther;
+  return bodies_[static_cast<std::size_t>(id)].broken ? kBroken : id;
+}
+
+int SolverBodies::indexOf(const btCollisionObject& object) {
+  const int place = placeOf(object);
+  if (place != kOther) return place;
   const btRigidBody* rigid = btRigidBody::upcast(&object);
   if (rigid == nullptr || (rigid->getLinearVelocity().isZero() && rigid->getAngularVelocity().isZero()))
     return movable_;
   if (!hasNumbers(*rigid)) {
-    ++broken_driven_;
+    broken_ = true;
     return kBroken;
   }
   if (bodies_.back().rigid == rigid) return static_cast<int>(bodies_.size()) - 1;
@@ -151,7 +155,7 @@ void SolverBodies::accelerate(int begin, int end, btScalar substep) {
   }
 }
 
-void SolverBodies::updateInertia(const Body& body, BodyState& state) const {
+void SolverBodies::updateInertia(const Body& body, BodyState& state) {
   const btMatrix3x3 axes(state.turned * body.rotation);
   const btMatrix3x3 inverse = axes.scaled(body.inverse_inertia) * axes.transpose();
   const btVector3& f = body.angular_factor;
@@ -224,24 +228,21 @@ btVector3 SolverBodies::startOf(int index, const btVector3& point) const {
   return btTransform(body.rotation, body.origin) * body.given.invXform(point);
 }
 
-int SolverBodies::finish() {
-  int lost = 0;
-  for (btRigidBody* body : broken_) {
-    // Else Bullet would take them to nowhere, and what they touch after them.
-    body->setLinearVelocity(btVector3(0, 0, 0));
-    body->setAngularVelocity(btVector3(0, 0, 0));
-    body->setCompanionId(-1);
-  }
-  for (std::size_t i = static_cast<std::size_t>(movable_) + 1; i < bodies_.size(); ++i) {
-    if (bodies_[i].followed) bodies_[i].rigid->setWorldTransform(bodies_[i].given);
-  }
-  for (int i = 0; i < movable_; ++i) {
-    const Body& body = bodies_[static_cast<std::size_t>(i)];
-    BodyState& state = states_[static_cast<std::size_t>(i)];
+void SolverBodies::finish(int begin, int end) {
+  for (std::size_t i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+    const Body& body = bodies_[i];
+    BodyState& state = states_[i];
+    body.rigid->setCompanionId(-1);
+    if (body.broken) {
+      // Else Bullet would take it to nowhere, and what it touches after it.
+      body.rigid->setLinearVelocity(btVector3(0, 0, 0));
+      body.rigid->setAngularVelocity(btVector3(0, 0, 0));
+      continue;
+    }
     if (!isFinite(poseOf(body, state)) || !std::isfinite(state.velocity.length2()) ||
         !std::isfinite(state.spin.length2())) {
       state = BodyState();
-      ++lost;
+      broken_ = true;
     }
     // Bullet goes on from here by the velocities, over the whole step.
     btTransform start;
@@ -249,9 +250,13 @@ int SolverBodies::finish() {
     body.rigid->setWorldTransform(start);
     body.rigid->setLinearVelocity(state.velocity);
     body.rigid->setAngularVelocity(state.spin);
-    body.rigid->setCompanionId(-1);
   }
-  return lost;
+}
+
+void SolverBodies::release() {
+  for (std::size_t i = static_cast<std::size_t>(movable_) + 1; i < bodies_.size(); ++i) {
+    if (bodies_[i].followed) bodies_[i].rigid->setWorldTransform(bodies_[i].given);
+  }
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

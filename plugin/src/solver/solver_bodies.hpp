@@ -1,6 +1,7 @@
 // Holds the bodies of a group while it is solved.
 #pragma once
 
+#include <atomic>
 #include <vector>
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -34,10 +35,14 @@ struct BodyState {
 /// Bodies that can be moved come first; then the fixed world, and whatever else moves by itself.
 class SolverBodies {
  public:
-  /// Takes over the bodies of a group for a step of `time_step` [s], and gives each its place as companion
-  /// id.
+  /// Finds the bodies of a group that can be moved, for a step of `time_step` [s], and gives each its place
+  /// as companion id.
   void begin(btCollisionObject** objects, int count, btScalar time_step);
-  /// Returns the place of a body: that of the fixed world for whatever stands still.
+  /// Takes over the bodies in [begin, end).
+  void fill(int begin, int end);
+  /// Returns the place of a body that can be moved, or kBroken, or kOther for all others.
+  int placeOf(const btCollisionObject& object) const;
+  /// Returns the place of any body: that of the fixed world for whatever stands still.
   int indexOf(const btCollisionObject& object);
   /// Notes that constraints read this body, so that it has to be where its state says.
   void follow(int index);
@@ -65,13 +70,15 @@ class SolverBodies {
   /// What moves by itself goes on, as far as contacts and constraints see it.
   void moveDriven(btScalar substep);
 
-  /// Writes poses and velocities such that Bullet's own integration over the step ends where the substeps
-  /// did. Returns the number of bodies that have got lost in infinity: they keep their places and stop.
-  int finish();
-  /// Returns the number of bodies that came with infinite or undefined velocities, forces or places: they
-  /// are stopped, and nothing touches them. What moves by itself counts once for each that asks for it.
-  int broken() const { return static_cast<int>(broken_.size()) + broken_driven_; }
-  static constexpr int kBroken = -1;  ///< the place of one of them
+  /// Writes poses and velocities of the bodies in [begin, end) such that Bullet's own integration over the
+  /// step ends where the substeps did. Bodies that have got lost in infinity keep their places and stop.
+  void finish(int begin, int end);
+  /// Puts what moves by itself where it was found.
+  void release();
+  /// Returns true if bodies came with infinite or undefined velocities, forces or places, or have got lost:
+  /// they are stopped, and nothing touches the former.
+  bool broken() const { return broken_; }
+  static constexpr int kBroken = -1, kOther = -2;
 
  private:
   struct Body {
@@ -86,20 +93,20 @@ class SolverBodies {
     btVector3 angular_factor{1, 1, 1};
     btScalar mass = 0;
     btScalar size = 0;
+    bool broken = false;
     bool tumbles = false;   ///< gyroscopic torque acts on it
     bool followed = false;  ///< constraints read it
   };
-  void add(btRigidBody& rigid);
+  static void fill(Body& body, BodyState& state);
   void turn(const Body& body, BodyState& state, btScalar substep) const;
-  void updateInertia(const Body& body, BodyState& state) const;
+  static void updateInertia(const Body& body, BodyState& state);
   btTransform poseOf(const Body& body, const BodyState& state) const;
 
   btScalar time_step_ = 0;
   std::vector<BodyState> states_;
   std::vector<Body> bodies_;
   int movable_ = 0;
-  std::vector<btRigidBody*> broken_;
-  int broken_driven_ = 0;
+  std::atomic<bool> broken_{false};
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -19,8 +19,8 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Parts that a thread takes at once, and what makes a thread worth calling.
-constexpr int kBlocks = 4, kJoints = 8, kBodies = 32, kPointsForThread = 512;
+/// What a part for a thread has at least, and what makes a thread worth calling.
+constexpr int kBlocks = 2, kJoints = 2, kBodies = 16, kManifolds = 32, kPairsForThread = 64;
 
 void checkSubsteps(const SubstepOptions& options) {
   constexpr int kMost = 1000;
@@ -47,12 +47,12 @@ class SubstepSolver::Impl {
   void reset() { constraints_.forget(); }
 
  private:
-  void prepare(const btContactSolverInfo& info, int substeps);
+  int arrange(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
   void step(btScalar substep);
   void pass(Pass pass);
   template <typename Joint, typename Block>
   void forEachRow(const Joint& joint, const Block& block);
-  void report(int lost);
+  void report();
 
   SolverBodies bodies_;
   ContactRows contacts_;
@@ -122,32 +122,47 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
   const btScalar time_step = info.m_timeStep;
   if (!(time_step > 0) || !std::isfinite(time_step)) return;
   bodies_.begin(bodies, body_count, time_step);
-  if (bodies_.movable() == 0) return report(bodies_.finish());
-  contacts_.collect(manifolds, manifold_count, bodies_);
-  constraints_.collect(constraints, constraint_count, bodies_);
-  const int substeps = substepsFor(options, time_step, bodies_, contacts_.pairs(), constraints_);
-  last_substeps = std::max(last_substeps, substeps);
-  contacts_.beginStep(info, substeps);
-  constraints_.beginStep(info, substeps);
-  colouring_.colour(bodies_, constraints_, contacts_);
-  const int helpers =
-      std::min(contacts_.points() * kLanes / kPointsForThread, tbb::this_task_arena::max_concurrency() - 1);
+  contacts_.begin(manifolds, manifold_count);
+  const int helpers = std::min((manifold_count + constraint_count) / kPairsForThread,
+                               tbb::this_task_arena::max_concurrency() - 1);
   crew_.work(helpers, [&] {
-    const auto each = [&](const auto& job) {
+    const auto eachBlock = [&](const auto& job) {
       crew_.forEach(contacts_.blocks(), kBlocks, [&](int begin, int end) {
         for (int i = begin; i < end; ++i) job(i);
       });
     };
-    each([&](int block) { contacts_.prepare(block, bodies_); });
+    crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.fill(begin, end); });
+    crew_.forEach(manifold_count, kManifolds,
+                  [&](int begin, int end) { contacts_.find(begin, end, bodies_); });
+    const int substeps = arrange(constraints, constraint_count, info);
+    eachBlock([&](int block) { contacts_.prepare(block, bodies_); });
     for (int i = 0; i < substeps; ++i) step(time_step / btScalar(substeps));
-    each([&](int block) { contacts_.writeBack(block); });
+    eachBlock([&](int block) { contacts_.writeBack(block); });
+    constraints_.writeBack();
+    crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.finish(begin, end); });
   });
-  constraints_.writeBack();
-  report(bodies_.finish());
+  bodies_.release();
+  report();
 }
 
-void SubstepSolver::Impl::report(int lost) {
-  if (reported_ || lost + bodies_.broken() + contacts_.broken() + constraints_.broken() == 0) return;
+/// What one thread does: finds pairs and constraints, and in which order they are solved. Returns the number
+/// of substeps.
+int SubstepSolver::Impl::arrange(btTypedConstraint** constraints, int count,
+                                 const btContactSolverInfo& info) {
+  contacts_.collect(bodies_);
+  constraints_.collect(constraints, count, bodies_);
+  int substeps = 0;
+  if (bodies_.movable() > 0)
+    substeps = substepsFor(options, info.m_timeStep, bodies_, contacts_.pairs(), constraints_);
+  last_substeps = std::max(last_substeps, substeps);
+  contacts_.beginStep(info, std::max(1, substeps));
+  constraints_.beginStep(info, std::max(1, substeps));
+  colouring_.colour(bodies_, constraints_, contacts_);
+  return substeps;
+}
+
+void SubstepSolver::Impl::report() {
+  if (reported_ || !(bodies_.broken() || contacts_.broken() > 0 || constraints_.broken() > 0)) return;
   reported_ = true;
   log("SubstepSolver leaves out bodies, contacts and rows of constraints that have infinite or undefined "
       "velocities, forces, places or properties: such bodies are stopped, and nothing touches them. This is "
