@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <btBulletDynamicsCommon.h>
 
 #include "innersphere/contact_options.hpp"
@@ -47,6 +48,8 @@ class BinOfBodies {
   /// What a program does with the world after each step; a part of the step in its times.
   std::function<void(btDiscreteDynamicsWorld&)> after_step;
 
+  /// Not to: the solver gets all bodies at once, and Bullet looks for no islands.
+  void splitIslands(bool split) { world_.getSimulationIslandManager()->setSplitIslands(split); }
   StepTime step(double dt);
   std::vector<BodyState> state() const;
   void setState(const std::vector<BodyState>& state);

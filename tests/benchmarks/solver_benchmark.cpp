@@ -113,12 +113,19 @@ class Pile {
         "[ms] | the rest "
         "[ms] |\n|---|---|---|---|---|---|\n",
         name_.c_str());
-    const std::pair<const char*, std::shared_ptr<btConstraintSolver>> solvers[] = {
-        {"SubstepSolver, 8", substepSolver(8)},
-        {"SubstepSolver, as it chooses", substepSolver(0)},
-        {"Bullet, 10 iterations", std::make_shared<btSequentialImpulseConstraintSolver>()}};
-    for (const auto& [name, solver] : solvers) {
+    struct Kind {
+      const char* name;
+      std::shared_ptr<btConstraintSolver> solver;
+      bool split;
+    };
+    const Kind kinds[] = {
+        {"SubstepSolver, 8, without Bullet's islands", substepSolver(8), false},
+        {"SubstepSolver, 8", substepSolver(8), true},
+        {"SubstepSolver, as it chooses", substepSolver(0), true},
+        {"Bullet, 10 iterations", std::make_shared<btSequentialImpulseConstraintSolver>(), true}};
+    for (const auto& [name, solver, split] : kinds) {
       trial_->lead = solver;
+      bin_->splitIslands(split);
       for (const int threads : settings_.threads) {
         std::vector<double> all, narrow, solving, rest;
         tbb::task_arena(threads).execute([&] {

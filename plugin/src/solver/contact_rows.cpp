@@ -31,19 +31,13 @@ void holdWithin(Lanes most, Lanes& along_1, Lanes& along_2) {
 
 }  // namespace
 
-void ContactRows::begin(btPersistentManifold** manifolds, int count) {
-  entries_.resize(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    entries_[static_cast<std::size_t>(i)].manifold = manifolds[i];
-    entries_[static_cast<std::size_t>(i)].number = i;
-  }
-}
-
-void ContactRows::find(int begin, int end, const SolverBodies& bodies) {
+void ContactRows::find(int begin, int end, btPersistentManifold** manifolds, const SolverBodies& bodies) {
   static_assert(MANIFOLD_CACHE_SIZE <= 32, "Entry::points has a bit for each");
   for (int i = begin; i < end; ++i) {
     Entry& entry = entries_[static_cast<std::size_t>(i)];
-    btPersistentManifold& manifold = *entry.manifold;
+    btPersistentManifold& manifold = *manifolds[i];
+    entry.manifold = &manifold;
+    entry.number = i;
     entry.points = 0;
     entry.broken = 0;
     if (manifold.getNumContacts() == 0) continue;
@@ -146,7 +140,7 @@ void ContactRows::follow(const Block& block, PointLanes& point, const LaneBodies
   point.arm_b = point.pivot_b + point.normal * point.radius_b + apart * block.share;
 }
 
-void ContactRows::warmStart(int index, std::vector<BodyState>& states) {
+void ContactRows::warmStartBlock(int index, std::vector<BodyState>& states) {
   Block& block = blocks_[static_cast<std::size_t>(index)];
   block.bouncing = false;
   LaneBodies a(block.a, states), b(block.b, states);
@@ -240,7 +234,7 @@ void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneB
   b.pushAt(point.arm_b, push * inAll(-1));
 }
 
-void ContactRows::solve(int index, Pass pass, std::vector<BodyState>& states) {
+void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& states) {
   const Block& block = blocks_[static_cast<std::size_t>(index)];
   LaneBodies a(block.a, states), b(block.b, states);
   PointLanes* const begin = points_.data() + block.begin;
@@ -262,6 +256,22 @@ void ContactRows::solve(int index, Pass pass, std::vector<BodyState>& states) {
   }
   a.put(block.a, movable_, states);
   b.put(block.b, movable_, states);
+}
+
+void ContactRows::warmStartWide(int index, std::vector<BodyState>& states) {
+  warmStartBlock(index, states);
+}
+
+void ContactRows::solveWide(int index, Pass pass, std::vector<BodyState>& states) {
+  solveBlock(index, pass, states);
+}
+
+void ContactRows::warmStart(int index, std::vector<BodyState>& states) {
+  wide_ ? warmStartWide(index, states) : warmStartBlock(index, states);
+}
+
+void ContactRows::solve(int index, Pass pass, std::vector<BodyState>& states) {
+  wide_ ? solveWide(index, pass, states) : solveBlock(index, pass, states);
 }
 
 void ContactRows::writeBack(int index) {

@@ -32,9 +32,13 @@ enum class Pass {
 /// in which they are to be solved, then passes over blocks, then writeBack().
 class ContactRows {
  public:
-  void begin(btPersistentManifold** manifolds, int count);
+  /// `wide`: with instructions that not every processor has.
+  explicit ContactRows(bool wide = hasWideLanes()) : wide_(wide) {}
+
+  /// Begins with so many manifolds.
+  void begin(int count) { entries_.resize(static_cast<std::size_t>(count)); }
   /// Finds the points that push of the manifolds in [begin, end).
-  void find(int begin, int end, const SolverBodies& bodies);
+  void find(int begin, int end, btPersistentManifold** manifolds, const SolverBodies& bodies);
   /// Finds the pairs that all of them are of.
   void collect(SolverBodies& bodies);
   const std::vector<TouchingPair>& pairs() const { return pairs_; }
@@ -109,10 +113,15 @@ class ContactRows {
   static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls);
   void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                     const SolverBodies& bodies) const;
-  static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
-  void startBounces(Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) const;
-  static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
-  void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
+  // Position-independent code inlines what is declared so.
+  inline void warmStartBlock(int index, std::vector<BodyState>& states);
+  inline void solveBlock(int index, Pass pass, std::vector<BodyState>& states);
+  INNERSPHERE_WIDE void warmStartWide(int index, std::vector<BodyState>& states);
+  INNERSPHERE_WIDE void solveWide(int index, Pass pass, std::vector<BodyState>& states);
+  inline static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
+  inline void startBounces(Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) const;
+  inline static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
+  inline void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
 
   std::vector<Entry> entries_;  ///< one for each manifold, then one for each that pushes
   std::vector<Entry> sorted_;
@@ -128,6 +137,7 @@ class ContactRows {
   btScalar bounce_threshold_ = 0;  ///< [m/s]
   btScalar slop_ = 0;              ///< [m]
   bool warm_starting_ = true;
+  bool wide_;
   int movable_ = 0;
   int broken_ = 0;
 };

@@ -48,29 +48,39 @@ btScalar inverseOrZero(btScalar x) {
 
 }  // namespace
 
-void SolverBodies::begin(btCollisionObject** objects, int count, btScalar time_step) {
+void SolverBodies::begin(int count, btScalar time_step) {
   time_step_ = time_step;
-  states_.clear();
-  bodies_.clear();
   broken_ = false;
-  for (int i = 0; i < count; ++i) {
+  found_.resize(static_cast<std::size_t>(count));
+}
+
+void SolverBodies::find(int begin, int end, btCollisionObject** objects) {
+  for (int i = begin; i < end; ++i) {
     btRigidBody* rigid = btRigidBody::upcast(objects[i]);
-    if (rigid == nullptr || !canBeMoved(*rigid)) continue;
-    rigid->setCompanionId(static_cast<int>(bodies_.size()));
-    bodies_.emplace_back().rigid = rigid;
+    found_[static_cast<std::size_t>(i)] = rigid != nullptr && canBeMoved(*rigid) ? rigid : nullptr;
   }
-  movable_ = static_cast<int>(bodies_.size());
-  bodies_.emplace_back();  // the fixed world
+}
+
+void SolverBodies::collect() {
+  found_.erase(std::remove(found_.begin(), found_.end(), nullptr), found_.end());
+  movable_ = static_cast<int>(found_.size());
+  bodies_.resize(found_.size() + 1);
   states_.resize(bodies_.size());
+  bodies_.back() = Body();  // the fixed world
+  states_.back() = BodyState();
 }
 
 void SolverBodies::fill(int begin, int end) {
   for (std::size_t i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-    bodies_[i].broken = !hasNumbers(*bodies_[i].rigid);
-    if (bodies_[i].broken)
+    Body& body = bodies_[i] = Body();
+    states_[i] = BodyState();
+    body.rigid = found_[i];
+    body.rigid->setCompanionId(static_cast<int>(i));
+    body.broken = !hasNumbers(*body.rigid);
+    if (body.broken)
       broken_ = true;
     else
-      fill(bodies_[i], states_[i]);
+      fill(body, states_[i]);
   }
 }
 
@@ -89,8 +99,8 @@ void SolverBodies::fill(Body& body, BodyState& state) {
                               BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
                               BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY;
   const bool free = body.angular_factor == btVector3(1, 1, 1) && inverse[inverse.minAxis()] > 0;
-  const bool round = inverse.x() == inverse.y() && inverse.y() == inverse.z();
-  body.tumbles = free && !round && (rigid.getFlags() & kGyroscopic) != 0;
+  body.round = free && inverse.x() == inverse.y() && inverse.y() == inverse.z();
+  body.tumbles = free && !body.round && (rigid.getFlags() & kGyroscopic) != 0;
   btVector3 centre;
   if (rigid.getCollisionShape() != nullptr) {
     rigid.getCollisionShape()->getBoundingSphere(centre, body.size);
@@ -157,14 +167,15 @@ void SolverBodies::accelerate(int begin, int end, btScalar substep) {
 
 void SolverBodies::updateInertia(const Body& body, BodyState& state) {
   const btMatrix3x3 axes(state.turned * body.rotation);
-  const btMatrix3x3 inverse = axes.scaled(body.inverse_inertia) * axes.transpose();
   const btVector3& f = body.angular_factor;
-  state.xx = inverse[0][0] * f.x() * f.x();
-  state.yy = inverse[1][1] * f.y() * f.y();
-  state.zz = inverse[2][2] * f.z() * f.z();
-  state.xy = inverse[0][1] * f.x() * f.y();
-  state.xz = inverse[0][2] * f.x() * f.z();
-  state.yz = inverse[1][2] * f.y() * f.z();
+  const btVector3 x = axes[0] * f.x(), y = axes[1] * f.y(), z = axes[2] * f.z();
+  const btVector3 of_x = x * body.inverse_inertia, of_y = y * body.inverse_inertia;
+  state.xx = of_x.dot(x);
+  state.xy = of_x.dot(y);
+  state.xz = of_x.dot(z);
+  state.yy = of_y.dot(y);
+  state.yz = of_y.dot(z);
+  state.zz = (z * body.inverse_inertia).dot(z);
 }
 
 /// Nothing but the orientation changes of a body that keeps its spin. One that tumbles keeps its angular
@@ -174,7 +185,7 @@ void SolverBodies::turn(const Body& body, BodyState& state, btScalar substep) co
   if (state.spin.isZero()) return;
   if (!body.tumbles) {
     state.turned = (rotationOf(state.spin, substep) * state.turned).normalized();
-    updateInertia(body, state);
+    if (!body.round) updateInertia(body, state);
     return;
   }
   const btQuaternion start = (state.turned * body.rotation).normalized();

@@ -35,10 +35,14 @@ struct BodyState {
 /// Bodies that can be moved come first; then the fixed world, and whatever else moves by itself.
 class SolverBodies {
  public:
-  /// Finds the bodies of a group that can be moved, for a step of `time_step` [s], and gives each its place
-  /// as companion id.
-  void begin(btCollisionObject** objects, int count, btScalar time_step);
-  /// Takes over the bodies in [begin, end).
+  // These four in turn, two of them for parts of the whole.
+  /// Begins with so many objects, for a step of `time_step` [s].
+  void begin(int count, btScalar time_step);
+  /// Finds the bodies that can be moved of the objects in [begin, end).
+  void find(int begin, int end, btCollisionObject** objects);
+  /// Gives each of them a place.
+  void collect();
+  /// Takes over the bodies at the places in [begin, end), and tells each its place by its companion id.
   void fill(int begin, int end);
   /// Returns the place of a body that can be moved, or kBroken, or kOther for all others.
   int placeOf(const btCollisionObject& object) const;
@@ -85,7 +89,7 @@ class SolverBodies {
     btRigidBody* rigid = nullptr;
     btVector3 force{0, 0, 0};                             ///< as an acceleration [m/s^2]
     btVector3 torque{0, 0, 0};                            ///< [N m]
-    btTransform given;                                    ///< of what moves by itself: where it is put again
+    btTransform given = btTransform::getIdentity();       ///< of what moves by itself: where it is put again
     btVector3 origin{0, 0, 0};                            ///< at the start
     btQuaternion rotation = btQuaternion::getIdentity();  ///< at the start
     btVector3 inverse_inertia{0, 0, 0};                   ///< about its own axes
@@ -95,6 +99,7 @@ class SolverBodies {
     btScalar size = 0;
     bool broken = false;
     bool tumbles = false;   ///< gyroscopic torque acts on it
+    bool round = false;     ///< its inertia is the same about any axis
     bool followed = false;  ///< constraints read it
   };
   static void fill(Body& body, BodyState& state);
@@ -105,6 +110,7 @@ class SolverBodies {
   btScalar time_step_ = 0;
   std::vector<BodyState> states_;
   std::vector<Body> bodies_;
+  std::vector<btRigidBody*> found_;  ///< for each object; null: it cannot be moved
   int movable_ = 0;
   std::atomic<bool> broken_{false};
 };

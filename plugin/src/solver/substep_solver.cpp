@@ -121,8 +121,8 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
   called_ = true;
   const btScalar time_step = info.m_timeStep;
   if (!(time_step > 0) || !std::isfinite(time_step)) return;
-  bodies_.begin(bodies, body_count, time_step);
-  contacts_.begin(manifolds, manifold_count);
+  bodies_.begin(body_count, time_step);
+  contacts_.begin(manifold_count);
   const int helpers = std::min((manifold_count + constraint_count) / kPairsForThread,
                                tbb::this_task_arena::max_concurrency() - 1);
   crew_.work(helpers, [&] {
@@ -131,9 +131,11 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
         for (int i = begin; i < end; ++i) job(i);
       });
     };
+    crew_.forEach(body_count, kBodies, [&](int begin, int end) { bodies_.find(begin, end, bodies); });
+    bodies_.collect();
     crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.fill(begin, end); });
     crew_.forEach(manifold_count, kManifolds,
-                  [&](int begin, int end) { contacts_.find(begin, end, bodies_); });
+                  [&](int begin, int end) { contacts_.find(begin, end, manifolds, bodies_); });
     const int substeps = arrange(constraints, constraint_count, info);
     eachBlock([&](int block) { contacts_.prepare(block, bodies_); });
     for (int i = 0; i < substeps; ++i) step(time_step / btScalar(substeps));

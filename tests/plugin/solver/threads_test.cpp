@@ -19,7 +19,7 @@ TEST(SubstepThreads, BitsAreTheSameForAnyNumber) {
     tbb::task_arena arena(threads);
     SolverWorld world;
     fill(world, 14, 4);
-    arena.execute([&] { world.run(0.25); });
+    arena.execute([&] { world.run(0.1); });
     if (threads == 1)
       alone = world.motion();
     else
