@@ -14,7 +14,7 @@ int partsOf(std::uint64_t stage) {
 }
 
 /// Looks this often before it lets other programs have the processor.
-constexpr int kPatience = 256;
+constexpr int kPatience = 64;
 
 /// Waits a moment. Returns true if that was for long.
 bool pause(int& asked) {

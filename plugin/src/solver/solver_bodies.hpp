@@ -12,8 +12,9 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// What rows read and write of a body: how it moves, how far it has moved since the step began, and how it
-/// yields to impulses.
-struct BodyState {
+/// yields to impulses. What passes write has a line of the caches of its own: the others' stay with all
+/// threads.
+struct alignas(64) BodyState {
   btVector3 velocity{0, 0, 0};  ///< [m/s]
   btVector3 spin{0, 0, 0};      ///< [rad/s]
   btVector3 moved{0, 0, 0};     ///< [m]

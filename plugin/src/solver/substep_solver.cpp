@@ -20,7 +20,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// What a part for a thread has at least, and what makes a thread worth calling.
-constexpr int kBlocks = 2, kJoints = 2, kBodies = 16, kManifolds = 32, kPairsForThread = 64;
+constexpr int kBlocks = 1, kJoints = 2, kBodies = 16, kManifolds = 32, kPairsForThread = 128;
 
 void checkSubsteps(const SubstepOptions& options) {
   constexpr int kMost = 1000;
