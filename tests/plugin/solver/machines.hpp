@@ -33,7 +33,11 @@ inline btScalar chainEnd(int links) {
 
 /// An arm of 1 kg and 1 m, level, with a load of 10 kg fixed to its end, on a motor of 300 N m at most.
 struct MotorArm {
-  static constexpr double kLength = 1, kTorque = 300;
+  static constexpr double kTorque = 300;
+  /// How far it is after a second at 1 rad/s: up to speed it takes I w / (T - M g) [s], half of which it
+  /// loses.
+  static constexpr double kInertia = 10 * 1.004 + (1 + 0.01) / 3, kWeight = (10 + 0.5) * kGravity,
+                          kAngle = 1 - kInertia / (kTorque - kWeight) / 2;
 
   explicit MotorArm(SolverWorld& world)
       : arm(world.addBox(btVector3(btScalar(0.5), btScalar(0.05), btScalar(0.05)), 1,
