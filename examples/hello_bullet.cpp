@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "innersphere/error.hpp"
+#include "innersphere/substep_solver.hpp"
 
 // [snippet use]
 #include <memory>
@@ -23,11 +24,11 @@ int main(int argc, char** argv) try {
   }
   const char* file = argv[1];
 
-  // An existing Bullet program has this already.
+  // An existing Bullet program has this already; with btSequentialImpulseConstraintSolver it needs steps of 1/240 s.
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;
-  btSequentialImpulseConstraintSolver solver;
+  innersphere::SubstepSolver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
   btRigidBody floor(0, nullptr, &plane);
@@ -51,7 +52,7 @@ int main(int argc, char** argv) try {
   // after a step: draw the mesh at motion.m_graphicsWorldTrans
   // [snippet]
 
-  for (int step = 0; step < 5 * 240; ++step) world.stepSimulation(btScalar(1) / 240, 0);
+  for (int step = 0; step < 5 * 60; ++step) world.stepSimulation(btScalar(1) / 60, 0);
 
   btVector3 low, high;
   shape.getAabb(body.getWorldTransform(), low, high);
