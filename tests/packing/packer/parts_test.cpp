@@ -5,6 +5,7 @@
 
 #include "packer/cells.hpp"
 #include "packer/dual_simplex.hpp"
+#include "packer/near_balls.hpp"
 #include "packer/sphere_grid.hpp"
 
 namespace innersphere::test {
@@ -61,10 +62,32 @@ TEST(SphereGrid, FindsTheNearestBall) {
     const Point x(unit(random), unit(random), unit(random));
     double least = 1e30;
     for (const Ball& ball : balls) least = std::min(least, ball.distance(x));
-    const SphereGrid::Nearest hit = grid.nearestOfAll(x, 0.01);
+    const SphereGrid::Nearest hit = grid.nearest(x, least + 0.01);
     EXPECT_EQ(hit.distance, least);
     EXPECT_EQ(balls[hit.index].distance(x), least);
     EXPECT_EQ(grid.nearest(x, least).distance, std::numeric_limits<double>::infinity());
+  }
+}
+
+TEST(NearBalls, AreThoseOfAllBalls) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Ball> balls;
+  for (int i = 0; i < 500; ++i) {
+    // All on one side, so that most points are far from them, and some twice.
+    const Point centre(unit(random) * 0.2, unit(random), unit(random));
+    balls.push_back(i % 10 == 9 ? balls.back() : Ball{centre, std::pow(unit(random), 12) * 0.1});
+  }
+  std::vector<Point> points(5000);
+  for (Point& x : points) x = Point(unit(random), unit(random), std::pow(unit(random), 4));
+  const std::vector<NearBalls::Nearest> hits = nearestBalls(points, balls);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::uint32_t first = 0;
+    for (std::uint32_t k = 1; k < balls.size(); ++k) {
+      if (balls[k].distance(points[i]) < balls[first].distance(points[i])) first = k;
+    }
+    EXPECT_EQ(hits[i].index, first);
+    EXPECT_EQ(hits[i].distance, balls[first].distance(points[i]));
   }
 }
 
