@@ -1,11 +1,16 @@
 // The packer's tools by themselves, against brute force.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
 #include <random>
 
+#include "mesh/triangle.hpp"
 #include "packer/cells.hpp"
 #include "packer/dual_simplex.hpp"
 #include "packer/near_balls.hpp"
+#include "packer/prism.hpp"
 #include "packer/sphere_grid.hpp"
 
 namespace innersphere::test {
@@ -88,6 +93,34 @@ TEST(NearBalls, AreThoseOfAllBalls) {
     }
     EXPECT_EQ(hits[i].index, first);
     EXPECT_EQ(hits[i].distance, balls[first].distance(points[i]));
+  }
+}
+
+TEST(Prism, BoundsTheDistanceFromItsTriangle) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto point = [&] { return Point(unit(random), unit(random), unit(random)); };
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::array<Point, 3> corners{point(), point(), point()};
+    const Point cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (cross.norm() < 0.01) continue;
+    const Point inwards = (trial % 2 ? 1 : -1) * cross.normalized();
+    const Prism prism(corners, inwards);
+    const auto world = [](const Point& x) { return Vec3d{x[0], x[1], x[2]}; };
+    const Triangle triangle(world(corners[0]), world(corners[1]), world(corners[2]));
+    const Point centre = point();
+    const double half = 0.5, behind = prism.farthestBehind(centre, half);
+    for (int i = 0; i < 50; ++i) {
+      const Point x = centre + half * point(), y = centre + half * point();
+      Vec3d nearest;
+      const double away = std::sqrt(triangle.closest(world(x), nearest));
+      // In front, nothing is nearer than the triangle itself; behind, the cube ends.
+      const bool front = inwards.dot(x - corners[0]) > 0;
+      EXPECT_LE(away, (front ? prism.distance(x) : behind) + 1e-9);
+      if (front) EXPECT_NEAR(prism.distance(x), away, 1e-9);
+      EXPECT_LE(prism.distance(x), away + 1e-9);
+      EXPECT_LE(prism.distance((x + y) / 2), (prism.distance(x) + prism.distance(y)) / 2 + 1e-12);
+    }
   }
 }
 
