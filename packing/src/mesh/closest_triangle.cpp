@@ -120,11 +120,11 @@ int ClosestTriangle::sideOf(const Vec3d& p) const {
   return std::abs(front) <= rounding ? 0 : front > 0 ? 1 : -1;
 }
 
-ClosestPoint ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
+ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
   const Hit hit = find(p, cutoff);
-  ClosestPoint result{std::sqrt(hit.distance2), hit.point};
-  if (!(result.distance <= cutoff)) result = {std::numeric_limits<double>::infinity(), {}};
-  return result;
+  const double distance = std::sqrt(hit.distance2);
+  if (!(distance <= cutoff)) return {{std::numeric_limits<double>::infinity(), {}}};
+  return {{distance, hit.point}, &triangles_[hit.triangle]};
 }
 
 }  // namespace innersphere

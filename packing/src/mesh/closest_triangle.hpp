@@ -19,8 +19,13 @@ class ClosestTriangle {
  public:
   /// Builds the tree. Throws std::runtime_error if Embree cannot be started or has no memory for it.
   explicit ClosestTriangle(const Mesh& mesh);
+
+  struct Nearest : ClosestPoint {
+    const Triangle* triangle = nullptr;  ///< that the point lies on
+  };
+
   /// Returns the nearest point; beyond `cutoff` [m] the distance is infinity.
-  ClosestPoint closest(const Vec3d& p, double cutoff) const;
+  Nearest closest(const Vec3d& p, double cutoff) const;
   /// Returns 1 in front of the nearest triangle and -1 behind it, if the nearest point is clearly inside of
   /// it and farther than rounding; else 0.
   int sideOf(const Vec3d& p) const;

@@ -16,6 +16,9 @@ class MeshSolid : public Solid {
   MeshSolid(Mesh closed, const std::string& name, bool count_once);
 
   ClosestPoint closestPoint(const Vec3d& p, double cutoff) const override;
+  ClosestTriangle::Nearest closestTriangle(const Vec3d& p, double cutoff) const {
+    return tree_.closest(p, cutoff);
+  }
   bool contains(const Vec3d& p) const override;
   Bounds bounds() const override { return bounds_; }
   MassProperties massProperties() const override { return mass_; }

@@ -1,6 +1,9 @@
 // Finds the nearest point of one triangle, in double.
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "common/bounds.hpp"
 
 namespace innersphere {
@@ -56,6 +59,12 @@ class Triangle {
     }
     point = a_ + best;
     return best2;
+  }
+
+  /// Returns the corners, or nothing of a triangle so thin that rounding decides where it faces.
+  std::optional<std::array<Vec3d, 3>> cornersIfNotThin() const {
+    if (thin_) return std::nullopt;
+    return std::array<Vec3d, 3>{a_, a_ + ab_, a_ + ac_};
   }
 
   /// Returns how far p is in front of the triangle [m], if the nearest point of the triangle is clearly

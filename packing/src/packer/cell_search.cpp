@@ -1,8 +1,12 @@
 #include "packer/cell_search.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+
+#include "mesh/triangle.hpp"
 
 namespace innersphere {
 namespace {
@@ -15,6 +19,9 @@ constexpr int kProbes = 12;
 
 // Radius of the balls put behind walls, in wanted radii. Larger: less curved, but they find less room.
 constexpr double kBehind = 8;
+
+// Cosine between a wall's direction and a triangle's, from which on the wall is the triangle.
+constexpr double kFacing = 1 - 1e-6;
 
 /// A cube, and the distances from a ball to its nearest and farthest points.
 struct Cube {
@@ -33,6 +40,19 @@ struct Cube {
     return ((centre - ball.centre).array().abs() - half).max(0.0).matrix().squaredNorm() < reach * reach;
   }
 };
+
+/// The prism behind the triangle, in the packer's coordinates; nothing if the wall does not face as the
+/// triangle does, which is so at edges.
+std::optional<Prism> prismBehind(const Container& container, const Triangle& triangle, const Point& inwards) {
+  const auto corners = triangle.cornersIfNotThin();
+  if (!corners) return std::nullopt;
+  const Point a = container.fromWorld((*corners)[0]), b = container.fromWorld((*corners)[1]),
+              c = container.fromWorld((*corners)[2]);
+  Point normal = (b - a).cross(c - a).normalized();
+  if (normal.dot(inwards) < 0) normal *= -1;
+  if (normal.dot(inwards) < kFacing) return std::nullopt;
+  return Prism({a, b, c}, normal);
+}
 
 float roundUp(double x) {
   const float rounded = static_cast<float>(x);
@@ -120,10 +140,29 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
     const bool low = program.optimum() <= bound_;
     if ((low || k == 0) && prove()) return Verdict::below;
     // Then only the balls' curvature is in the way.
-    if (low) return flatten(program, half, cuts) && prove() ? Verdict::below : Verdict::undecided;
+    if (low) {
+      const bool below =
+          (straighten(program, cuts) && prove()) || (flatten(program, half, cuts) && prove());
+      return below ? Verdict::below : Verdict::undecided;
+    }
     x = centre + program.argmax();
   }
   return Verdict::undecided;
+}
+
+bool CellSearch::straighten(const DualSimplex& program, std::vector<Probe>& cuts) {
+  bool straighter = false;
+  prisms_.clear();
+  program.forWeights([&](int k, double) {
+    Probe& cut = cuts[k];
+    if (!cut.triangle) return;
+    const std::optional<Prism> prism = prismBehind(container_, *cut.triangle, cut.gradient);
+    if (!prism) return;
+    cut.prism = static_cast<int>(prisms_.size());
+    prisms_.push_back(*prism);
+    straighter = true;
+  });
+  return straighter;
 }
 
 bool CellSearch::flatten(const DualSimplex& program, double half, std::vector<Probe>& cuts) {
@@ -133,6 +172,7 @@ bool CellSearch::flatten(const DualSimplex& program, double half, std::vector<Pr
     const Ball behind = ballBehind(cuts[k].wall, -cuts[k].gradient, kBehind * std::max(half, wanted_));
     if (behind.radius <= cuts[k].ball.radius) return;
     cuts[k].ball = behind;
+    cuts[k].prism = -1;
     flatter = true;
   });
   return flatter;
@@ -140,14 +180,16 @@ bool CellSearch::flatten(const DualSimplex& program, double half, std::vector<Pr
 
 double CellSearch::provenBound(const DualSimplex& program, std::span<const Probe> cuts, const Point& centre,
                                double half) const {
-  double corners[8] = {};
+  double corners[8] = {}, behind = 0;
   program.forWeights([&](int k, double weight) {
+    const Prism* prism = cuts[k].prism < 0 ? nullptr : &prisms_[cuts[k].prism];
     for (int corner = 0; corner < 8; ++corner) {
       const Point v = centre + half * Point(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-      corners[corner] += weight * cuts[k].ball.distance(v);
+      corners[corner] += weight * (prism ? prism->distance(v) : cuts[k].ball.distance(v));
     }
+    if (prism) behind = std::max(behind, prism->farthestBehind(centre, half));
   });
-  return *std::max_element(corners, corners + 8) + 4e-15;
+  return std::max(behind, *std::max_element(corners, corners + 8)) + 4e-15;
 }
 
 }  // namespace innersphere

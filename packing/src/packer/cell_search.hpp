@@ -8,6 +8,7 @@
 #include "packer/clearance_cache.hpp"
 #include "packer/container.hpp"
 #include "packer/dual_simplex.hpp"
+#include "packer/prism.hpp"
 #include "packer/sphere_grid.hpp"
 
 namespace innersphere {
@@ -63,6 +64,8 @@ class CellSearch {
     Ball ball;             ///< the obstacle
     bool at_wall = false;  ///< it stands for the surface, nearest at `wall`
     Point wall{};
+    const Triangle* triangle = nullptr;  ///< that the wall consists of there, if that is known
+    int prism = -1;                      ///< of prisms_, takes the place of the ball
   };
 
   void gather(std::span<const Cell> cells);
@@ -76,6 +79,10 @@ class CellSearch {
   /// Returns the bound proven by the programme's dual variables. Cut k of the programme is cuts[k].
   double provenBound(const DualSimplex& program, std::span<const Probe> cuts, const Point& centre,
                      double half) const;
+
+  /// Puts prisms behind the flat walls that hold the optimum down, for these do not curve. Returns false if
+  /// there are none.
+  bool straighten(const DualSimplex& program, std::vector<Probe>& cuts);
 
   /// Puts larger balls behind the walls that hold the optimum down, for they curve less. Returns false if
   /// there are none.
@@ -108,6 +115,7 @@ class CellSearch {
   // and so on.
   std::vector<Ball> balls_;
   std::size_t block_balls_ = 0;
+  std::vector<Prism> prisms_;  // of the cell being bounded
 };
 
 }  // namespace innersphere

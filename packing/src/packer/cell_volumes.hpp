@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "packer/container.hpp"
-#include "packer/sphere_grid.hpp"
 
 namespace innersphere {
 

@@ -61,11 +61,16 @@ class ClearanceCache {
   /// learnt is kept; `reach` bounds the distances that are of use.
   bool contains(const Container& container, const Point& x, double reach) {
     if (const Entry* known = around(x)) return known->distance > 0;
+    return signedDistance(container, x, reach) > 0;
+  }
+
+  /// Returns the distance from the surface, negative outside, or `reach` if that is less. It is kept.
+  double signedDistance(const Container& container, const Point& x, double reach) {
     const double distance = std::min(container.closest(x, reach).distance, reach);
     int found = side(x, distance);
     if (found == 0) found = container.contains(x) ? 1 : -1;
     add(x, found * distance);
-    return found > 0;
+    return found * distance;
   }
 
  private:

@@ -8,6 +8,7 @@
 #include "common/frame_origin.hpp"
 #include "innersphere/error.hpp"
 #include "mesh/mesh_report.hpp"
+#include "mesh/mesh_solid.hpp"
 
 namespace innersphere {
 namespace {
@@ -17,7 +18,8 @@ constexpr double kFarthest = 1e8;
 
 }  // namespace
 
-Container::Container(const Solid& solid) : solid_(solid) {
+Container::Container(const Solid& solid)
+    : solid_(solid), mesh_(dynamic_cast<const MeshSolid*>(&solid)) {
   const Bounds box = solid.bounds();
   double longest = 0, farthest = 0;
   for (int k = 0; k < 3; ++k) {
@@ -68,12 +70,17 @@ Point Container::fromWorld(const Vec3d& p) const {
 }
 
 Container::Nearest Container::closest(const Point& x, double cutoff) const {
-  const ClosestPoint hit = solid_.closestPoint(toWorld(x), cutoff * side_);
+  ClosestTriangle::Nearest hit;
+  if (mesh_) {
+    hit = mesh_->closestTriangle(toWorld(x), cutoff * side_);
+  } else {
+    static_cast<ClosestPoint&>(hit) = solid_.closestPoint(toWorld(x), cutoff * side_);
+  }
   if (std::isinf(hit.distance)) return {hit.distance, x};
   if (!std::isfinite(hit.distance + hit.point[0] + hit.point[1] + hit.point[2])) {
     throw Error(ErrorCode::not_finite, "'" + solid_.name() + "' has a closest point that is not a number");
   }
-  return {hit.distance / side_, fromWorld(hit.point)};
+  return {hit.distance / side_, fromWorld(hit.point), hit.triangle};
 }
 
 Ball Container::rounded(const Ball& ball) const {

@@ -6,6 +6,9 @@
 
 namespace innersphere {
 
+class MeshSolid;
+class Triangle;
+
 /// Maps the bounding cube of a solid to the unit cube, so that size and place of a solid do not influence its
 /// packing.
 class Container {
@@ -13,6 +16,7 @@ class Container {
   struct Nearest {
     double distance = 0;  ///< infinity beyond the cutoff
     Point point;
+    const Triangle* triangle = nullptr;  ///< that the point lies on, if the solid is a mesh
   };
 
   /// Maps a solid, which must outlive the container. Throws Error: bad_argument if the bounds are not finite
@@ -56,6 +60,7 @@ class Container {
   const Solid& solid_;
   Vec3d origin_{};
   Vec3d corner_{};  // of the unit cube, in the packing's frame
+  const MeshSolid* const mesh_;  // the solid, if it is a mesh
   double side_ = 1;
   double margin_ = 0;
   double coarseness_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "packer/near_balls.hpp"
 #include "packer/pattern_search.hpp"
 
 namespace innersphere {
@@ -36,8 +37,14 @@ Cover::Cover(const Container& container, const SurfaceSamples& samples, const Sp
   std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
   order_.resize(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) order_[next[cell(points[i])]++] = i;
-  gaps_.assign(points.size(), 2);  // farther than anything in the unit cube
+  if (placed.balls().empty()) {
+    gaps_.assign(points.size(), 2);  // farther than anything in the unit cube
+  } else {
+    for (const NearBalls::Nearest& hit : nearestBalls(points, placed.balls())) gaps_.push_back(hit.distance);
+    known_ = placed.balls().size();
+  }
   for (std::uint32_t i = 0; i < points.size(); ++i) heap_.push_back({gaps_[i], i});
+  std::make_heap(heap_.begin(), heap_.end());
 }
 
 std::size_t Cover::cellOf(const Point& x, int axis) const {

@@ -16,7 +16,7 @@
 #include "innersphere/mesh.hpp"
 #include "packer/container.hpp"
 #include "packer/pattern_search.hpp"
-#include "packer/sphere_grid.hpp"
+#include "packer/near_balls.hpp"
 #include "packer/surface_samples.hpp"
 
 namespace innersphere {
@@ -100,12 +100,9 @@ Fit fitted(const Container& container, const Ball& start, const std::vector<Poin
 
 /// Each point belongs to the ball that has to grow least for it.
 std::vector<std::vector<Point>> grouped(const std::vector<Ball>& balls, const std::vector<Point>& points) {
-  const SphereGrid grid(balls);
-  std::vector<std::uint32_t> nearest(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(),
-                    [&](std::size_t i) { nearest[i] = grid.nearestOfAll(points[i], 0.01).index; });
+  const std::vector<NearBalls::Nearest> nearest = nearestBalls(points, balls);
   std::vector<std::vector<Point>> groups(balls.size());
-  for (std::size_t i = 0; i < points.size(); ++i) groups[nearest[i]].push_back(points[i]);
+  for (std::size_t i = 0; i < points.size(); ++i) groups[nearest[i].index].push_back(points[i]);
   return groups;
 }
 

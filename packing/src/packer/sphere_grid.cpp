@@ -1,7 +1,6 @@
 #include "packer/sphere_grid.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace innersphere {
@@ -87,14 +86,6 @@ SphereGrid::Nearest SphereGrid::nearest(const Point& x, double cutoff) const {
     }
   });
   return best;
-}
-
-SphereGrid::Nearest SphereGrid::nearestOfAll(const Point& x, double guess) const {
-  assert(!balls_.empty());
-  for (double cutoff = guess;; cutoff *= 2) {
-    const Nearest hit = nearest(x, cutoff);
-    if (std::isfinite(hit.distance)) return hit;
-  }
 }
 
 }  // namespace innersphere

@@ -34,9 +34,6 @@ class SphereGrid {
   /// Returns the ball with the smallest distance below `cutoff`; the distance is infinity if there is none.
   Nearest nearest(const Point& x, double cutoff) const;
 
-  /// Returns the ball with the smallest distance; `guess` is about what is expected. There must be a ball.
-  Nearest nearestOfAll(const Point& x, double guess) const;
-
  private:
   static constexpr int kLevels = 20;  // cells of 1 to 2^-19; smaller balls share the last level
   static constexpr std::uint32_t kNone = ~0u;

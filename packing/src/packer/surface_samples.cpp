@@ -1,10 +1,10 @@
 #include "packer/surface_samples.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "packer/near_balls.hpp"
 
 namespace innersphere {
 namespace {
@@ -84,11 +84,9 @@ std::vector<Coverage> SurfaceSamples::coverage(std::span<const Ball> balls,
   std::vector<double> gaps(points_.size(), 2);  // farther than anything in the unit cube
   std::size_t known = 0;
   for (std::size_t count : counts) {
-    const SphereGrid grid(balls.subspan(known, count - known));
+    const std::vector<NearBalls::Nearest> added = nearestBalls(points_, balls.subspan(known, count - known));
     known = count;
-    tbb::parallel_for(std::size_t{0}, gaps.size(), [&](std::size_t i) {
-      gaps[i] = std::min(gaps[i], std::max(0.0, grid.nearest(points_[i], gaps[i]).distance));
-    });
+    for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = std::min(gaps[i], std::max(0.0, added[i].distance));
     const auto size = static_cast<double>(gaps.size());
     Coverage& now = prefixes.emplace_back();
     now.count = static_cast<std::uint32_t>(count);

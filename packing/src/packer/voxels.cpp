@@ -16,6 +16,7 @@ constexpr double kMostCells = 512;
 
 // Cells along an edge of the blocks that are looked at as a whole.
 constexpr std::uint32_t kBlock = 8;
+static_assert(kBlock == 8, "a row of a block is a byte of the bitmap");
 
 }  // namespace
 
@@ -42,31 +43,34 @@ Voxels::Voxels(const Container& container, double volume, double wanted) {
   constexpr std::uint32_t kCells = kBlock * kBlock * kBlock;
 
   blocks_.resize(std::size_t{blocks_in_[0]} * blocks_in_[1] * blocks_in_[2]);
-  // Bytes first, because threads cannot share the words of a bitmap.
-  std::vector<std::uint8_t> found(blocks_.size() * kCells);
-  tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t b) {
-    const Index first = cell(b, 0);
-    Block& block = blocks_[b];
-    block.centre = origin_ + (Point(first[0], first[1], first[2]) + Point::Constant(kBlock / 2.0)) * spacing_;
-    const double cutoff = 4 * reach_;
-    const double distance = std::min(container.closest(block.centre, cutoff).distance, cutoff);
+  inside_.resize(blocks_.size() * kBlock * kBlock);
+  // A row of blocks at a time: the side of a block mostly follows from the one before.
+  tbb::parallel_for(std::size_t{0}, blocks_.size() / blocks_in_[0], [&](std::size_t row) {
     ClearanceCache clearances(container.margin());
-    block.distance = clearances.contains(container, block.centre, cutoff) ? distance : -distance;
-    if (block.distance <= -reach_) return;
-    for (std::uint32_t i = 0; i < kCells; ++i) {
-      const Index at = cell(b, i);
-      found[bit(at)] = block.distance >= reach_ || clearances.contains(container, place(at), cutoff);
+    for (std::size_t b = row * blocks_in_[0]; b < (row + 1) * blocks_in_[0]; ++b) {
+      const Index first = cell(b, 0);
+      Block& block = blocks_[b];
+      block.centre = origin_ + (Point(first[0], first[1], first[2]) + Point::Constant(kBlock / 2.0)) * spacing_;
+      const double cutoff = 4 * reach_;
+      block.distance = clearances.signedDistance(container, block.centre, cutoff);
+      if (block.distance <= -reach_) continue;
+      ClearanceCache near(container.margin());
+      near.add(block.centre, block.distance);
+      for (std::uint32_t i = 0; i < kCells; ++i) {
+        const Index at = cell(b, i);
+        if (block.distance >= reach_ || near.contains(container, place(at), cutoff)) setInside(bit(at));
+      }
     }
   });
 
-  inside_.assign(found.begin(), found.end());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    blocks_[b].begin = {points_[0].size(), points_[1].size()};
-    for (std::uint32_t i = 0; i < kCells; ++i) {
+    Block& block = blocks_[b];
+    block.begin = {points_[0].size(), points_[1].size()};
+    for (std::uint32_t i = 0; block.distance > -reach_ && i < kCells; ++i) {
       const Index at = cell(b, i);
-      if (inside_[bit(at)]) points_[(at[0] + at[1] + at[2]) % 2].push_back(place(at).cast<float>());
+      if (isInside(bit(at))) points_[(at[0] + at[1] + at[2]) % 2].push_back(place(at).cast<float>());
     }
-    blocks_[b].end = {points_[0].size(), points_[1].size()};
+    block.end = {points_[0].size(), points_[1].size()};
   }
 }
 
@@ -94,9 +98,8 @@ Voxels::Shared Voxels::shared(const Pose& pose, std::size_t stride) const {
     for (int k = 0; k < 3; ++k) {
       if (!(at[k] >= 0 && at[k] < static_cast<float>(size_[k]))) return false;
     }
-    return static_cast<bool>(
-        inside_[bit({static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]),
-                     static_cast<std::uint32_t>(at[2])})]);
+    return isInside(bit({static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]),
+                         static_cast<std::uint32_t>(at[2])}));
   };
   std::size_t hits[2] = {}, looked[2] = {};
   for (const Block& block : blocks_) {

@@ -51,6 +51,8 @@ class Voxels {
   std::size_t bit(const Index& at) const {
     return (std::size_t{at[2]} * size_[1] + at[1]) * size_[0] + at[0];
   }
+  bool isInside(std::size_t bit) const { return inside_[bit / 8] >> bit % 8 & 1; }
+  void setInside(std::size_t bit) { inside_[bit / 8] |= static_cast<std::uint8_t>(1 << bit % 8); }
   const Block* blockAt(const Point& x) const;
 
   Point origin_;
@@ -58,7 +60,8 @@ class Voxels {
   Index size_{}, blocks_in_{};
   double reach_ = 0;  // from the middle of a block to its corners
   std::vector<Block> blocks_;
-  std::vector<bool> inside_;
+  // A bit for each cell. Eight cells along x make a byte and belong to one block, so that threads share none.
+  std::vector<std::uint8_t> inside_;
   std::array<std::vector<Eigen::Vector3f>, 2> points_;  // those inside, in two halves, in the order of blocks
 };
 

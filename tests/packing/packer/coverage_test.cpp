@@ -143,7 +143,10 @@ TEST(Coverage, OfAGapIsReachedWithTheFewestSpheres) {
   options.overlap_errors = false;
   const Packing packing = pack(*makeSolid(cupMesh(), "cup"), options);
   EXPECT_LE(packing.quality.gap_max, 0.05);
-  EXPECT_LT(gapsOf(packing, packing.spheres.size()).back(), 0.052);
+  // The packer looks at 50,000 points of 4.9 m^2 of surface, which lie 0.01 m apart.
+  const std::vector<double> gaps = gapsOf(packing, packing.spheres.size());
+  EXPECT_LT(gaps[gaps.size() * 995 / 1000], 0.05);
+  EXPECT_LT(gaps.back(), 0.05 + 0.01);
   EXPECT_GT(gapsOf(packing, packing.spheres.size() * 3 / 4).back(), 0.05);
 }
 

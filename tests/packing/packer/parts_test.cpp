@@ -1,10 +1,16 @@
 // The packer's tools by themselves, against brute force.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
 #include <random>
 
+#include "mesh/triangle.hpp"
 #include "packer/cells.hpp"
 #include "packer/dual_simplex.hpp"
+#include "packer/near_balls.hpp"
+#include "packer/prism.hpp"
 #include "packer/sphere_grid.hpp"
 
 namespace innersphere::test {
@@ -61,10 +67,60 @@ TEST(SphereGrid, FindsTheNearestBall) {
     const Point x(unit(random), unit(random), unit(random));
     double least = 1e30;
     for (const Ball& ball : balls) least = std::min(least, ball.distance(x));
-    const SphereGrid::Nearest hit = grid.nearestOfAll(x, 0.01);
+    const SphereGrid::Nearest hit = grid.nearest(x, least + 0.01);
     EXPECT_EQ(hit.distance, least);
     EXPECT_EQ(balls[hit.index].distance(x), least);
     EXPECT_EQ(grid.nearest(x, least).distance, std::numeric_limits<double>::infinity());
+  }
+}
+
+TEST(NearBalls, AreThoseOfAllBalls) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Ball> balls;
+  for (int i = 0; i < 500; ++i) {
+    // All on one side, so that most points are far from them, and some twice.
+    const Point centre(unit(random) * 0.2, unit(random), unit(random));
+    balls.push_back(i % 10 == 9 ? balls.back() : Ball{centre, std::pow(unit(random), 12) * 0.1});
+  }
+  std::vector<Point> points(5000);
+  for (Point& x : points) x = Point(unit(random), unit(random), std::pow(unit(random), 4));
+  const std::vector<NearBalls::Nearest> hits = nearestBalls(points, balls);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::uint32_t first = 0;
+    for (std::uint32_t k = 1; k < balls.size(); ++k) {
+      if (balls[k].distance(points[i]) < balls[first].distance(points[i])) first = k;
+    }
+    EXPECT_EQ(hits[i].index, first);
+    EXPECT_EQ(hits[i].distance, balls[first].distance(points[i]));
+  }
+}
+
+TEST(Prism, BoundsTheDistanceFromItsTriangle) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto point = [&] { return Point(unit(random), unit(random), unit(random)); };
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::array<Point, 3> corners{point(), point(), point()};
+    const Point cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (cross.norm() < 0.01) continue;
+    const Point inwards = (trial % 2 ? 1 : -1) * cross.normalized();
+    const Prism prism(corners, inwards);
+    const auto world = [](const Point& x) { return Vec3d{x[0], x[1], x[2]}; };
+    const Triangle triangle(world(corners[0]), world(corners[1]), world(corners[2]));
+    const Point centre = point();
+    const double half = 0.5, behind = prism.farthestBehind(centre, half);
+    for (int i = 0; i < 50; ++i) {
+      const Point x = centre + half * point(), y = centre + half * point();
+      Vec3d nearest;
+      const double away = std::sqrt(triangle.closest(world(x), nearest));
+      // In front, nothing is nearer than the triangle itself; behind, the cube ends.
+      const bool front = inwards.dot(x - corners[0]) > 0;
+      EXPECT_LE(away, (front ? prism.distance(x) : behind) + 1e-9);
+      if (front) EXPECT_NEAR(prism.distance(x), away, 1e-9);
+      EXPECT_LE(prism.distance(x), away + 1e-9);
+      EXPECT_LE(prism.distance((x + y) / 2), (prism.distance(x) + prism.distance(y)) / 2 + 1e-12);
+    }
   }
 }
 

@@ -1,0 +1,38 @@
+// The part of space behind a triangle of the surface, as an obstacle.
+#pragma once
+
+#include <array>
+
+#include "packer/ball.hpp"
+
+namespace innersphere {
+
+/// This is the prism behind a triangle of the surface, without end. A point in front of the triangle is at
+/// least as near to the triangle as to the prism, so no sphere about it is larger than its distance from the
+/// prism, a convex function. Behind the triangle that need not hold, for what lies there may be inside of the
+/// solid again; there the distance from the triangle itself is the bound. Unlike a ball, a prism does not
+/// curve away from a flat wall.
+class Prism {
+ public:
+  /// Builds the prism. `inwards` is the unit normal of the triangle that points into the solid.
+  Prism(const std::array<Point, 3>& corners, const Point& inwards);
+
+  /// Returns the distance from the prism; it is negative inside.
+  double distance(const Point& x) const;
+
+  /// Returns the largest distance from the triangle that a point of the cube behind the triangle's plane can
+  /// have; 0 if there is none.
+  double farthestBehind(const Point& centre, double half) const;
+
+ private:
+  double height(const Point& x) const { return inwards_.dot(x - corners_[0]); }
+
+  /// Returns how far x is beside the prism; if it is not, 0.
+  double beside(const Point& x) const;
+
+  std::array<Point, 3> corners_;
+  Point inwards_;
+  std::array<Point, 3> outwards_;  // of the edge that starts at each corner, in the plane
+};
+
+}  // namespace innersphere
