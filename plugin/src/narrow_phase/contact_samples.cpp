@@ -42,7 +42,7 @@ void probeAll(const PackingProbe& probe, const PatchSamples& of, std::vector<Sam
   tried.resize(of.count());
   const auto probeOne = [&](std::size_t i) {
     ProbedSample sample = sampleAt(of, i, probe);
-    const bool found = of.again ? probe.probeAgain(of.samples.lines[of.begin + i], sample)
+    const bool found = of.again ? probe.probeAgain(of.patch.normal, of.samples.lines[of.begin + i], sample)
                                 : probe.probe(of.patch.normal, sample);
     tried[i] = {sample, found};
   };

@@ -24,12 +24,15 @@ bool PackingProbe::probe(const btVector3& patch_normal, ProbedSample& sample) co
   return found;
 }
 
-bool PackingProbe::probeAgain(const Samples::Line& line, ProbedSample& sample) const {
+bool PackingProbe::probeAgain(const btVector3& patch_normal, const Samples::Line& line,
+                              ProbedSample& sample) const {
   if (line.direction.isZero()) return false;
   sample.direction = line.direction;
   sample.points.triangle_a = line.triangle_a;
   sample.points.triangle_b = line.triangle_b;
-  if (!probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points)) return false;
+  // A line to an edge misses it when the bodies have moved.
+  if (!probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points))
+    return probe(patch_normal, sample);
   align(sample);
   return true;
 }
@@ -117,8 +120,9 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
   for (const std::uint32_t vertex : vertices) {
     const btVector3 at = cornerAt(own, vertex, way);
     SurfacePoint under;
-    const btVector3 place = at - way * (at - face).dot(way) - to_other;
-    if (!faceUnder(other, place, -way, size, under)) continue;
+    const btScalar depth = (at - face).dot(way);
+    const btVector3 place = at - way * depth - to_other;
+    if (!faceUnder(other, place, -way, depth, size, under)) continue;
     EdgeContact corner{points, kCornerId + (of_a ? 0 : 1) + 2 * std::uint64_t(vertex), is_peak};
     (of_a ? corner.points.on_a : corner.points.on_b) = at + offset;
     (of_a ? corner.points.on_b : corner.points.on_a) = under.at + to_other + offset;

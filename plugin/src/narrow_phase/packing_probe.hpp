@@ -23,8 +23,9 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
   /// surfaces do not oppose each other there, in the direction of the patch. Returns false if the line met no
   /// surfaces.
   bool probe(const btVector3& patch_normal, ProbedSample& sample) const;
-  /// Probes a sample where it was probed before. Returns false as probe() does.
-  bool probeAgain(const Samples::Line& line, ProbedSample& sample) const;
+  /// Probes a sample where it was probed before, or, where that line misses the surfaces now, anew. Returns
+  /// false as probe() does.
+  bool probeAgain(const btVector3& patch_normal, const Samples::Line& line, ProbedSample& sample) const;
 
   bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
                  OpposedPoints& points) const override;

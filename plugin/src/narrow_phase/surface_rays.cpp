@@ -87,11 +87,12 @@ bool enterSolid(const PlacedPacking& body, const btVector3& from, const btVector
   return true;
 }
 
-bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar size,
-               SurfacePoint& point) {
-  const btVector3 inside = at - normal * (kSunk * size + body.margin);
+bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar depth,
+               btScalar size, SurfacePoint& point) {
+  // In a groove there is a face above, but nothing solid up to it.
+  const btScalar inside = btMax(kSunk * size, depth) + body.margin;
   return isFaceAt(body, at, normal, size) &&
-         leaveSolid(body, inside, normal, size, OpposedPoints::kNone, point);
+         leaveSolid(body, at - normal * inside, normal, size + inside, OpposedPoints::kNone, point);
 }
 
 bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,

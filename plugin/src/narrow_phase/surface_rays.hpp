@@ -32,10 +32,10 @@ bool leaveSolid(const PlacedPacking& body, const btVector3& from, const btVector
 bool enterSolid(const PlacedPacking& body, const btVector3& from, const btVector3& direction, btScalar length,
                 std::size_t known, const btVector3& opposed, SurfacePoint& point);
 
-/// Finds the face with about this normal that a place is over or under. Returns false if there is none.
-/// `size` [m] is that of the spheres there.
-bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar size,
-               SurfacePoint& point);
+/// Finds the face with about this normal that a place `at` is on. Returns false if there is none, or if the
+/// solid does not reach from there down to `depth` [m]. `size` [m] is that of the spheres there.
+bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar depth,
+               btScalar size, SurfacePoint& point);
 
 /// Finds the corners uphill from a triangle along `direction` (unit), no further than `distance` [m] from
 /// `start`: their vertices replace `vertices`. Returns true if the first of them is a peak.

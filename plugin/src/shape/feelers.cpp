@@ -34,7 +34,7 @@ struct Place {
 };
 
 /// The middles of the parts of each triangle, none longer than `apart`, and the vertices.
-std::vector<Place> placesOn(const Surface& surface, btScalar apart) {
+std::vector<Place> placesOn(const Surface& surface, const SmoothNormals& normals, btScalar apart) {
   std::vector<Place> places;
   std::vector<Place> corners(surface.vertices.size(), Place{{0, 0, 0}, {0, 0, 0}, 0});
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
@@ -42,7 +42,7 @@ std::vector<Place> placesOn(const Surface& surface, btScalar apart) {
     for (int k = 0; k < 3; ++k) v[k] = toBullet(surface.vertices[surface.triangles[t][k]]);
     const btVector3 across = (v[1] - v[0]).cross(v[2] - v[0]);
     const btScalar longest = btMax(v[0].distance(v[1]), btMax(v[1].distance(v[2]), v[2].distance(v[0])));
-    if (!(across.length2() > 0)) continue;
+    if (normals.face(t).isZero()) continue;
     for (int k = 0; k < 3; ++k) {
       Place& corner = corners[surface.triangles[t][k]];
       corner.at = v[k];
@@ -52,7 +52,7 @@ std::vector<Place> placesOn(const Surface& surface, btScalar apart) {
     const int parts = static_cast<int>(std::ceil(longest / apart));
     const auto add = [&](btScalar i, btScalar j) {
       const btVector3 at = v[0] + ((v[1] - v[0]) * i + (v[2] - v[0]) * j) / btScalar(parts);
-      places.push_back({at, across.normalized(), t});
+      places.push_back({at, normals.face(t), t});
     };
     for (int i = 0; i < parts; ++i) {
       for (int j = 0; i + j < parts; ++j) {
@@ -158,7 +158,7 @@ Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
   feelers.inset = inset;
   const btScalar size = diagonalOf(packing.surface);
   if (!(inset > kNear * size)) return feelers;
-  std::vector<Place> places = placesOn(packing.surface, kApart * size);
+  std::vector<Place> places = placesOn(packing.surface, surface.normals(), kApart * size);
   if (places.empty()) return feelers;  // no triangle has an area
   Gaps gaps(std::move(places), kCell * size);
   for (std::size_t i = 0; i < count; ++i) gaps.add(packing.spheres[i]);

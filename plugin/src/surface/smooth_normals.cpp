@@ -1,6 +1,7 @@
 #include "surface/smooth_normals.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/bullet_vectors.hpp"
 
@@ -21,6 +22,8 @@ constexpr std::uint32_t kCrossed = 4;
 constexpr std::uint32_t kCrossedFar = 12;
 /// Triangles that are looked at on the way to the one that a line meets.
 constexpr int kNearby = 8;
+/// In sizes of the surface: a triangle is a sliver that is no higher than what rounding of its corners makes.
+constexpr btScalar kRounding = btScalar(4e-6);
 
 btVector3 unit(const btVector3& v) {
   const btScalar length = v.length();
@@ -31,32 +34,84 @@ constexpr std::size_t next(std::size_t k) {
   return k == 2 ? 0 : k + 1;
 }
 
+struct LongestEdge {
+  std::size_t edge = 0;
+  btScalar length = 0;
+};
+
+LongestEdge longestEdge(const btVector3* corners) {
+  LongestEdge longest;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const btScalar length = corners[k].distance(corners[next(k)]);
+    if (length > longest.length) longest = {k, length};
+  }
+  return longest;
+}
+
 }  // namespace
 
 SmoothNormals::SmoothNormals(const Surface& surface) : facets_(surface.triangles.size()) {
+  Around around(surface.vertices.size());
+  for (std::size_t t = 0; t < facets_.size(); ++t) {
+    for (std::uint32_t v : surface.triangles[t]) around[v].push_back(static_cast<std::uint32_t>(t));
+  }
   setCorners(surface);
-  setNormals(surface);
+  layOnNeighbours(surface, around);
+  setNormals(surface, around);
   countToSharp();
 }
 
 void SmoothNormals::setCorners(const Surface& surface) {
+  btScalar size = 0;
+  for (const auto& vertex : surface.vertices) {
+    for (const float x : vertex) size = btMax(size, btScalar(std::fabs(x)));
+  }
   for (std::size_t t = 0; t < facets_.size(); ++t) {
     Facet& facet = facets_[t];
     for (std::size_t k = 0; k < 3; ++k)
       facet.corners[k] = toBullet(surface.vertices[surface.triangles[t][k]]);
-    const btVector3 normal = (facet.corners[1] - facet.corners[0]).cross(facet.corners[2] - facet.corners[0]);
-    facet.face = unit(normal);
-    if (facet.face.isZero()) continue;
-    for (std::size_t k = 0; k < 3; ++k)
-      facet.inwards[k] = facet.face.cross(facet.corners[next(k)] - facet.corners[k]) / normal.length();
+    const btVector3* const c = facet.corners;
+    const btVector3 normal = (c[1] - c[0]).cross(c[2] - c[0]);
+    facet.face.setZero();
+    if (normal.length() > kRounding * size * longestEdge(c).length) setFace(unit(normal), facet);
   }
 }
 
-void SmoothNormals::setNormals(const Surface& surface) {
-  std::vector<std::vector<std::uint32_t>> around(surface.vertices.size());
+void SmoothNormals::setFace(const btVector3& face, Facet& facet) {
+  const btVector3* const c = facet.corners;
+  const btScalar longest = longestEdge(c).length;
+  const btScalar area = (c[1] - c[0]).cross(c[2] - c[0]).length();
+  facet.face = face;
+  for (std::size_t k = 0; k < 3; ++k)
+    facet.inwards[k] = face.cross(c[next(k)] - c[k]) / btMax(area, SIMD_EPSILON * longest * longest);
+}
+
+/// Rounding alone would give a sliver its normal, of any direction. It belongs to the face beyond its longest
+/// edge, or to that which another sliver there belongs to.
+void SmoothNormals::layOnNeighbours(const Surface& surface, const Around& around) {
+  std::vector<std::size_t> slivers;
   for (std::size_t t = 0; t < facets_.size(); ++t) {
-    for (std::uint32_t v : surface.triangles[t]) around[v].push_back(static_cast<std::uint32_t>(t));
+    if (facets_[t].face.isZero() && longestEdge(facets_[t].corners).length > 0) slivers.push_back(t);
   }
+  const auto lay = [&](std::size_t t) {
+    const std::size_t edge = longestEdge(facets_[t].corners).edge;
+    const std::uint32_t end = surface.triangles[t][next(edge)];
+    for (const std::uint32_t other : around[surface.triangles[t][edge]]) {
+      const auto& triangle = surface.triangles[other];
+      const bool shares = std::find(triangle.begin(), triangle.end(), end) != triangle.end();
+      if (!shares || facets_[other].face.isZero()) continue;
+      setFace(facets_[other].face, facets_[t]);
+      return true;
+    }
+    return false;
+  };
+  for (std::size_t before = 0; before != slivers.size();) {
+    before = slivers.size();
+    slivers.erase(std::remove_if(slivers.begin(), slivers.end(), lay), slivers.end());
+  }
+}
+
+void SmoothNormals::setNormals(const Surface& surface, const Around& around) {
   for (std::size_t t = 0; t < facets_.size(); ++t) {
     Facet& facet = facets_[t];
     for (std::size_t k = 0; k < 3; ++k) {

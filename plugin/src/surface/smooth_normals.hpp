@@ -45,7 +45,8 @@ class SmoothNormals {
   /// Returns by how much the normal turns along a way of the length 1 on a triangle [1/m].
   btVector3 turn(std::size_t triangle, const btVector3& way) const;
   const btVector3* corners(std::size_t triangle) const { return facets_[triangle].corners; }
-  /// Returns the normal of the triangle itself: unit, out of the solid; zero if it has no area.
+  /// Returns the normal of the triangle itself: unit, out of the solid. A sliver, which rounding would give
+  /// any, has that of the face it lies on; zero if there is none.
   const btVector3& face(std::size_t triangle) const { return facets_[triangle].face; }
   btVector3 middle(std::size_t triangle) const {
     const Facet& facet = facets_[triangle];
@@ -80,7 +81,7 @@ class SmoothNormals {
   /// This is a triangle. Its edge k goes from corner k to the next. What a line asks for first comes first.
   struct alignas(64) Facet {
     btVector3 corners[3];
-    btVector3 face;           ///< unit; zero if the triangle has no area
+    btVector3 face;           ///< unit; zero if there is none
     btVector3 inwards[3];     ///< along the triangle, from edge k; their products are weights [1/m]
     std::uint32_t across[3];  ///< triangles beyond the edges; see kSharp
     /// How many edges lead across a sharp one, at least; it is a few more than were looked at if none is
@@ -90,8 +91,11 @@ class SmoothNormals {
     btScalar bulges[3];    ///< of the edges, at weights of 1 of both ends [m]
     btScalar curvature;
   };
+  using Around = std::vector<std::vector<std::uint32_t>>;  ///< the triangles around each vertex
   void setCorners(const Surface& surface);
-  void setNormals(const Surface& surface);
+  static void setFace(const btVector3& face, Facet& facet);
+  void layOnNeighbours(const Surface& surface, const Around& around);
+  void setNormals(const Surface& surface, const Around& around);
   void countToSharp();
   static bool crossPlane(const Facet& facet, const btVector3& from, const btVector3& direction,
                          Crossing& crossing);

@@ -96,9 +96,9 @@ TEST_F(Balls, AreFoundFromTheDirectionOfThePatch) {
     ProbedSample again;
     again.index = index;
     const Samples::Line line{sample.direction, sample.points.triangle_a, sample.points.triangle_b};
-    ASSERT_TRUE(probe().probeAgain(line, again));
+    ASSERT_TRUE(probe().probeAgain(off, line, again));
     EXPECT_NEAR(again.points.on_a.distance(sample.points.on_a), 0, 1e-3);
-    EXPECT_FALSE(probe().probeAgain({}, again));
+    EXPECT_FALSE(probe().probeAgain(off, {}, again));
   }
 }
 
@@ -111,6 +111,33 @@ TEST_F(Balls, HaveIdsOfTheirSpheresAndSides) {
   EXPECT_FALSE(of_b.of_a);
   EXPECT_NEAR(of_a.distance, kRadiusA, kRounding);
   EXPECT_NEAR(of_b.distance, kRadiusB, kRounding);
+}
+
+TEST(ABallOverAnEdge, IsFoundAgainWhenItHasMoved) {
+  constexpr double kRadius = 0.5, kDepth = 0.02;
+  const auto a = makeShape(latticeBox({1, 1, 1}, 2)), b = makeShape(singleBall(kRadius));
+  a->setMargin(0);
+  b->setMargin(0);
+  const std::vector<SphereContact> contacts{contactOf(0)};  // that of B
+  const PlacedPacking placed_a(*a, at({0, 0, 0}), Estimator::raw, btScalar(0.1));
+  const btVector3 edge(btScalar(0.5), btScalar(0.03), btScalar(0.5)), up(0, 0, 1);
+  const auto placedB = [&](const btVector3& direction) {
+    return PlacedPacking(*b, at(edge + direction * btScalar(kRadius - kDepth)), Estimator::raw,
+                         btScalar(0.1));
+  };
+  const btVector3 before(btScalar(0.3), 0, btScalar(std::sqrt(1 - 0.09))),
+      now(btScalar(0.31), 0, btScalar(std::sqrt(1 - 0.31 * 0.31)));
+  const PlacedPacking b_before = placedB(before), b_now = placedB(now);
+  ProbedSample sample;
+  ASSERT_TRUE(PackingProbe(placed_a, b_before, contacts, 0).probe(up, sample));
+  EXPECT_NEAR(sample.points.depthAlong(sample.direction), kDepth, kTessellation);
+  const Samples::Line line{sample.direction, sample.points.triangle_a, sample.points.triangle_b};
+  const PackingProbe probe(placed_a, b_now, contacts, 0);
+  // The line passes by the cube now.
+  ASSERT_FALSE(probe.probeLine(0, line.direction, btVector3(0, 0, 0), sample.points));
+  ProbedSample again;
+  ASSERT_TRUE(probe.probeAgain(up, line, again));
+  EXPECT_NEAR(again.points.depthAlong(again.direction), kDepth, kTessellation);
 }
 
 /// A cube of 1 m that stands on a corner or an edge, in a slab that is as much as 0.01 m higher. A is the

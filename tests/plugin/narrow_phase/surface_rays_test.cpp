@@ -178,14 +178,24 @@ TEST(SurfaceRays, FindTheFaceUnderAPlaceOnlyWhereThereIsOne) {
   SurfacePoint point;
   for (const double height : {-0.03, 0.0, 0.02}) {
     const btVector3 place = axes * btVector3(btScalar(kHalf[0] + height), btScalar(0.3), btScalar(-0.4));
-    ASSERT_TRUE(faceUnder(body, place, x, btScalar(0.5), point)) << height;
+    ASSERT_TRUE(faceUnder(body, place, x, 0, btScalar(0.5), point)) << height;
     EXPECT_NEAR(point.at.dot(x), kHalf[0], kRounding);
   }
   // Beside the face, and under another one.
   EXPECT_FALSE(
-      faceUnder(body, axes * btVector3(btScalar(kHalf[0]), btScalar(1.2), 0), x, btScalar(0.5), point));
-  EXPECT_FALSE(faceUnder(body, axes * btVector3(btScalar(0.1), btScalar(0.3), 0), axes.getColumn(2),
+      faceUnder(body, axes * btVector3(btScalar(kHalf[0]), btScalar(1.2), 0), x, 0, btScalar(0.5), point));
+  EXPECT_FALSE(faceUnder(body, axes * btVector3(btScalar(0.1), btScalar(0.3), 0), axes.getColumn(2), 0,
                          btScalar(0.5), point));
+}
+
+TEST(SurfaceRays, FindTheFaceUnderAPlaceOnlyAsDeepAsTheSolidIs) {
+  TurnedBox box;
+  const PlacedPacking body = box.placed();
+  const btVector3 x = body.world.getBasis().getColumn(0), place = x * btScalar(kHalf[0]);
+  SurfacePoint point;
+  ASSERT_TRUE(faceUnder(body, place, x, btScalar(2 * kHalf[0] - 0.01), btScalar(0.5), point));
+  EXPECT_NEAR(point.at.dot(x), kHalf[0], kRounding);
+  EXPECT_FALSE(faceUnder(body, place, x, btScalar(2 * kHalf[0] + 0.01), btScalar(0.5), point));
 }
 
 TEST(SurfaceRays, FindTheCornerUphill) {

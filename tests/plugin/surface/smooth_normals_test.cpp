@@ -137,5 +137,35 @@ TEST(SmoothNormals, ASeamIsNoEdge) {
   EXPECT_FALSE(normals.isPastSharpEdge(triangle, place + around * btScalar(0.1)));
 }
 
+/// A square in z = 0 with a wall down from its edge y = 0, on the middle of which there is a vertex, but for
+/// rounding. Triangle 0 reaches along the whole edge, triangle 2 is the sliver beside it.
+Surface squareWithASliver(float rounding) {
+  Surface surface;
+  surface.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5F, rounding, 0}, {0.5F, 0, -1}};
+  surface.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 4, 1}, {0, 5, 4}, {4, 5, 1}};
+  return surface;
+}
+
+TEST(SmoothNormals, ASliverBelongsToTheFaceItLiesOn) {
+  for (const float rounding : {-6e-8F, 0.0F, 6e-8F}) {
+    const Surface surface = squareWithASliver(rounding);
+    const SmoothNormals normals(surface);
+    EXPECT_NEAR(normals.face(2).distance(btVector3(0, 0, 1)), 0, 1e-6) << rounding;
+    EXPECT_EQ(normals.curvature(0), 0);
+    // The square ends at the wall, on either side of the vertex.
+    for (const btScalar x : {btScalar(0.3), btScalar(0.7)}) {
+      const btVector3 place(x, btScalar(0.25), 0), down(0, -1, 0);
+      const auto ending = normals.untilSharpEdge(0, place, down);
+      ASSERT_TRUE(ending.found()) << rounding;
+      EXPECT_NEAR(ending.distance, 0.25, 1e-6);
+      const auto edge = normals.sharpEdge(ending);
+      EXPECT_NEAR(edge.from.y(), 0, 1e-7) << rounding;
+      EXPECT_NEAR(edge.to.y(), 0, 1e-7) << rounding;
+      // Which half of the edge it is shows only where the sliver has a height.
+      EXPECT_NEAR(edge.from.distance(edge.to), 0.5, 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace innersphere::test
