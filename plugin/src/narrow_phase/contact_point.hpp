@@ -31,6 +31,7 @@ struct ContactPoint {
   /// How much deeper the surfaces are at the top of the hill that the point is on, by their slope and
   /// curvature [m]. 0 at a top, at a corner, and where faces are flat or fit together.
   btScalar below_top = 0;
+  btVector3 to_top{0, 0, 0};  ///< the way there [m]
   /// Where A's point is beside B's, of bodies that will have come there only later in the step [m].
   btVector3 aside{0, 0, 0};
 };

@@ -238,7 +238,8 @@ class PatchContactPoints {
     point.bends = !points.areFlat();
     point.slope = points.normal_b - points.normal_a;
     const Hill hill(bends.a, bends.b, point.point.depth, axes);
-    point.point.below_top = point.slope.dot(hill.toTop(point.slope)) / 2;
+    point.point.to_top = hill.toTop(point.slope);
+    point.point.below_top = point.slope.dot(point.point.to_top) / 2;
     point.is_top = sample.is_top;
   }
 

@@ -48,6 +48,9 @@ void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector
                  bulge_b = turn_b.dot(on_b) / 2;
   point.depth = apart.dot(point.normal) + bulge_a + bulge_b;
   point.on_b += on_b + point.normal * bulge_b;
+  const Across across(point.normal);
+  point.bend_a = point.bend_a.along(across.x, across.y, axes);
+  point.bend_b = point.bend_b.along(across.x, across.y, axes);
 }
 
 }  // namespace
@@ -103,6 +106,7 @@ void ContactTransport::carryTo(const Placed& now, const PackingShape& a, btScala
       axes.x = turn_b * axes.x;
       axes.y = turn_b * axes.y;
       point.on_b = turn_b * (point.on_b - to_b_then) + to_b_now;
+      point.to_top = turn_b * point.to_top;
       rollOn(turn_a * point.normal, turn_b * point.normal, on_a, axes, kRefineAgain * spacing, point);
     }
   }

@@ -11,6 +11,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// Holds two axes across a direction, the same for the same direction.
 struct Across {
   explicit Across(const btVector3& direction) { btPlaneSpace1(direction, x, y); }
+  Across(const btVector3& x_axis, const btVector3& y_axis) : x(x_axis), y(y_axis) {}
   btVector3 x, y;
 };
 
@@ -25,6 +26,11 @@ struct Bend {
   btVector3 turn(const btVector3& way, const Across& axes) const {
     const btScalar wx = way.dot(axes.x), wy = way.dot(axes.y);
     return axes.x * (xx * wx + xy * wy) + axes.y * (xy * wx + yy * wy);
+  }
+  /// Returns the same bend in two unit vectors across each other, instead of in `axes`.
+  Bend along(const btVector3& x, const btVector3& y, const Across& axes) const {
+    const btVector3 turn_x = turn(x, axes);
+    return {turn_x.dot(x), turn_x.dot(y), turn(y, axes).dot(y)};
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
+#include "common/contact_tolerances.hpp"
 #include "response/patch_friction.hpp"
 #include "solver/point_curvature.hpp"
 
@@ -31,7 +32,7 @@ struct NewPoint {
   btVector3 aside{0, 0, 0};    ///< of the point on A from the one on B
   btScalar friction = 1;       ///< share of it
   btScalar curvature = 0;      ///< mean of both surfaces together [1/m]
-  Curvatures ahead;            ///< of each along the way that it goes
+  PointBends bends;
 };
 
 /// Pairs each new point with the nearest old one, nearest pairs first; -1 where there are more new ones.
@@ -126,8 +127,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   const bool meets = depth + approach * law.time_step > 0;
   const bool bounces = point.m_combinedRestitution * approach > law.push;
   if (solver.substeps) {
-    setCurvatures(point, from.ahead);
-    point.m_contactPointFlags |= kContactOfStart;
+    setBends(point, from.bends);
   } else {
     // The solver would begin the bounce before they touch, and brake them on their way.
     if (!meets) point.m_combinedRestitution = 0;
@@ -168,28 +168,15 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
 }
 
 /// A point above a slope whose hilltop is among the points. A SubstepSolver has the hill go along with the
-/// bodies, so that its top meets the other body before the slope does.
-bool leavesItToTop(const ContactPatch& patch, int index) {
+/// bodies, so that its top meets the other body before the slope does. A point that is all but at the top is
+/// one: of a line between bodies, both ends are needed.
+bool leavesItToTop(const ContactPatch& patch, int index, btScalar spacing) {
   const ContactPoint& point = patch.points[index];
-  if (point.depth >= 0 || !(point.below_top > 0)) return false;
+  if (point.depth >= 0 || !(point.to_top.length() > kSameTop * spacing)) return false;
   for (int i = 0; i < patch.count; ++i) {
     if (patch.points[i].depth > point.depth + point.below_top / 2) return true;
   }
   return false;
-}
-
-/// The curvatures of both surfaces along the way that the place of contact goes [1/m], as normals turn: that
-/// in which the bodies slide or roll, whichever turns normals more. Their means if they do neither.
-Curvatures curvaturesAhead(const ContactPoint& point, const btVector3& sliding, const btVector3& spin) {
-  const Bend &a = point.bend_a, &b = point.bend_b;
-  const btScalar bend = btFabs(a.xx) + btFabs(a.yy) + btFabs(b.xx) + btFabs(b.yy);
-  const btVector3 slid = (sliding - point.normal * sliding.dot(point.normal)) * bend;
-  const btVector3 rolled = spin.cross(point.normal);
-  const btVector3& way = rolled.length2() > slid.length2() ? rolled : slid;
-  if (!(way.length2() > SIMD_EPSILON * SIMD_EPSILON)) return {a.mean(), b.mean()};
-  const Across axes(point.normal);
-  const btVector3 direction = way.normalized();
-  return {a.turn(direction, axes).dot(direction), b.turn(direction, axes).dot(direction)};
 }
 
 /// Bullet has found the points' places on the bodies as if all of them were where kinematic ones will be.
@@ -213,11 +200,11 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     point.depth = patch.points[i].depth;
     point.law = law.at(point.depth);
     if (-point.depth > manifold.getContactBreakingThreshold()) continue;
-    if (solver.substeps && leavesItToTop(patch, i)) continue;
+    if (solver.substeps && leavesItToTop(patch, i, manifold.getContactBreakingThreshold())) continue;
     point.normal = patch.points[i].normal;
     point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
     point.on_b = origin + patch.points[i].on_b;
-    point.ahead = curvaturesAhead(patch.points[i], motion.velocityAt(point.on_b), motion.spin());
+    point.bends = {patch.points[i].bend_a, patch.points[i].bend_b};
     point.aside = patch.points[i].aside;
     point.local_a = start.a.invXform(point.on_b + point.normal * point.depth);
     ++count;

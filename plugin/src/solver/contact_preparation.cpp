@@ -15,6 +15,8 @@ namespace {
 
 /// Fastest push, in sizes of the smaller body per second, and in depths per second for what is deeper.
 constexpr btScalar kFastestPush = btScalar(0.5), kLeavingRate = 3;
+/// Angle, 2 degrees: triangles tell no better than that in which directions a surface bends most and least.
+constexpr btScalar kAligned = btScalar(0.035);
 
 /// Bullet's anisotropic friction: how far each axis of a body counts.
 btVector3 scaledByAnisotropy(const btCollisionObject& body, const btVector3& way) {
@@ -72,7 +74,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       fillPlace(point, lane, source, pair, bodies);
       fillForces(point, lane, *source.point, pair, bodies);
       block.bounces = block.bounces || point.restitution[lane] > 0;
-      block.bends = block.bends || point.bend[lane] != 0;
+      block.bends = block.bends || point.fall_1[lane] != 0 || point.fall_2[lane] != 0;
       block.rolls = block.rolls || point.rolling[lane] > 0 || point.spinning[lane] > 0;
     }
   }
@@ -111,7 +113,7 @@ void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, c
   lanes.arm_a.set(lane, arm_a);
   lanes.arm_b.set(lane, arm_b);
   lanes.gap[lane] = gap + slop_;
-  fillCurves(lanes, lane, source, bodies.size(pair.a), bodies.size(pair.b));
+  fillBends(lanes, lane, source, pair, bodies);
   btVector3 side_1, side_2;
   if ((point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0) {
     side_1 = point.m_lateralFrictionDir1 * sign;
@@ -140,28 +142,71 @@ void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, c
   lanes.side_2.set(lane, side_2);
 }
 
-/// How the place goes along with them: the centre of curvature stays on its body, as if spheres touched. A
-/// place without one is a corner, which is its own centre, or lies on a face; there it stays on the body, as
-/// it does on what is nearly flat: that would roll off its end. Sizes of 0 are of what does not turn.
-void ContactRows::fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a,
-                             btScalar size_b) {
-  Curvatures curved = curvaturesOf(*source.point);
-  if (source.flipped) std::swap(curved.a, curved.b);
-  const auto radius = [](btScalar curvature, btScalar size) {
-    if (curvature == 0) return btScalar(0);
-    return size == 0 || std::fabs(curvature) * size > 1 ? 1 / curvature : btScalar(0);
-  };
-  btScalar a = radius(curved.a, size_a), b = radius(curved.b, size_b);
-  // Where surfaces fit each other there is no one place.
-  if (!(curved.a + curved.b > kConforming * (std::fabs(curved.a) + std::fabs(curved.b)))) a = b = 0;
+/// The way that the place goes, as normals turn: that in which the bodies slide or roll, whichever turns
+/// normals more. Any way across the normal if they do neither.
+btVector3 ContactRows::wayAhead(const PointLanes& lanes, int lane, const TouchingPair& pair, btScalar bend,
+                                const SolverBodies& bodies) {
+  const BodyState &a = bodies.state(pair.a), &b = bodies.state(pair.b);
   const btVector3 normal = lanes.normal.get(lane);
-  lanes.radius_a[lane] = a;
-  lanes.radius_b[lane] = b;
-  lanes.bend[lane] = a != 0 && b != 0 ? 1 / (a + b) : btScalar(0);
+  const btVector3 sliding =
+      a.velocity + a.spin.cross(lanes.arm_a.get(lane)) - b.velocity - b.spin.cross(lanes.arm_b.get(lane));
+  const btVector3 slid = (sliding - normal * sliding.dot(normal)) * bend;
+  const btVector3 rolled = (a.spin - b.spin).cross(normal);
+  const btVector3& way = rolled.length2() > slid.length2() ? rolled : slid;
+  if (way.length2() > SIMD_EPSILON * SIMD_EPSILON) return way.normalized();
+  return Across(normal).x;
+}
+
+/// How the place goes along with them: to where normals agree, in the axes in which there is a top of the
+/// hill of the depth. In others it stays on the bodies: at a corner, on a face, where surfaces fit each
+/// other, and where they are so flat together that it would roll off their ends. Sizes of 0 are of what does
+/// not turn.
+void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, const TouchingPair& pair,
+                            const SolverBodies& bodies) {
+  const PointBends bends = bendsOf(*source.point);
+  const Across told(-source.point->m_normalWorldOnB);  // out of the first body of the manifold
+  const auto bendOf = [&](const Bend& bend, const Across& axes) {
+    Bend seen = bend.along(axes.x, axes.y, told);
+    if (btFabs(seen.xy) < kAligned * btFabs(seen.xx - seen.yy)) seen.xy = 0;
+    return seen;
+  };
+  const btScalar size_a = bodies.size(pair.a), size_b = bodies.size(pair.b);
+  const btVector3 normal = lanes.normal.get(lane);
+  const btScalar both = btFabs(bends.a.xx) + btFabs(bends.a.yy) + btFabs(bends.b.xx) + btFabs(bends.b.yy);
+  Across ahead(normal);
+  ahead.x = wayAhead(lanes, lane, pair, both, bodies);
+  ahead.y = normal.cross(ahead.x);
+  Bend a = bendOf(source.flipped ? bends.b : bends.a, ahead),
+       b = bendOf(source.flipped ? bends.a : bends.b, ahead);
+  const Hill hill(a, b, -source.point->getDistance(), ahead);
+  const btScalar size = size_b > 0 ? std::min(size_a, size_b) : size_a;
+  btVector3 axis[2];
+  for (int i = 0; i < 2; ++i)
+    axis[i] = hill.hasTop(i) && hill.fall(i) * size > 1 ? hill.axis(i) : btVector3(0, 0, 0);
+  a = a.along(axis[0], axis[1], ahead);
+  b = b.along(axis[0], axis[1], ahead);
+  const Across goes(axis[0], axis[1]);
+  const auto radius = [&](const Bend& bend, btScalar size_of_it) {
+    const btScalar curvature = bend.turn(ahead.x, goes).dot(ahead.x);
+    return btFabs(curvature) * size_of_it > 1 ? 1 / curvature : btScalar(0);
+  };
+  const btScalar radius_a = radius(a, size_a), radius_b = radius(b, size_b > 0 ? size_b : BT_LARGE_FLOAT);
+  lanes.axis_1.set(lane, axis[0]);
+  lanes.axis_2.set(lane, axis[1]);
+  lanes.fall_1[lane] = axis[0].isZero() ? btScalar(0) : 1 / hill.fall(0);
+  lanes.fall_2[lane] = axis[1].isZero() ? btScalar(0) : 1 / hill.fall(1);
+  lanes.a_11[lane] = a.xx;
+  lanes.a_12[lane] = a.xy;
+  lanes.a_22[lane] = a.yy;
+  lanes.b_11[lane] = b.xx;
+  lanes.b_12[lane] = b.xy;
+  lanes.b_22[lane] = b.yy;
+  lanes.radius_a[lane] = radius_a;
+  lanes.radius_b[lane] = radius_b;
   lanes.normal_0.set(lane, normal);
   lanes.gap_0[lane] = lanes.gap[lane];
-  lanes.pivot_a.set(lane, lanes.arm_a.get(lane) + normal * a);
-  lanes.pivot_b.set(lane, lanes.arm_b.get(lane) - normal * b);
+  lanes.pivot_a.set(lane, lanes.arm_a.get(lane) + normal * radius_a);
+  lanes.pivot_b.set(lane, lanes.arm_b.get(lane) - normal * radius_b);
 }
 
 /// What the point has been told of forces, and what it bore.

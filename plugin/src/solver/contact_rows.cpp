@@ -118,26 +118,52 @@ void ContactRows::addBlock(const int* pairs, int count) {
     points_.resize(static_cast<std::size_t>(point_count_));
 }
 
+/// How the place goes over both bodies, while these move by u and turn normals by t_a and t_b: with their
+/// bends A and B, to x on B where the normals agree again,
+///   (A + B) x = A u + t_a - t_b = c,
+/// so that the normal turns by B x + t_b, and the gap, which is stationary there, grows by
+///   u A u / 2 + t_a u - c x / 2.
+/// That is of second order. What turns is taken about the centres of the strongest curvatures: for spheres
+/// and cylinders nothing is neglected.
+void ContactRows::roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way,
+                       Lanes3& to_a, Lanes3& to_b) {
+  const Lanes half = inAll(btScalar(0.5));
+  const Lanes3 &axis_1 = point.axis_1, &axis_2 = point.axis_2;
+  const Lanes3 turn_a = swing(a.axis, a.w, point.normal_0), turn_b = swing(b.axis, b.w, point.normal_0);
+  const Lanes ta_1 = dot(turn_a, axis_1), ta_2 = dot(turn_a, axis_2), tb_1 = dot(turn_b, axis_1),
+              tb_2 = dot(turn_b, axis_2), ra = point.radius_a, rb = point.radius_b;
+  const Lanes u_1 = dot(way, axis_1) - ta_1 * ra - tb_1 * rb, u_2 = dot(way, axis_2) - ta_2 * ra - tb_2 * rb;
+  const Lanes au_1 = point.a_11 * u_1 + point.a_12 * u_2, au_2 = point.a_12 * u_1 + point.a_22 * u_2;
+  const Lanes c_1 = au_1 + ta_1 - tb_1, c_2 = au_2 + ta_2 - tb_2;
+  const Lanes x_1 = c_1 * point.fall_1, x_2 = c_2 * point.fall_2;
+  const Lanes n_1 = point.b_11 * x_1 + point.b_12 * x_2 + tb_1,
+              n_2 = point.b_12 * x_1 + point.b_22 * x_2 + tb_2;
+  point.gap += half * ((ta_1 * ta_1 + ta_2 * ta_2) * ra + (tb_1 * tb_1 + tb_2 * tb_2) * rb +
+                       (au_1 + ta_1 + ta_1) * u_1 + (au_2 + ta_2 + ta_2) * u_2 - c_1 * x_1 - c_2 * x_2);
+  const Lanes3 turned = point.normal_0 + axis_1 * n_1 + axis_2 * n_2;
+  const Lanes length = root(dot(turned, turned));
+  point.normal = turned * (length > Lanes{} ? inAll(1) / length : Lanes{});
+  point.side_1 = point.side_1 - point.normal * dot(point.side_1, point.normal);
+  point.side_2 = point.side_2 - point.normal * dot(point.side_2, point.normal);
+  const Lanes3 swung_a = swing(a.axis, a.w, point.pivot_a), swung_b = swing(b.axis, b.w, point.pivot_b);
+  const Lanes3 bent = point.normal - point.normal_0;
+  to_a = axis_1 * (dot(swung_a, axis_1) + x_1 - u_1 + (n_1 - ta_1) * ra) +
+         axis_2 * (dot(swung_a, axis_2) + x_2 - u_2 + (n_2 - ta_2) * ra) - bent * ra;
+  to_b = axis_1 * (dot(swung_b, axis_1) + x_1 - (n_1 - tb_1) * rb) +
+         axis_2 * (dot(swung_b, axis_2) + x_2 - (n_2 - tb_2) * rb) + bent * rb;
+}
+
 /// Where the bodies touch now.
 void ContactRows::follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) {
   const Lanes3 moved = a.moved - b.moved;
   const Lanes3 way = moved + swing(a.axis, a.w, point.pivot_a) - swing(b.axis, b.w, point.pivot_b);
-  const Lanes along = dot(way, point.normal_0);
-  point.gap = point.gap_0 + along;
+  point.gap = point.gap_0 + dot(way, point.normal_0);
+  Lanes3 to_a, to_b;  // as seen from their origins
+  if (block.bends) roll(point, a, b, way, to_a, to_b);
   // Both feel the push at one place, in the middle, so that it turns them as much as it would turn one body.
-  Lanes3 apart = moved + point.normal_0 * point.gap_0;
-  if (block.bends) {
-    const Lanes3 aside = way - point.normal_0 * along;
-    point.gap += inAll(btScalar(0.5)) * dot(aside, aside) * point.bend;
-    const Lanes3 turned = point.normal_0 + aside * point.bend;
-    const Lanes length = root(dot(turned, turned));
-    point.normal = turned * (length > Lanes{} ? inAll(1) / length : Lanes{});
-    point.side_1 = point.side_1 - point.normal * dot(point.side_1, point.normal);
-    point.side_2 = point.side_2 - point.normal * dot(point.side_2, point.normal);
-    apart = apart - (point.normal - point.normal_0) * (point.radius_a + point.radius_b);
-  }
-  point.arm_a = point.pivot_a - point.normal * point.radius_a - apart * block.share;
-  point.arm_b = point.pivot_b + point.normal * point.radius_b + apart * block.share;
+  const Lanes3 apart = moved + point.normal_0 * point.gap_0 + to_a - to_b;
+  point.arm_a = point.pivot_a - point.normal_0 * point.radius_a + to_a - apart * block.share;
+  point.arm_b = point.pivot_b + point.normal_0 * point.radius_b + to_b + apart * block.share;
 }
 
 void ContactRows::warmStartBlock(int index, std::vector<BodyState>& states) {

@@ -6,6 +6,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
+#include "narrow_phase/hill.hpp"
 #include "solver/counting_sort.hpp"
 #include "solver/lane_bodies.hpp"
 #include "solver/lanes.hpp"
@@ -70,10 +71,12 @@ class ContactRows {
   };
   /// A point of each pair of a block.
   struct PointLanes {
-    Lanes3 normal_0, pivot_a, pivot_b;  ///< when the step begins; pivots are centres of curvature
-    Lanes gap_0;                        ///< [m]
-    Lanes radius_a, radius_b;           ///< of curvature; 0: the place stays on the body [m]
-    Lanes bend;                         ///< how far the normal turns for a metre that the bodies slide [1/m]
+    Lanes3 normal_0, pivot_a, pivot_b;         ///< when the step begins; pivots are centres of curvature
+    Lanes gap_0;                               ///< [m]
+    Lanes radius_a, radius_b;                  ///< from there to the place [m]
+    Lanes3 axis_1, axis_2;                     ///< of the hill of the depth; 0: the place stays on the bodies
+    Lanes fall_1, fall_2;                      ///< inverse of how fast its slope falls [m]
+    Lanes a_11, a_12, a_22, b_11, b_12, b_22;  ///< how the bodies bend in these axes [1/m]
     Lanes3 normal, side_1, side_2, arm_a, arm_b;  ///< now
     Lanes gap;
     Lanes mass, mass_1, mass_2;           ///< what each row moves [kg]
@@ -107,7 +110,10 @@ class ContactRows {
 
   void fillPlace(PointLanes& lanes, int lane, const Source& source, const TouchingPair& pair,
                  const SolverBodies& bodies) const;
-  static void fillCurves(PointLanes& lanes, int lane, const Source& source, btScalar size_a, btScalar size_b);
+  static btVector3 wayAhead(const PointLanes& lanes, int lane, const TouchingPair& pair, btScalar bend,
+                            const SolverBodies& bodies);
+  static void fillBends(PointLanes& lanes, int lane, const Source& source, const TouchingPair& pair,
+                        const SolverBodies& bodies);
   static void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                          const SolverBodies& bodies);
   static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls);
@@ -119,6 +125,8 @@ class ContactRows {
   INNERSPHERE_WIDE void warmStartWide(int index, std::vector<BodyState>& states);
   INNERSPHERE_WIDE void solveWide(int index, Pass pass, std::vector<BodyState>& states);
   inline static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
+  inline static void roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way, Lanes3& to_a,
+                          Lanes3& to_b);
   inline void startBounces(Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) const;
   inline static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
   inline void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
