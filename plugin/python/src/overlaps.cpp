@@ -54,9 +54,10 @@ void enterDevice() {
   const pid_t here = getpid();
   pid_t before = 0;
   if (first.compare_exchange_strong(before, here) || before == here) return;
-  throw Error(ErrorCode::device_error,
-              "this process was forked from one that may use CUDA, which does not survive that: start processes "
-              "by multiprocessing.get_context(\"spawn\"), or use Query(\"cpu\")");
+  throw Error(
+      ErrorCode::device_error,
+      "this process was forked from one that may use CUDA, which does not survive that: start processes "
+      "by multiprocessing.get_context(\"spawn\"), or use Query(\"cpu\")");
 }
 
 /// Runs queries for Python. One at a time: a second thread waits for the first.
