@@ -1,5 +1,7 @@
 """Solids of the examples, as packings. They are packed once, into the folder `packings`."""
 
+from functools import cache
+
 import numpy as np
 
 import innersphere
@@ -11,6 +13,7 @@ def packed(surface, spheres=2000):
     return innersphere.pack(mesh, spheres=spheres, cache="packings", overlap_errors=False)
 
 
+@cache
 def peg():
     """A cylinder of 0.5 m, 0.8 m high."""
     return packed(
@@ -20,6 +23,7 @@ def peg():
     )
 
 
+@cache
 def plate():
     """A plate of 1 x 1 x 0.4 m with a hole of 0.26 m radius."""
 
@@ -30,6 +34,7 @@ def plate():
     return packed(innersphere.surface_of(distance, [-0.55, -0.55, -0.25], [0.55, 0.55, 0.25], cells=28))
 
 
+@cache
 def mug():
     """A cup about y, open at +y, with a handle at +z."""
 
@@ -42,6 +47,7 @@ def mug():
     return packed(innersphere.surface_of(distance, [-0.45, -0.55, -0.45], [0.45, 0.55, 0.75], cells=26))
 
 
+@cache
 def hook():
     """A bar along x that bends up at its end."""
 
@@ -53,6 +59,7 @@ def hook():
     return packed(innersphere.surface_of(distance, [-0.7, -0.1, -0.1], [0.4, 0.1, 0.3], cells=40))
 
 
+@cache
 def small_mug():
     """A cup on z = 0, 8 cm wide and 10 cm high, with walls of 5 mm."""
 
