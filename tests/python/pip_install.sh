@@ -3,6 +3,9 @@
 #
 #   pip_install.sh PYTHON FOLDER                                  builds it from this clone
 #   pip_install.sh PYTHON FOLDER --no-index --find-links WHEELS   takes a wheel, which must need nothing of the system
+#
+# INNERSPHERE_PYBULLET="--only-binary pybullet pybullet==3.2.5" takes that PyBullet, and "--no-binary pybullet pybullet==3.2.7"
+# builds it from its sources, which takes 12 minutes of a core. Without, it is the newest that is there for this Python, if any.
 set -euo pipefail
 python=$1 folder=$2
 shift 2
@@ -10,8 +13,13 @@ tests=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
 rm -rf "$folder"
 "$python" -m venv "$folder"
 "$folder/bin/pip" install --quiet --disable-pip-version-check numpy pytest
-"$folder/bin/pip" install --quiet --disable-pip-version-check --only-binary pybullet pybullet ||
-  echo "no wheel of PyBullet for $python: its tests are skipped"
+if [ -n "${INNERSPHERE_PYBULLET:-}" ]; then
+  # shellcheck disable=SC2086  # options and names
+  "$folder/bin/pip" install --quiet --disable-pip-version-check $INNERSPHERE_PYBULLET
+else
+  "$folder/bin/pip" install --quiet --disable-pip-version-check --only-binary pybullet pybullet ||
+    echo "no wheel of PyBullet for $python: its tests are skipped"
+fi
 if [ $# -gt 0 ]; then
   "$folder/bin/pip" install --quiet --disable-pip-version-check "$@" innersphere
 else

@@ -5,6 +5,9 @@ pytest tests/python/test_device.py        (INNERSPHERE_REQUIRE_GPU=1 makes a mis
 
 import ctypes
 import os
+import subprocess
+import sys
+import textwrap
 
 import numpy as np
 import pytest
@@ -116,6 +119,27 @@ def test_refusals(box, poses):
     bad[17, 1] = np.nan
     with pytest.raises(innersphere.NotFiniteError, match="^query 17: "):
         Query().overlap(box, box, pose_b=(DeviceArray(bad), DeviceArray(poses[1])), out=out)
+
+
+def test_a_fork_is_an_error_that_says_what_to_do():
+    script = """
+        import os, innersphere
+        packing = innersphere.pack(innersphere.solid("nut"), spheres=100, overlap_errors=False)
+        query = innersphere.Query("cuda")
+        before = query.overlap(packing, packing)["volume"]
+        child = os.fork()
+        if child == 0:
+            try:
+                query.overlap(packing, packing)
+                os._exit(1)
+            except innersphere.DeviceError as error:
+                assert "spawn" in str(error)
+                on_host = innersphere.Query("cpu").overlap(packing, packing)["volume"]
+                os._exit(0 if on_host == before else 2)
+        assert os.waitpid(child, 0)[1] == 0
+        assert query.overlap(packing, packing)["volume"] == before
+    """
+    subprocess.run([sys.executable, "-c", textwrap.dedent(script)], check=True, timeout=120)
 
 
 @pytest.mark.parametrize("library", ["torch", "cupy"])

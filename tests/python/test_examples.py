@@ -52,24 +52,29 @@ def test_nut_on_bolt(run_in_pybullet):
     found = run_in_pybullet("nut_on_bolt")
     assert found["turns"] == pytest.approx(1, abs=0.01)
     assert -found["speed"] == pytest.approx(2 * found["law"], rel=0.03)
+    assert found["sank"][0] == pytest.approx(2 * found["law"], abs=0.01)  # and the play of the threads
+    assert found["sank"][1] > 1
     picture("nut_on_bolt.png")
 
 
 def test_peg_in_hole(run_in_pybullet):
-    assert run_in_pybullet("peg_in_hole")["height"] == pytest.approx(0.2, abs=0.01)
+    fills, stands = run_in_pybullet("peg_in_hole")["heights"]
+    assert fills == pytest.approx(0.2, abs=0.01) and stands == pytest.approx(0.6, abs=0.01)
     picture("peg_in_hole.png")
 
 
 def test_mug_on_hook(run_in_pybullet):
-    found = run_in_pybullet("mug_on_hook")
+    hangs, hull = run_in_pybullet("mug_on_hook")["places"]
     # The bar is 0.05 thick at 0.52, the hole in the handle ends at 0.4 + 0.19.
-    assert found["place"][2] == pytest.approx(0.52 + 0.05 - 0.59, abs=0.01)
+    assert hangs[2] == pytest.approx(0.52 + 0.05 - 0.59, abs=0.01) and hull[2] < -1
     picture("mug_on_hook.png")
 
 
 def test_gripper(run_in_pybullet):
     found = run_in_pybullet("gripper")
-    assert found["lifted"] == pytest.approx(0.2, abs=0.003) and np.abs(found["tilt"]).max() < 0.02
+    held, hull = found["lifted"]
+    assert held == pytest.approx(0.2, abs=0.003) and np.abs(found["tilt"]).max() < 0.02
+    assert hull < 0.05
     picture("gripper.png")
 
 

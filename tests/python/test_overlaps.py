@@ -121,6 +121,35 @@ def test_estimators(box):
     assert volumes["raw"] < volumes["volume_true"] == pytest.approx(3, rel=0.1)
 
 
+def test_the_surface_of_two_cubes(backends):
+    """Of side 2, one moved by (x, y, z): they share (2 - x)(2 - y)(2 - z), and minus the gradient of that is the area."""
+    cube = innersphere.pack((2 * BOX_VERTICES / [1, 2, 3] - 1, BOX_FACES), spheres=64, overlap_errors=False)
+    shift = np.array([[0.5, 0.5, 0.5], [0.5, 1.0, 1.5], [1.9, 0.0, -0.25], [2.1, 0, 0]])
+    side = np.maximum(2 - np.abs(shift), 0)
+    volume = side.prod(axis=1)
+    assert volume[0] == 1.5**3
+    turn = random_quaternions(np.random.default_rng(9))  # of both, about the origin: what they share turns along
+    rotation = matrix(np.zeros(3), turn)[:3, :3]
+    for backend in backends:
+        query = Query(backend)
+        got = query.overlap(cube, cube, None, (shift, NO_TURN), estimator="surface")
+        np.testing.assert_allclose(got["volume"], volume, rtol=1e-6, atol=1e-12)
+        np.testing.assert_allclose(got["centroid"][:3], shift[:3] / 2, atol=1e-6)
+        for one, at, area in zip(got, shift, ([2.25, 2.25, 2.25], [0.5, 0.75, 1.5])):
+            # Three faces of B are in A, and each is pushed where its middle is, relative to B.
+            middles = np.where(np.eye(3) == 1, -1, -at / 2)
+            torque = np.cross(middles, np.diag(area)).sum(axis=0)
+            np.testing.assert_allclose(one["area"], area, rtol=1e-6)
+            np.testing.assert_allclose(one["force"], area, rtol=1e-6)
+            np.testing.assert_allclose(one["torque"], torque, atol=1e-6)
+            assert (one["energy"], one["stiffness"]) == pytest.approx((one["volume"], sum(area)), rel=1e-6)
+        turned = query.overlap(cube, cube, ([0, 0, 0], turn), (shift @ rotation.T, turn), estimator="surface")
+        np.testing.assert_allclose(turned["volume"], volume, rtol=1e-5, atol=1e-12)
+        np.testing.assert_allclose(turned["area"][0], rotation @ ([1.5**2] * 3), rtol=1e-4)
+        few = query.overlap(cube[:8], cube, None, (shift[0], NO_TURN), estimator="surface")
+        assert few["volume"] == pytest.approx(1.5**3, rel=1e-12)  # spheres have no part in it
+
+
 def test_shapes_are_broadcast(ball):
     query = Query()
     x, y = np.array([0.0, 0.5, 1.0]), np.array([0.0, 1.5])

@@ -6,6 +6,9 @@ import multiprocessing
 import os
 import pickle
 import signal
+import subprocess
+import sys
+import textwrap
 import threading
 from types import SimpleNamespace
 
@@ -247,6 +250,29 @@ def test_bad_files(box, tmp_path):
     with pytest.raises(innersphere.FormatError, match="damaged.cbor"):
         innersphere.read(tmp_path / "damaged.cbor")
     assert not (tmp_path / "slice.cbor").exists() and not (tmp_path / "box.stl").exists()
+
+
+def test_a_full_disk_is_an_error_and_nothing_is_left(tmp_path):
+    """A limit of the size of files does what a full disk does."""
+    script = """
+        import resource, warnings, innersphere
+        from innersphere import robots
+        solid, warnings.showwarning = innersphere.solid("nut"), lambda message, *_: print(message)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        packing = innersphere.pack(solid, spheres=100, overlap_errors=False, cache="cache")  # goes on without
+        for write, name in ((packing.save, "a.cbor"), (lambda name: robots.write_mjcf(name, packing), "a.xml")):
+            try:
+                write(name)
+            except innersphere.WriteError as error:
+                print(error)
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    kept, saved, written = done.stdout.strip().split("\n")
+    assert "not kept" in kept and "a.cbor" in saved and "a.xml" in written and done.stdout.count("File too large") == 3
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
 
 def test_pickles_and_copies(box):

@@ -38,6 +38,17 @@ def torus_mesh(around=64, across=24):
     return vertices, np.concatenate(faces).reshape(-1, 3)
 
 
+def prism(outline, caps, height):
+    """Vertices and faces of an outline (n, 2) that goes from z = 0 to a height; `caps` are triangles that fill it."""
+    n = len(outline)
+    vertices = np.r_[np.c_[outline, np.zeros(n)], np.c_[outline, np.full(n, height)]]
+    faces = [c[::-1] for c in caps] + [[n + i for i in c] for c in caps]
+    for i in range(n):
+        j = (i + 1) % n
+        faces += [[i, j, n + j], [i, n + j, n + i]]
+    return vertices, faces
+
+
 @pytest.fixture(scope="module")
 def ring():
     return innersphere.pack(torus_mesh(), spheres=1000, overlap_errors=False)
@@ -102,14 +113,9 @@ def test_a_ring_lies_on_a_plane_and_a_ball_in_its_hole(client, ring):
 def test_mass_properties_and_places_are_those_of_the_mesh(client):
     # An L of two boxes has no symmetry to hide behind; its mass and inertia are sums over boxes.
     low, high = np.array([[0, 0, 0], [0, 0.1, 0]]), np.array([[0.3, 0.1, 0.05], [0.1, 0.4, 0.05]])
-    outline = np.array([[0, 0], [0.3, 0], [0.3, 0.1], [0.1, 0.1], [0.1, 0.4], [0, 0.4]])
-    top = np.c_[outline, np.full(6, 0.05)]
-    caps = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]
-    faces = [c[::-1] for c in caps] + [[6 + i for i in c] for c in caps]
-    for i in range(6):
-        j = (i + 1) % 6
-        faces += [[i, j, 6 + j], [i, 6 + j, 6 + i]]
-    packing = innersphere.pack((np.r_[np.c_[outline, np.zeros(6)], top], faces), spheres=200, overlap_errors=False)
+    outline = [[0, 0], [0.3, 0], [0.3, 0.1], [0.1, 0.1], [0.1, 0.4], [0, 0.4]]
+    mesh = prism(outline, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], 0.05)
+    packing = innersphere.pack(mesh, spheres=200, overlap_errors=False)
     mass = np.prod(high - low, axis=1)
     middle = (high + low) / 2
     centre = mass @ middle / mass.sum()
@@ -303,6 +309,111 @@ def test_errors_say_what_and_where(client, ring):
         isp.attach(99)
     with pytest.raises(TypeError, match="client is 'me'"):
         isp.attach("me")
+
+
+@pytest.fixture(scope="module")
+def channel():
+    """A concave box: the profile of a U, 0.3 x 0.2 m, 0.1 m high."""
+    outline = 0.1 * np.array([[0, 0], [3, 0], [3, 2], [2, 2], [2, 1], [1, 1], [1, 2], [0, 2]])
+    caps = [[0, 1, 4], [1, 2, 3], [1, 3, 4], [0, 4, 5], [0, 5, 6], [0, 6, 7]]
+    return innersphere.pack(prism(outline, caps, 0.1), spheres=500, overlap_errors=False)
+
+
+def floor(client):
+    return p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE, physicsClientId=client), physicsClientId=client)
+
+
+def stacked(sim, packing, masses, seconds, **options):
+    """How far a stack of bodies 0.1 m high gets from where it was put, in steps of 1/60 s [m]."""
+    p.setTimeStep(1 / 60, physicsClientId=sim.client)
+    floor(sim.client)
+    bodies = [sim.create_body(packing, m, [0, 0, 0.1 * i], **options) for i, m in enumerate(masses)]
+    run(sim.client, seconds / 4)  # of 240 steps/s
+    places = np.array([sim.mesh_pose(body)[0] for body in bodies])
+    return np.linalg.norm(places - [[0, 0, 0.1 * i] for i in range(len(masses))], axis=1).max()
+
+
+@pytest.mark.parametrize("masses, seconds", [([1] * 10, 10), ([1, 100], 4)])
+def test_concave_boxes_stand_in_steps_of_a_sixtieth(client, channel, masses, seconds):
+    assert stacked(isp.attach(client, solver="substep"), channel, masses, seconds) < 3e-3
+    for maximal in (False, True):  # with PyBullet's own solver
+        p.resetSimulation(physicsClientId=client)
+        p.setGravity(0, 0, -9.81, physicsClientId=client)
+        assert stacked(isp.attach(client), channel, masses, seconds, maximal_coordinates=maximal) > 0.02
+
+
+ARM = """<robot name="arm"><link name="base"/><link name="rod"><inertial><origin xyz="0.3 0 0"/><mass value="1"/>
+<inertia ixx="1e-3" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.03"/></inertial>
+<collision><origin xyz="0.3 0 0"/><geometry><box size="0.6 0.1 0.1"/></geometry></collision></link>
+<joint name="hinge" type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
+<limit lower="-4" upper="4" effort="100" velocity="100"/></joint></robot>"""
+
+
+def swing(client, tmp_path, stack=None):
+    """Where an arm is after half a second, in the world; with a `stack` there is one of it beside the arm."""
+    (tmp_path / "arm.urdf").write_text(ARM)
+    arm = p.loadURDF(str(tmp_path / "arm.urdf"), [0, 5, 1], useFixedBase=True, physicsClientId=client)
+    p.setJointMotorControl2(arm, 0, p.VELOCITY_CONTROL, force=0.5, physicsClientId=client)
+    if stack is None:
+        run(client, 0.5)
+    else:
+        stack()
+    return arm, p.getJointState(arm, 0, physicsClientId=client)[:2]
+
+
+def test_substeps_leave_robots_to_pybullet(client, channel, tmp_path):
+    p.setTimeStep(1 / 60, physicsClientId=client)
+    _, alone = swing(client, tmp_path)
+    p.resetSimulation(physicsClientId=client)
+    p.setGravity(0, 0, -9.81, physicsClientId=client)
+    sim = isp.attach(client, solver="substep")
+    off = []
+    arm, beside = swing(client, tmp_path, lambda: off.append(stacked(sim, channel, [1, 100], 2)))
+    assert beside == alone and alone[0] != 0  # to the last bit
+    assert off[0] < 3e-3
+    # What it cannot move has no packing.
+    with pytest.raises(isp.PyBulletError, match=f"link 0 of body {arm} is in reduced coordinates"):
+        sim.set_shape(arm, channel, 0)
+    count = p.getNumBodies(physicsClientId=client)
+    with pytest.raises(isp.PyBulletError, match="in reduced coordinates, which solver 'substep' does not move"):
+        sim.create_body(channel, 1, maximal_coordinates=False)
+    assert p.getNumBodies(physicsClientId=client) == count
+    sim.create_body(channel, 0, [9, 9, 0], maximal_coordinates=False)  # stands still
+    with pytest.raises(innersphere.InvalidArgumentError, match="solver is 'mine'"):
+        isp.attach(client, solver="mine")
+
+
+def test_the_solver_comes_back_after_a_reset_and_goes_with_detach(client, channel):
+    sim = isp.attach(client, solver="substep")
+    for _ in range(2):
+        p.resetSimulation(physicsClientId=client)
+        p.setGravity(0, 0, -9.81, physicsClientId=client)
+        assert stacked(sim, channel, [1, 100], 1) < 3e-3
+    sim.detach()
+    p.resetSimulation(physicsClientId=client)
+    p.setGravity(0, 0, -9.81, physicsClientId=client)
+    with isp.attach(client, solver="substep"):
+        pass
+    boxes = []
+    for number in (client, p.connect(p.DIRECT)):
+        p.setGravity(0, 0, -9.81, physicsClientId=number)
+        p.setTimeStep(1 / 240, physicsClientId=number)
+        isp.attach(number).detach()
+        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3, physicsClientId=number)
+        floor(number)
+        for i in range(3):
+            box = p.createMultiBody(1, shape, -1, [0.03 * i, 0, 0.1 + 0.2 * i], physicsClientId=number)
+        run(number, 1)
+        boxes.append(p.getBasePositionAndOrientation(box, physicsClientId=number))
+    p.disconnect(number)
+    assert boxes[0] == boxes[1]
+
+
+def test_substeps_are_not_for_deformable_bodies(client):
+    p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD, physicsClientId=client)
+    with pytest.raises(isp.PyBulletError, match=f"deformable bodies, in client {client}"):
+        isp.attach(client, solver="substep")
+    isp.attach(client)
 
 
 def test_a_pybullet_that_differs_is_refused(client, monkeypatch):

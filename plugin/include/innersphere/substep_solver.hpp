@@ -44,9 +44,9 @@ struct SubstepOptions {
 /// direction of friction of contacts, the random order. m_erp and m_globalCfm are those of constraints, in
 /// each substep.
 ///
-/// It is for btDiscreteDynamicsWorld. A btMultiBodyDynamicsWorld solves with a solver of its own kind, and
-/// never calls this one; the log says so once. Continuous collision detection of Bullet's convex shapes
-/// (setCcdMotionThreshold) looks along the last part of a body's way in a step.
+/// It is for btDiscreteDynamicsWorld. A btMultiBodyDynamicsWorld solves with a solver of its own kind, like
+/// MultiBodySubstepSolver, and never calls this one; the log says so once. Continuous collision detection of
+/// Bullet's convex shapes (setCcdMotionThreshold) looks along the last part of a body's way in a step.
 ///
 /// One solver may serve several worlds: those that step at the same time wait for each other. Bodies with
 /// infinite or undefined velocities, forces or places are stopped and touch nothing in such a step, contacts

@@ -81,6 +81,7 @@ def attach(
     stiffness: float = 0.0,
     damping: float = 1.0,
     two_friction_directions: bool = True,
+    solver: Literal["bullet", "substep"] = "bullet",
 ) -> Simulation:
     """Makes packings collide in a client of PyBullet, and returns what gives bodies packings there.
 
@@ -93,12 +94,17 @@ def attach(
     damping: fraction of critical damping; 0 is bouncy.
     two_friction_directions: sets SOLVER_USE_2_FRICTION_DIRECTIONS for the whole world. Without it grippers drop what
         they hold. Unlike PyBullet's, this is the default.
+    solver: "bullet" is PyBullet's own; "substep" divides steps for bodies in maximal coordinates (btRigidBody) and the
+        constraints between them, with or without packings: they stand, hang and bear loads at 60 steps/s
+        (SubstepSolver of the C++ library). Bodies that touch or are joined to a movable body in reduced coordinates
+        (btMultiBody, what loadURDF() makes by default), also by way of others, have PyBullet's solver in that step.
+        It sets minimumSolverIslandSize to -1, which has to stay so.
 
-    The options hold after resetSimulation(), too. Attaching again replaces them; detach() of either
+    The options hold after resetSimulation(), too, from the next call of what attach() returned on. Attaching again replaces them; detach() of either
     object then ends both.
 
     Raises PyBulletError, which names the versions, where this PyBullet is not understood: its API version, classes
-    or values differ from what is known. TypeError and InvalidArgumentError for options out of range; NoDeviceError.
+    or values differ from what is known; and for solver="substep" in a world of deformable bodies. TypeError and InvalidArgumentError for options out of range; NoDeviceError.
     """
     if not hasattr(_core, "pybullet"):
         raise PyBulletError("this innersphere was built without Bullet; install libbullet-dev and build it again")
@@ -108,9 +114,11 @@ def attach(
     plugin = p.loadPlugin(_core.__file__, "_innersphere", physicsClientId=client)
     if plugin < 0:
         raise PyBulletError(f"PyBullet did not load innersphere's plug-in: {_versions()}")
-    sim = Simulation(client, plugin)
+    sim = Simulation(client, plugin, maximal_coordinates=solver == "substep")
     sim._check()
-    sim._run(_core.pybullet.set_options, response, backend, accuracy, stiffness, damping, two_friction_directions)
+    sim._run(
+        _core.pybullet.set_options, response, backend, accuracy, stiffness, damping, two_friction_directions, solver
+    )
     return sim
 
 
@@ -127,9 +135,10 @@ class Simulation:
     client: int
     """The number of the client in PyBullet."""
 
-    def __init__(self, client: int, plugin: int) -> None:
+    def __init__(self, client: int, plugin: int, maximal_coordinates: bool) -> None:
         self.client = client
         self._plugin: int | None = plugin
+        self._maximal_coordinates = maximal_coordinates
 
     def _run(self, prepare: Any, *arguments: Any) -> Any:
         """Has PyBullet's server do a job in its own thread, and returns what came of it."""
@@ -200,7 +209,7 @@ class Simulation:
         position: Sequence[float] = _AT_ORIGIN[0],
         orientation: Sequence[float] = _AT_ORIGIN[1],
         *,
-        maximal_coordinates: bool = False,
+        maximal_coordinates: bool | None = None,
         visual: int | None = None,
     ) -> int:
         """Makes a body with a packing, and returns its number in PyBullet.
@@ -209,7 +218,8 @@ class Simulation:
         mass: [kg]; 0 is a body that never moves.
         position, orientation: where the packing's mesh is in the world [m]: its origin, and a quaternion x y z w.
             PyBullet tells the place of the centre of mass; mesh_pose() that of the mesh.
-        maximal_coordinates: makes a btRigidBody, where PyBullet makes a btMultiBody without.
+        maximal_coordinates: makes a btRigidBody, where PyBullet makes a btMultiBody without. None: as the solver wants
+            it, which is True for "substep".
         visual: a visual shape of PyBullet's, in the frame of the mesh; None draws the packing's surface.
 
         Raises TypeError, ValueError and PyBulletError.
@@ -220,6 +230,8 @@ class Simulation:
             raise ValueError(f"mass is {mass}; it must be 0 or more")
         position, orientation = _pose(position, orientation, "the body")
         _check_connected(self.client)
+        if maximal_coordinates is None:
+            maximal_coordinates = self._maximal_coordinates
         frame, moments = _core.pybullet.principal_frame(packing)
         if visual is None:
             visual = self._surface(packing)
@@ -279,7 +291,8 @@ class Simulation:
         position, orientation: where the packing's mesh is in the frame of the link, as <origin> of <collision> says it
             in a URDF [m]: its origin, and a quaternion x y z w.
 
-        Raises PyBulletError if there is no such body or link, or it has no collision shape; TypeError; ValueError.
+        Raises PyBulletError if there is no such body or link, it has no collision shape, or it is in reduced coordinates
+        and can move, which solver="substep" does not do; TypeError; ValueError.
         """
         if not isinstance(packing, _core.Packing):
             raise TypeError(f"packing is a {type(packing).__name__}; it must be an innersphere.Packing")
@@ -310,6 +323,7 @@ class Simulation:
                 raise InvalidArgumentError(
                     f"link {link} of body {body} is scaled by {scale}; packings scale alike in all axes"
                 )
+            self._run(_core.pybullet.check_link, body, link)
             found[link] = pack(file.decode(), scale=float(scale[0]), **options), (position, orientation)
         for link, (packing, frame) in found.items():
             self._run(_core.pybullet.set_shape, body, link, packing, frame)

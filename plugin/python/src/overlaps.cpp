@@ -2,7 +2,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <mutex>
 #include <utility>
@@ -42,6 +45,19 @@ nb::tuple ranges(QueryResult::Ranges<T>&& found, nb::handle type) {
   return nb::make_tuple(structuredArray(std::move(found.items), type),
                         nb::ndarray<nb::numpy, std::int64_t>(reinterpret_cast<std::int64_t*>(first->data()),
                                                              {first->size()}, owner));
+}
+
+/// Notes that this process may use a device. Throws Error device_error in a process that was forked from one
+/// that did: nothing of CUDA works there.
+void enterDevice() {
+  static std::atomic<pid_t> first{0};
+  const pid_t here = getpid();
+  pid_t before = 0;
+  if (first.compare_exchange_strong(before, here) || before == here) return;
+  throw Error(
+      ErrorCode::device_error,
+      "this process was forked from one that may use CUDA, which does not survive that: start processes "
+      "by multiprocessing.get_context(\"spawn\"), or use Query(\"cpu\")");
 }
 
 /// Runs queries for Python. One at a time: a second thread waits for the first.
@@ -92,7 +108,9 @@ class Query {
 
  private:
   explicit Query(const QueryContextOptions& options)
-      : context_(options), on_host_(options.backend == Backend::cpu) {}
+      : context_(options), on_host_(options.backend == Backend::cpu || !cudaAvailable()) {
+    if (!on_host_) enterDevice();
+  }
 
   struct Batch {
     const SharedPacking& a;
@@ -157,6 +175,7 @@ class Query {
   void sweep(const Batch& batch, const QueryOptions& options, Overlap* overlaps) {
     const nb::gil_scoped_release release;
     const std::lock_guard lock(mutex_);
+    if (!on_host_) enterDevice();
     PairQuery pair = pairOf(batch);
     batch.poses_a.forEach(1, [&](std::size_t, const Placement& pose) { pair.placement_a = pose; });
     context_.sweep(pair, batch.poses_b.inPlace(), options, overlaps);
@@ -189,6 +208,7 @@ class Query {
   QueryResult run(const Batch& batch, const QueryOptions& options) {
     const nb::gil_scoped_release release;
     const std::lock_guard lock(mutex_);
+    if (!on_host_) enterDevice();
     const Packing& a = batch.a.packing();
     const Packing& b = batch.b.packing();
     queries_.assign(batch.count, pairOf(batch));

@@ -31,6 +31,8 @@ using namespace nb::literals;
 using pybullet::Job;
 using pybullet::Plugin;
 
+enum class Solver { bullet, substep };
+
 using Position = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;
 using Pose = std::pair<Position, Quaternion>;  ///< as PyBullet has them: x y z, x y z w
@@ -39,6 +41,8 @@ constexpr std::pair<const char*, Response> kResponses[] = {
     {"compliant", Response::compliant}, {"rigid", Response::rigid}, {"penalty", Response::penalty}};
 constexpr std::pair<const char*, Backend> kBackends[] = {
     {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
+constexpr std::pair<const char*, Solver> kSolvers[] = {{"bullet", Solver::bullet},
+                                                       {"substep", Solver::substep}};
 
 /// A job with what it will have found. Python holds it; the server's thread runs it.
 template <typename Result>
@@ -167,14 +171,26 @@ void bindPyBullet(nb::module_& module) {
   jobs.def(
       "set_options",
       [](const std::string& response, const std::string& backend, double accuracy, double stiffness,
-         double damping, bool two_friction_directions) {
-        const ContactOptions options = contactOptions(response, backend, accuracy, stiffness, damping);
+         double damping, bool two_friction_directions, const std::string& solver) {
+        pybullet::Options options{contactOptions(response, backend, accuracy, stiffness, damping),
+                                  two_friction_directions, std::nullopt};
+        if (parseWord("solver", solver, kSolvers) == Solver::substep) options.substeps = SubstepOptions{};
         return Waiting<bool>([=](Plugin& plugin) {
-          plugin.setOptions(options, two_friction_directions);
+          plugin.setOptions(options);
           return true;
         });
       },
-      "response"_a, "backend"_a, "accuracy"_a, "stiffness"_a, "damping"_a, "two_friction_directions"_a);
+      "response"_a, "backend"_a, "accuracy"_a, "stiffness"_a, "damping"_a, "two_friction_directions"_a,
+      "solver"_a);
+  jobs.def(
+      "check_link",
+      [](int body, int link) {
+        return Waiting<bool>([=](Plugin& plugin) {
+          plugin.packable(body, link);
+          return true;
+        });
+      },
+      "body"_a, "link"_a);
   jobs.def(
       "set_shape",
       [](int body, int link, const SharedPacking& packing, const Pose& mesh_to_body) {

@@ -8,6 +8,9 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 
 #include "innersphere/packing_collision_algorithm.hpp"
 #include "pybullet_interface.hpp"
@@ -68,28 +71,48 @@ void Plugin::release() {
     }
   }
   PackingCollisionAlgorithm::unregisterAlgorithm(world->getDispatcher());
+  setSolver(*world, std::nullopt);
   dispatcher_ = nullptr;
   given_.clear();
 }
 
-void Plugin::setOptions(const ContactOptions& options, bool two_friction_directions) {
-  registerWith(find(), options);  // throws before anything is changed
+void Plugin::setOptions(const Options& options) {
+  apply(find(), options);
   options_ = options;
-  two_friction_directions_ = two_friction_directions;
   attached_ = true;
-  int& mode = world().getSolverInfo().m_solverMode;
-  mode = two_friction_directions ? mode | SOLVER_USE_2_FRICTION_DIRECTIONS
-                                 : mode & ~SOLVER_USE_2_FRICTION_DIRECTIONS;
 }
 
-void Plugin::registerWith(btMultiBodyDynamicsWorld& world, const ContactOptions& options) {
+/// Throws before anything is changed.
+void Plugin::apply(btMultiBodyDynamicsWorld& world, const Options& options) {
   // Where it is not registered, the dispatcher of before was that of a world that has been reset.
   if (dispatcher_ != nullptr && !PackingCollisionAlgorithm::isRegistered(world.getDispatcher())) {
     PackingCollisionAlgorithm::forget(dispatcher_);
     dispatcher_ = nullptr;
   }
-  PackingCollisionAlgorithm::registerAlgorithm(world, options);
+  if (options.substeps && world.getWorldType() == BT_DEFORMABLE_MULTIBODY_DYNAMICS_WORLD)
+    throw std::invalid_argument("solver 'substep' does not solve worlds of deformable bodies");
+  PackingCollisionAlgorithm::registerAlgorithm(world, options.contacts);
   dispatcher_ = world.getDispatcher();
+  setSolver(world, options.substeps);
+  int& mode = world.getSolverInfo().m_solverMode;
+  mode = options.two_friction_directions ? mode | SOLVER_USE_2_FRICTION_DIRECTIONS
+                                         : mode & ~SOLVER_USE_2_FRICTION_DIRECTIONS;
+}
+
+/// Takes a solver of ours out, if it is still there, and puts another one in, if `options` say so. PyBullet's
+/// solves what has links.
+void Plugin::setSolver(btMultiBodyDynamicsWorld& world, const std::optional<SubstepOptions>& options) {
+  int& batch = world.getSolverInfo().m_minimumSolverBatchSize;
+  if (solver_ && world.getConstraintSolver() == solver_.get()) {
+    world.setMultiBodyConstraintSolver(solver_->others());
+    batch = batch_before_;
+  }
+  solver_.reset();
+  if (!options) return;
+  auto* own = static_cast<btMultiBodyConstraintSolver*>(world.getConstraintSolver());
+  solver_ = std::make_unique<MultiBodySubstepSolver>(*options, own);
+  world.setMultiBodyConstraintSolver(solver_.get());
+  batch_before_ = std::exchange(batch, -1);
 }
 
 btMultiBodyDynamicsWorld& Plugin::find() const {
@@ -102,10 +125,7 @@ btMultiBodyDynamicsWorld& Plugin::find() const {
 btMultiBodyDynamicsWorld& Plugin::world() {
   if (!attached_) throw std::invalid_argument("innersphere is detached");
   btMultiBodyDynamicsWorld& found = find();
-  if (!PackingCollisionAlgorithm::isRegistered(found.getDispatcher())) {
-    registerWith(found, options_);
-    if (two_friction_directions_) found.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
-  }
+  if (!PackingCollisionAlgorithm::isRegistered(found.getDispatcher())) apply(found, options_);
   return found;
 }
 
@@ -119,8 +139,19 @@ btCollisionObject& Plugin::collider(int body, int link) {
   return *object;
 }
 
-void Plugin::give(int body, int link, std::unique_ptr<PackingShape> shape) {
+btCollisionObject& Plugin::packable(int body, int link) {
   btCollisionObject& object = collider(body, link);
+  if (options_.substeps && MultiBodySubstepSolver::isMovingLink(object)) {
+    throw std::invalid_argument(
+        "link " + std::to_string(link) + " of body " + std::to_string(body) +
+        " is in reduced coordinates, which solver 'substep' does not move: make it with "
+        "useMaximalCoordinates");
+  }
+  return object;
+}
+
+void Plugin::give(int body, int link, std::unique_ptr<PackingShape> shape) {
+  btCollisionObject& object = packable(body, link);
   btMultiBodyDynamicsWorld& found = world();
   dropUnused(found);
   btCollisionShape* before = object.getCollisionShape();

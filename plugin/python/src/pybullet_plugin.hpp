@@ -5,9 +5,11 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "innersphere/contact_options.hpp"
+#include "innersphere/multi_body_substep_solver.hpp"
 #include "innersphere/packing_shape.hpp"
 
 class btCollisionObject;
@@ -22,6 +24,13 @@ struct Given {
   btCollisionShape* before = nullptr;  ///< PyBullet's
 };
 
+/// What attach() was told.
+struct Options {
+  ContactOptions contacts;
+  bool two_friction_directions = true;
+  std::optional<SubstepOptions> substeps;  ///< none: PyBullet's own solver
+};
+
 /// What is kept for a client from attach() to detach(). Only the server's thread uses it.
 class Plugin {
  public:
@@ -34,24 +43,29 @@ class Plugin {
   /// Returns the world as it is. Throws std::runtime_error if it is not understood.
   btMultiBodyDynamicsWorld& find() const;
   /// Attaches: sets options, for this world and those that follow it after a reset.
-  void setOptions(const ContactOptions& options, bool two_friction_directions);
+  void setOptions(const Options& options);
   /// Returns the world, in which packings collide. Throws std::invalid_argument if it was released, and as
   /// find() does.
   btMultiBodyDynamicsWorld& world();
   /// Returns the collision object of a link. Throws std::invalid_argument if there is none.
   btCollisionObject& collider(int body, int link);
+  /// Returns the collision object of a link that may have a packing. Throws std::invalid_argument where none
+  /// is, or SubstepSolver would not move it.
+  btCollisionObject& packable(int body, int link);
   void give(int body, int link, std::unique_ptr<PackingShape> shape);
 
  private:
-  void registerWith(btMultiBodyDynamicsWorld& world, const ContactOptions& options);
+  void apply(btMultiBodyDynamicsWorld& world, const Options& options);
+  void setSolver(btMultiBodyDynamicsWorld& world, const std::optional<SubstepOptions>& options);
   void dropUnused(btMultiBodyDynamicsWorld& world);
 
   void* command_processor_;
-  ContactOptions options_;
-  bool two_friction_directions_ = true;
+  Options options_;
   bool attached_ = false;
   const btDispatcher* dispatcher_ = nullptr;  ///< registered last; it may be gone
   std::vector<Given> given_;
+  std::unique_ptr<MultiBodySubstepSolver> solver_;  ///< put into the last world, if asked for
+  int batch_before_ = 0;                            ///< m_minimumSolverBatchSize of that world
 };
 
 /// Is done once in the thread of PyBullet's server, which may not call Python. Python waits for it, with the

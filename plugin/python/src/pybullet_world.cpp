@@ -13,6 +13,8 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
+#include "innersphere/multi_body_substep_solver.hpp"
+
 namespace innersphere::pybullet {
 namespace {
 
@@ -51,11 +53,13 @@ bool endsWith(std::string_view name, std::string_view end) {
   return name.size() >= end.size() && name.substr(name.size() - end.size()) == end;
 }
 
-/// Checks the layout of the world's class by what its members are.
+/// Checks the layout of the world's class by what its members are. The solver may be ours.
 bool hasKnownMembers(btMultiBodyDynamicsWorld& world, const void* module) {
+  const btConstraintSolver* solver = world.getConstraintSolver();
+  const bool ours = dynamic_cast<const MultiBodySubstepSolver*>(solver) != nullptr;
   return classOf(world.getDispatcher(), module) == "21btCollisionDispatcher" &&
          endsWith(classOf(world.getBroadphase(), module), "Broadphase") &&
-         endsWith(classOf(world.getConstraintSolver(), module), "Solver") &&
+         (ours || endsWith(classOf(solver, module), "Solver")) &&
          endsWith(classOf(world.getPairCache(), module), "PairCache");
 }
 

@@ -7,6 +7,7 @@
 #include <LinearMath/btMinMax.h>
 
 #include "innersphere/bullet_precision.hpp"
+#include "innersphere/multi_body_substep_solver.hpp"
 #include "innersphere/substep_solver.hpp"
 
 namespace innersphere {
@@ -24,9 +25,11 @@ struct SolverSettings {
         deepest_spring(info.m_splitImpulse ? kSpringShare * deepest_push : BT_LARGE_FLOAT),
         one_friction_row((info.m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS) == 0) {}
   explicit SolverSettings(btDynamicsWorld& world) : SolverSettings(world.getSolverInfo()) {
-    substeps =
-        dynamic_cast<const SubstepSolver*>(world.getConstraintSolver()) != nullptr &&
-        dynamic_cast<const btMultiBodyDynamicsWorld*>(&world) == nullptr;  // that has a solver of its own
+    // A world for btMultiBody never calls a solver that is not of its own kind.
+    const btConstraintSolver* solver = world.getConstraintSolver();
+    substeps = dynamic_cast<const btMultiBodyDynamicsWorld*>(&world) == nullptr
+                   ? dynamic_cast<const SubstepSolver*>(solver) != nullptr
+                   : dynamic_cast<const MultiBodySubstepSolver*>(solver) != nullptr;
     if (substeps) one_friction_row = false;
   }
 
