@@ -93,6 +93,21 @@ struct HostSignal {
   unsigned fault;               ///< the first one since the host has cleared it
   unsigned long long in_poses;  ///< where the part begins that it is in
   unsigned long long found;
+  unsigned left;  ///< 1: a resident kernel has left
+};
+
+/// Halves of a question: what is to be done, and the words of the query. As HostSignal::halves, each is below
+/// the number of its run.
+constexpr unsigned kQuestionHalves = 1 + sizeof(Query) / sizeof(unsigned);
+constexpr unsigned kAsk = 0, kLeave = 1;
+constexpr unsigned kRelays = 8;  ///< copies of a question for the blocks of a resident kernel
+
+/// Holds where a resident kernel finds questions about two models.
+struct Mailbox {
+  const Grid* grids[2];
+  const unsigned long long* question;  ///< in memory of the host
+  unsigned long long* relay;           ///< kRelays questions, none of them of a run to come
+  unsigned long long idle;             ///< so long the kernel waits for the next question [ns]
 };
 
 /// Holds the arguments of the launches; pointers are to the device.
