@@ -43,7 +43,8 @@ std::vector<PairQuery> queriesAt(const CollisionModel& a, const CollisionModel& 
   for (std::size_t i = 0; i < count; ++i) {
     queries[i].a = &a;
     queries[i].b = &b;
-    queries[i].placement_b.rotation = turned(0.7 + 0.5 * static_cast<double>(i) / static_cast<double>(count), 0.4);
+    queries[i].placement_b.rotation =
+        turned(0.7 + 0.5 * static_cast<double>(i) / static_cast<double>(count), 0.4);
     queries[i].placement_b.translation = {0.8 * depth.distance, 0.6 * depth.distance, 0};
   }
   return queries;
@@ -51,7 +52,8 @@ std::vector<PairQuery> queriesAt(const CollisionModel& a, const CollisionModel& 
 
 void waitFor(double microseconds) {
   const auto start = std::chrono::steady_clock::now();
-  while (std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count() < microseconds)
+  while (std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count() <
+         microseconds)
     continue;
 }
 
@@ -62,8 +64,9 @@ std::vector<Overlap> column(QueryContext& context, const std::vector<PairQuery>&
   for (std::size_t run = 0; run < arguments.runs + queries.size(); ++run) {
     const std::size_t i = run % queries.size();
     if (arguments.pause > 0) waitFor(arguments.pause);
-    const double time =
-        benchmarks::timeOf([&] { overlaps[i] = context.overlap(queries[i], {Want::wrench, Estimator::raw}); });
+    const double time = benchmarks::timeOf([&] {
+      overlaps[i] = context.overlap(queries[i], {Want::wrench, Estimator::raw});
+    });
     if (run >= queries.size()) times.push_back(time);
   }
   std::printf(" %.1f (%.1f, %.1f) |", quantile(times, 0.5), quantile(times, 0.99), quantile(times, 0.999));
@@ -86,7 +89,8 @@ void rows(const Arguments& arguments, std::size_t spheres) {
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) {
         inverse.rotation[3 * i + j] = place.rotation[3 * j + i];
-        inverse.translation[static_cast<int>(i)] -= place.rotation[3 * j + i] * place.translation[static_cast<int>(j)];
+        inverse.translation[static_cast<int>(i)] -=
+            place.rotation[3 * j + i] * place.translation[static_cast<int>(j)];
       }
     }
     const benchmarks::PaperCuda paper = benchmarks::runPaperOnDevice(grid_a, grid_b, {{inverse, place}}, 101);
@@ -102,7 +106,8 @@ void rows(const Arguments& arguments, std::size_t spheres) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Time of one pair on a device, as a Markdown table on stdout; microseconds as the host sees them");
+  CLI::App app(
+      "Time of one pair on a device, as a Markdown table on stdout; microseconds as the host sees them");
   Arguments arguments;
   app.add_option("--spheres", arguments.spheres, "Of both bodies")->capture_default_str()->delimiter(',');
   app.add_option("--runs", arguments.runs, "Queries of each kind")->capture_default_str();
@@ -112,7 +117,8 @@ int main(int argc, char** argv) {
   try {
     std::printf("%s", benchmarks::heading("One pair on a device", argc, argv).c_str());
     std::printf(
-        "Median (99th, 99.9th percentile) of %zu queries, wrench, pauses of %.0f us; the paper's query: volume.\n\n"
+        "Median (99th, 99.9th percentile) of %zu queries, wrench, pauses of %.0f us; the paper's query: "
+        "volume.\n\n"
         "| spheres | overlap | paper | launched | resident | bits |\n|---|---|---|---|---|---|\n",
         arguments.runs, arguments.pause);
     for (const std::size_t count : arguments.spheres) rows(arguments, count);

@@ -56,6 +56,7 @@ struct DeviceSums {
   Limbs terms[core::kTerms];
 };
 constexpr unsigned kSumWords = sizeof(DeviceSums) / sizeof(unsigned long long);
+constexpr unsigned kSumCopies = 8;  ///< that the blocks of a single query add to
 
 /// Counts for the kernels of one batch; all are zero before each.
 struct Counters {
@@ -114,7 +115,7 @@ struct Mailbox {
 struct Batch {
   const Query* queries;
   unsigned count;
-  DeviceSums* sums;  ///< zero before, and again after a single query
+  DeviceSums* sums;  ///< of a single query kSumCopies, which are zero before, and again after it
   Counters* counters;
   unsigned long long*
       tasks;  ///< active clusters of all queries, kTaskClusters neighbours in each: see packTask()

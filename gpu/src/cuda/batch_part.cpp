@@ -232,12 +232,13 @@ void BatchPart::launch() {
     stage_ = Stage::traversed;
     return;
   }
-  if (counters_.capacity() < 1 || sums_.capacity() < count) clean_ = false;
+  const std::size_t sums = std::max<std::size_t>(count, kSumCopies);
+  if (counters_.capacity() < 1 || sums_.capacity() < sums) clean_ = false;
   counters_.reserve(1);
-  sums_.reserve(count);
+  sums_.reserve(sums);
   if (!single || !clean_) {
     INNERSPHERE_CUDA(cudaMemsetAsync(counters_.data(), 0, sizeof(Counters), device_.stream));
-    INNERSPHERE_CUDA(cudaMemsetAsync(sums_.data(), 0, sizeof(DeviceSums), device_.stream));
+    INNERSPHERE_CUDA(cudaMemsetAsync(sums_.data(), 0, kSumCopies * sizeof(DeviceSums), device_.stream));
   }
   clean_ = false;
   if (!single) {

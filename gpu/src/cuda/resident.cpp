@@ -27,7 +27,7 @@ void Resident::ask(const PreparedQuery& prepared, const Query& query, Goal goal,
   write(batch.run, kAsk, &query);
   if (there) return;
   relay_.reserve(kRelays * kQuestionHalves);
-  sums_.reserve(2);
+  sums_.reserve(2 * kSumCopies);
   counters_.reserve(2);
   models_[0] = prepared.grid_a;
   models_[1] = prepared.grid_b;
@@ -46,8 +46,9 @@ void Resident::ask(const PreparedQuery& prepared, const Query& query, Goal goal,
 
 void Resident::launch(const Device& device) {
   batch_.signal->left = 0;
-  INNERSPHERE_CUDA(cudaMemsetAsync(relay_.data(), 0, kRelays * kQuestionHalves * sizeof(long long), device.stream));
-  INNERSPHERE_CUDA(cudaMemsetAsync(sums_.data(), 0, 2 * sizeof(DeviceSums), device.stream));
+  INNERSPHERE_CUDA(
+      cudaMemsetAsync(relay_.data(), 0, kRelays * kQuestionHalves * sizeof(long long), device.stream));
+  INNERSPHERE_CUDA(cudaMemsetAsync(sums_.data(), 0, 2 * kSumCopies * sizeof(DeviceSums), device.stream));
   INNERSPHERE_CUDA(cudaMemsetAsync(counters_.data(), 0, 2 * sizeof(Counters), device.stream));
   launchResident(goal_, batch_, mailbox_, clusters_, device.processors, device.stream);
   launched_ = true;
@@ -64,8 +65,7 @@ void Resident::write(unsigned run, unsigned command, const Query* query) {
   const unsigned long long above = static_cast<unsigned long long>(run) << 32;
   for (unsigned i = kQuestionHalves - 1; i > 0; --i) {
     unsigned word = 0;
-    if (query)
-      std::memcpy(&word, reinterpret_cast<const char*>(query) + (i - 1) * sizeof word, sizeof word);
+    if (query) std::memcpy(&word, reinterpret_cast<const char*>(query) + (i - 1) * sizeof word, sizeof word);
     halves[i] = above | word;
   }
   halves[0] = above | command;

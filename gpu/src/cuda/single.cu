@@ -1,4 +1,6 @@
 // The kernels of a single query: one that is launched for it, and one that stays and waits for the next.
+#include <algorithm>
+
 #include "cuda/kernels.hpp"
 #include "cuda/memory.hpp"
 #include "cuda/traverse.hpp"
@@ -18,6 +20,7 @@ struct BlockMemory {
   Scene scene;
   unsigned active[kSingleWarps];  ///< a bit for each thread whose cluster is
   unsigned queued[kSingleWarps];
+  DeviceSums total;
 };
 
 /// The number of slices of each cluster. Where a block has few clusters, all its warps should get something.
@@ -36,8 +39,8 @@ __device__ unsigned bitOf(const unsigned (&words)[kSingleWarps], unsigned before
 
 /// Decides what the warps of a block have queued, each 32 of all of it at a time. All threads call it.
 template <Goal goal>
-__device__ __forceinline__ void decideTogether(const Batch& batch,
-                                               DeviceSums& sums, BlockMemory& shared, Warp<goal>& warp) {
+__device__ __forceinline__ void decideTogether(const Batch& batch, DeviceSums& sums, BlockMemory& shared,
+                                               Warp<goal>& warp) {
   const unsigned number = threadIdx.x / kWarp;
   const unsigned(&queued)[kSingleWarps] = shared.queued;
   if (warp.lane == 0) shared.queued[number] = warp.queued;
@@ -49,18 +52,20 @@ __device__ __forceinline__ void decideTogether(const Batch& batch,
     unsigned at = min(first + warp.lane, all - 1), owner = 0;
     for (; at >= queued[owner]; ++owner) at -= queued[owner];
     WarpMemory& own = warp.memory;
-    warp.summer.add(batch, shared.scene, 0, shared.warps[owner].queue[at], first + warp.lane < all, warp.lane, own.columns,
-                    own.sums);
+    warp.summer.add(batch, shared.scene, 0, shared.warps[owner].queue[at], first + warp.lane < all, warp.lane,
+                    own.columns, own.sums);
     if (warp.summer.full()) warp.summer.flush(sums, shared.scene.query.units, warp.lane, own.sums);
   }
 }
 
 /// One query: blocks share all its clusters, the warps of a block those that can meet the other body, and the
-/// last block brings the sums home. `sums` and `counters` are zero before and after.
+/// last block brings the sums home. There are kSumCopies of `sums`, so that fewer blocks wait for each other;
+/// they and `counters` are zero before and after.
 template <Goal goal>
-__device__ __forceinline__ void traverse(const Batch& batch, unsigned run, DeviceSums& sums,
+__device__ __forceinline__ void traverse(const Batch& batch, unsigned run, DeviceSums* all_sums,
                                          Counters& counters, BlockMemory& shared) {
   const Scene& scene = shared.scene;
+  DeviceSums& sums = all_sums[goal == Goal::touch ? 0 : blockIdx.x % kSumCopies];
   Warp<goal> warp(shared.warps[threadIdx.x / kWarp], threadIdx.x % kWarp);
   const unsigned clusters_a = scene.query.clusters[0], clusters = clusters_a + scene.query.clusters[1];
   for (unsigned first = blockIdx.x; first < clusters; first += gridDim.x * kThreads) {
@@ -97,16 +102,23 @@ __device__ __forceinline__ void traverse(const Batch& batch, unsigned run, Devic
   warp.summer.flushBlock(sums, scene.query.units, kSingleWarps, warp.lane,
                          [&](unsigned w) -> Sums& { return shared.warps[w].sums; });
   if (!isLastBlock(counters)) return;
+  for (unsigned i = threadIdx.x; i < kSumWords; i += kThreads) {
+    auto* const words = reinterpret_cast<unsigned long long*>(all_sums) + i;
+    unsigned long long sum = 0;
+    for (unsigned copy = 0; copy < kSumCopies; ++copy) sum += __ldcg(words + copy * kSumWords);
+    for (unsigned copy = 0; copy < kSumCopies; ++copy) words[copy * kSumWords] = 0;
+    reinterpret_cast<unsigned long long*>(&shared.total)[i] = sum;
+  }
+  __syncthreads();
   if (threadIdx.x <= kResultWords) {
     const unsigned long long word = threadIdx.x < kResultWords
-                                        ? resultOf<goal>(sums, scene.query.units, threadIdx.x)
+                                        ? resultOf<goal>(shared.total, scene.query.units, threadIdx.x)
                                         : __ldcg(&counters.found);
     const unsigned long long above = static_cast<unsigned long long>(run) << 32;
     auto* to = reinterpret_cast<ulonglong2*>(batch.signal->halves) + threadIdx.x;
     *to = {above | (word & 0xffffffffu), above | word >> 32};
   }
   __syncthreads();
-  if (threadIdx.x < kSumWords) reinterpret_cast<unsigned long long*>(&sums)[threadIdx.x] = 0;
   if (threadIdx.x == 0) counters = {};
 }
 
@@ -116,7 +128,7 @@ __global__ void __launch_bounds__(kThreads, kSingleBlocks)
   __shared__ BlockMemory shared;
   copyScene(query, threadIdx.x, kThreads, shared.scene);
   __syncthreads();
-  traverse<goal>(batch, batch.run, *batch.sums, *batch.counters, shared);
+  traverse<goal>(batch, batch.run, batch.sums, *batch.counters, shared);
 }
 
 __device__ unsigned long long nanoseconds() {
@@ -170,17 +182,13 @@ __global__ void __launch_bounds__(kThreads, kSingleBlocks)
   }
   // The sums of one run are cleared while the next one may begin, so they take turns.
   for (unsigned run = batch.run; receive(mailbox, run, shared.scene.query); ++run)
-    traverse<goal>(batch, run, batch.sums[run % 2], batch.counters[run % 2], shared);
+    traverse<goal>(batch, run, batch.sums + run % 2 * kSumCopies, batch.counters[run % 2], shared);
   if (blockIdx.x == 0 && threadIdx.x == 0) *static_cast<volatile unsigned*>(&batch.signal->left) = 1;
-}
-
-unsigned blocksFor(unsigned clusters, unsigned processors) {
-  return std::min(kSingleBlocks * processors, clusters);
 }
 
 template <Goal goal>
 void launchGoal(const Batch& batch, const Query& query, unsigned processors, cudaStream_t stream) {
-  const unsigned blocks = blocksFor(query.clusters[0] + query.clusters[1], processors);
+  const unsigned blocks = std::min(kSingleBlocks * processors, query.clusters[0] + query.clusters[1]);
   traverseSingle<goal><<<blocks, kThreads, 0, stream>>>(batch, query);
   INNERSPHERE_CUDA(cudaGetLastError());
 }
@@ -188,11 +196,15 @@ void launchGoal(const Batch& batch, const Query& query, unsigned processors, cud
 template <Goal goal>
 void launchResidentGoal(const Batch& batch, const Mailbox& mailbox, unsigned clusters, unsigned processors,
                         cudaStream_t stream) {
+  int side_by_side = 0;  // they wait for each other
+  INNERSPHERE_CUDA(
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&side_by_side, traverseResident<goal>, kThreads, 0));
+  const unsigned blocks = std::min(static_cast<unsigned>(side_by_side) * processors, clusters);
   Batch batch_argument = batch;
   Mailbox mailbox_argument = mailbox;
   void* arguments[] = {&batch_argument, &mailbox_argument};
-  INNERSPHERE_CUDA(cudaLaunchCooperativeKernel(traverseResident<goal>, blocksFor(clusters, processors),
-                                               kThreads, arguments, 0, stream));
+  INNERSPHERE_CUDA(
+      cudaLaunchCooperativeKernel(traverseResident<goal>, blocks, kThreads, arguments, 0, stream));
 }
 
 }  // namespace
