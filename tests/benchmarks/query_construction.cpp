@@ -46,13 +46,9 @@ void row(std::size_t count, std::size_t runs) {
   on_device.reserve(count);
   copyAsync(on_device.data(), spheres, count, stream);
   const core::GridPlan planned = plan();
-  const auto build = [&](device::CudaGrid& grid, const Sphere* from, const core::GridPlan& with) {
-    grid.build(from, with, stream);
-    INNERSPHERE_CUDA(cudaStreamSynchronize(stream));
-  };
   const double first = medianTime(runs / 5, [&] {
     device::CudaGrid grid(0);
-    build(grid, on_device.data(), planned);
+    grid.build(on_device.data(), planned, stream);
   });
   double kernels = 0, host = 0, from_host = 0;
   {
@@ -67,8 +63,8 @@ void row(std::size_t count, std::size_t runs) {
       if (run >= 2) times.push_back(1e6 * secondsBetween(start, stop));
     }
     kernels = median(times);
-    host = medianTime(runs, [&] { build(grid, on_device.data(), planned); });
-    from_host = medianTime(runs, [&] { build(grid, spheres, plan()); });
+    host = medianTime(runs, [&] { grid.build(on_device.data(), planned, stream); });
+    from_host = medianTime(runs, [&] { grid.build(spheres, plan(), stream); });
   }
   cudaStreamDestroy(stream);
   std::printf("| %zu | %.0f | %.0f (%.0f) | %.0f | %.1f | %.1f | %.1f |\n", count, cpu, cpu_plan, plan_all,

@@ -133,7 +133,6 @@ void launchBuild(const BuildPlan& plan, const GridArrays& grid, const Sphere* gi
   scratch.used.reserve(cells);
   scratch.block_sums.reserve(scratch.most_blocks);
   scratch.status.reserve(1);
-  *scratch.status.data() = BuildStatus::none();
   BuildPlan plan_argument = plan;
   GridArrays grid_argument = grid;
   BuildArrays arrays{given,

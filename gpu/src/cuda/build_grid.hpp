@@ -74,9 +74,6 @@ struct BuildStatus {
   std::uint64_t cells;   ///< with a list
   std::uint64_t listed;  ///< places, with what fills up the lists
   unsigned longest;      ///< list
-
-  /// None of these is in a status that has come.
-  static BuildStatus none() { return {~0ull, ~0ull, ~0u}; }
 };
 
 /// Returns the size of a table that is at most half full.

@@ -120,12 +120,7 @@ inline __device__ void orderLists(const BuildPlan& plan, const GridArrays& grid,
   const unsigned lane = threadIdx.x % kLanes;
   const unsigned lanes = ((1u << kLanes) - 1) << (threadIdx.x % kWarp / kLanes * kLanes);
   const BuildStatus status = cells.status(*arrays.longest);
-  if (threads.first == 0) {  // the host waits for all three, and not for the lists
-    volatile BuildStatus* to = arrays.to_host;
-    to->cells = status.cells;
-    to->listed = status.listed;
-    to->longest = status.longest;
-  }
+  if (threads.first == 0) *arrays.to_host = status;
   if (!fits(status, grid) || status.longest > kLongestInOrder) return;
   std::uint64_t i = threads.first / kLanes;
   core::Cell next = i < status.cells ? cells.used[i] : core::Cell{};

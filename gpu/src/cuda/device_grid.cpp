@@ -1,7 +1,6 @@
 #include "cuda/device_grid.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -66,7 +65,6 @@ void CudaGrid::build(const Sphere* spheres, const core::GridPlan& grid, cudaStre
   const std::uint32_t count = grid.view.count;
   const bool first = !header_.data();
   if (!scratch_) scratch_ = std::make_unique<BuildScratch>();
-  awaitIn(stream);
   const Sphere* const given = onDevice(spheres, count, stream);
   header_.reserve(1);
   if (first)  // kernels copy it as a whole, with its gaps
@@ -79,26 +77,13 @@ void CudaGrid::build(const Sphere* spheres, const core::GridPlan& grid, cudaStre
   const BuildPlan plan = makeBuildPlan(grid);
   const bool dense = isDense(plan);
   launchBuild(plan, arrays(), given, {true, dense}, *scratch_, stream);
-  pending_ = true;
   if (!dense || !finish(plan, stream)) {
     const BuildStatus status = sortLists(plan, arrays(), *scratch_, stream);
     makeRoom(status, count, stream);
     launchSorted(plan, arrays(), status, *scratch_, stream);
     INNERSPHERE_CUDA(cudaStreamSynchronize(stream));
   }
-  INNERSPHERE_CUDA(cudaEventRecord(built_.get(), stream));
   if (first) scratch_.reset();
-}
-
-void CudaGrid::awaitIn(cudaStream_t stream) {
-  if (!pending_) return;
-  const cudaError_t status = cudaEventQuery(built_.get());
-  if (status != cudaErrorNotReady) {
-    INNERSPHERE_CUDA(status);
-    pending_ = false;
-  } else {
-    INNERSPHERE_CUDA(cudaStreamWaitEvent(stream, built_.get()));
-  }
 }
 
 const Sphere* CudaGrid::onDevice(const Sphere* spheres, std::size_t count, cudaStream_t stream) {
@@ -110,31 +95,11 @@ const Sphere* CudaGrid::onDevice(const Sphere* spheres, std::size_t count, cudaS
   return scratch_->given.data();
 }
 
-namespace {
-
-/// Waits until the build knows how much there is; it goes on meanwhile.
-BuildStatus statusOf(const BuildScratch& scratch, cudaStream_t stream) {
-  constexpr int kSpins = 10000;  // some 10 us, before the driver is asked
-  const volatile BuildStatus& status = *scratch.status.data();
-  const BuildStatus none = BuildStatus::none();
-  const auto come = [&] {
-    return status.cells != none.cells && status.listed != none.listed && status.longest != none.longest;
-  };
-  while (!come()) {
-    for (int spin = 0; !come() && spin < kSpins; ++spin) continue;
-    const cudaError_t driver = come() ? cudaSuccess : cudaStreamQuery(stream);  // knows if the kernel failed
-    if (driver != cudaErrorNotReady) INNERSPHERE_CUDA(driver);
-  }
-  std::atomic_thread_fence(std::memory_order_acquire);
-  return {status.cells, status.listed, status.longest};
-}
-
-}  // namespace
-
 /// False if some list is too long for it.
 bool CudaGrid::finish(const BuildPlan& plan, cudaStream_t stream) {
   while (true) {
-    const BuildStatus status = statusOf(*scratch_, stream);
+    INNERSPHERE_CUDA(cudaStreamSynchronize(stream));
+    const BuildStatus status = *scratch_->status.data();
     if (status.longest > kLongestInOrder) return false;
     if (fits(status, arrays())) return true;
     makeRoom(status, plan.grid.view.count, stream);
@@ -174,12 +139,10 @@ const CudaGrid& gridOnDevice(const ModelGrid& grid, int device, cudaStream_t str
     found = made.get();
     all.grids.push_back(std::move(made));
   }
-  if (found->version != grid.version()) {
-    found->version = 0;
-    grid.withSpheres([&](const Sphere* spheres, GridScratch&) { found->build(spheres, plan, stream); });
-    found->version = grid.version();
-  }
-  found->awaitIn(stream);
+  if (found->version == grid.version()) return *found;
+  found->version = 0;
+  grid.withSpheres([&](const Sphere* spheres, GridScratch&) { found->build(spheres, plan, stream); });
+  found->version = grid.version();
   return *found;
 }
 

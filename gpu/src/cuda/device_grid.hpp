@@ -13,13 +13,9 @@ class CudaGrid : public DeviceGrid {
   explicit CudaGrid(int device) : device_(device) {}
 
   /// Makes it the grid of these spheres, which are in the memory of the host or of the device, which must be
-  /// current. It is done once the stream is: this waits only until it is known what room there must be.
-  /// Spheres in the memory of the device must stay as they are until then. Building once more allocates only
-  /// where more memory is needed than ever.
+  /// current; it is done when this returns. Building once more allocates only where more memory is needed
+  /// than ever.
   void build(const Sphere* spheres, const core::GridPlan& plan, cudaStream_t stream);
-
-  /// Makes a stream wait for the last build, where that is still under way.
-  void awaitIn(cudaStream_t stream);
 
   int device() const override { return device_; }
   const Grid* onDevice() const { return header_.data(); }
@@ -39,13 +35,11 @@ class CudaGrid : public DeviceGrid {
   DeviceArray<std::uint32_t> ids_, places_, listed_;
   DeviceArray<core::Cluster> clusters_;
   DeviceArray<core::Cell> cells_;
-  Event built_;
-  bool pending_ = false;                   ///< the build may still be under way
   std::unique_ptr<BuildScratch> scratch_;  ///< kept where it is built more than once
 };
 
 /// Returns the grid on a device, which must be current; it is built there on first use and when the spheres
-/// have changed. What comes into the stream after this finds it. Safe to call from several threads.
+/// have changed. Safe to call from several threads.
 const CudaGrid& gridOnDevice(const ModelGrid& grid, int device, cudaStream_t stream);
 
 }  // namespace innersphere::device

@@ -22,6 +22,7 @@ struct BlockMemory {
   unsigned queued[kSingleWarps];
   DeviceSums total;
 };
+static_assert(sizeof(BlockMemory) <= 48 << 10, "more would have to be asked for");
 
 /// The number of slices of each cluster. Where a block has few clusters, all its warps should get something.
 __device__ unsigned slicesOf(unsigned clusters) {
@@ -125,7 +126,8 @@ __device__ __forceinline__ void traverse(const Batch& batch, unsigned run, Devic
 template <Goal goal>
 __global__ void __launch_bounds__(kThreads, kSingleBlocks)
     traverseSingle(const __grid_constant__ Batch batch, const __grid_constant__ Query query) {
-  __shared__ BlockMemory shared;
+  extern __shared__ uint4 shared_bytes[];
+  BlockMemory& shared = *reinterpret_cast<BlockMemory*>(shared_bytes);
   copyScene(query, threadIdx.x, kThreads, shared.scene);
   __syncthreads();
   traverse<goal>(batch, batch.run, batch.sums, *batch.counters, shared);
@@ -173,7 +175,8 @@ template <Goal goal>
 __global__ void __launch_bounds__(kThreads, kSingleBlocks)
     traverseResident(const __grid_constant__ Batch batch, const __grid_constant__ Mailbox mailbox) {
   static_assert(kQuestionHalves <= kThreads);
-  __shared__ BlockMemory shared;
+  extern __shared__ uint4 shared_bytes[];
+  BlockMemory& shared = *reinterpret_cast<BlockMemory*>(shared_bytes);
   for (unsigned side = 0; side < 2; ++side) {
     constexpr unsigned kWords = sizeof(Grid) / sizeof(uint2);
     for (unsigned i = threadIdx.x; i < kWords; i += kThreads)
@@ -189,7 +192,7 @@ __global__ void __launch_bounds__(kThreads, kSingleBlocks)
 template <Goal goal>
 void launchGoal(const Batch& batch, const Query& query, unsigned processors, cudaStream_t stream) {
   const unsigned blocks = std::min(kSingleBlocks * processors, query.clusters[0] + query.clusters[1]);
-  traverseSingle<goal><<<blocks, kThreads, 0, stream>>>(batch, query);
+  traverseSingle<goal><<<blocks, kThreads, sizeof(BlockMemory), stream>>>(batch, query);
   INNERSPHERE_CUDA(cudaGetLastError());
 }
 
@@ -197,14 +200,14 @@ template <Goal goal>
 void launchResidentGoal(const Batch& batch, const Mailbox& mailbox, unsigned clusters, unsigned processors,
                         cudaStream_t stream) {
   int side_by_side = 0;  // they wait for each other
-  INNERSPHERE_CUDA(
-      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&side_by_side, traverseResident<goal>, kThreads, 0));
+  INNERSPHERE_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&side_by_side, traverseResident<goal>,
+                                                                 kThreads, sizeof(BlockMemory)));
   const unsigned blocks = std::min(static_cast<unsigned>(side_by_side) * processors, clusters);
   Batch batch_argument = batch;
   Mailbox mailbox_argument = mailbox;
   void* arguments[] = {&batch_argument, &mailbox_argument};
-  INNERSPHERE_CUDA(
-      cudaLaunchCooperativeKernel(traverseResident<goal>, blocks, kThreads, arguments, 0, stream));
+  INNERSPHERE_CUDA(cudaLaunchCooperativeKernel(traverseResident<goal>, blocks, kThreads, arguments,
+                                               sizeof(BlockMemory), stream));
 }
 
 }  // namespace

@@ -111,26 +111,14 @@ __device__ __forceinline__ void copyScene(const Query& query, unsigned thread, u
   copy(query, scene.query);
 }
 
-/// Adds one. What the block has written before is then seen by whom finds the sum; unlike after
-/// __threadfence(), what this multiprocessor has in its first-level cache stays there.
-inline __device__ unsigned countBlock(unsigned& blocks) {
-#if __CUDA_ARCH__ >= 700
-  unsigned before;
-  asm volatile("atom.add.release.gpu.global.u32 %0, [%1], 1;" : "=r"(before) : "l"(&blocks) : "memory");
-  return before;
-#else
-  __threadfence();
-  return atomicAdd(&blocks, 1u);
-#endif
-}
-
 /// True in the last block to come here, for all its threads.
 inline __device__ bool isLastBlock(Counters& counters) {
   __shared__ bool last;
   __syncthreads();
   if (threadIdx.x == 0) {
-    last = countBlock(counters.blocks) == gridDim.x - 1;
-    if (last) __threadfence();
+    __threadfence();
+    last = atomicAdd(&counters.blocks, 1u) == gridDim.x - 1;
+    __threadfence();
   }
   __syncthreads();
   return last;
