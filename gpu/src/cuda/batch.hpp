@@ -94,7 +94,7 @@ struct HostSignal {
   unsigned fault;               ///< the first one since the host has cleared it
   unsigned long long in_poses;  ///< where the part begins that it is in
   unsigned long long found;
-  unsigned left;  ///< 1: a resident kernel has left
+  unsigned left;  ///< the number of the last resident kernel that has left
 };
 
 /// Halves of a question: what is to be done, and the words of the query. As HostSignal::halves, each is below
@@ -108,6 +108,7 @@ struct Mailbox {
   const Grid* grids[2];
   const unsigned long long* question;  ///< in memory of the host
   unsigned long long* relay;           ///< kRelays questions, none of them of a run to come
+  unsigned number;                     ///< of the kernel, from 1 on
   unsigned long long idle;             ///< so long the kernel waits for the next question [ns]
 };
 

@@ -5,15 +5,6 @@
 
 namespace innersphere::device {
 
-namespace {
-
-/// Whether the kernel is gone, or will be, as far as the host knows.
-bool hasLeft(const Batch& batch) {
-  return *const_cast<const volatile unsigned*>(&batch.signal->left) != 0;
-}
-
-}  // namespace
-
 bool Resident::isFor(const PreparedQuery& query, Goal goal) const {
   return launched_ && goal == goal_ && query.grid_a == models_[0] && query.grid_b == models_[1] &&
          query.grid_a->version() == versions_[0] && query.grid_b->version() == versions_[1];
@@ -21,11 +12,15 @@ bool Resident::isFor(const PreparedQuery& query, Goal goal) const {
 
 void Resident::ask(const PreparedQuery& prepared, const Query& query, Goal goal, const Batch& batch,
                    const Device& device) {
-  question_.reserve(kQuestionHalves);
-  const bool there = isFor(prepared, goal) && !hasLeft(batch);
-  batch_.run = batch.run;
-  write(batch.run, kAsk, &query);
-  if (there) return;
+  const volatile HostSignal& signal = *batch.signal;
+  if (isFor(prepared, goal) && signal.left != mailbox_.number) {
+    batch_.run = batch.run;
+    write(batch.run, kAsk, &query);
+    return;
+  }
+  // The kernel before may still have to read that it should leave, so the question goes elsewhere.
+  questions_.reserve(2 * kQuestionHalves);
+  question_ = questions_.data() + (question_ == questions_.data() ? kQuestionHalves : 0);
   relay_.reserve(kRelays * kQuestionHalves);
   sums_.reserve(2 * kSumCopies);
   counters_.reserve(2);
@@ -38,14 +33,16 @@ void Resident::ask(const PreparedQuery& prepared, const Query& query, Goal goal,
   batch_.sums = sums_.data();
   batch_.counters = counters_.data();
   mailbox_ = {{query.grids[0], query.grids[1]},
-              question_.data(),
+              question_,
               relay_.data(),
+              mailbox_.number,
               static_cast<unsigned long long>(1e9 * device.resident_seconds)};
+  write(batch.run, kAsk, &query);
   launch(device);
 }
 
 void Resident::launch(const Device& device) {
-  batch_.signal->left = 0;
+  ++mailbox_.number;
   INNERSPHERE_CUDA(
       cudaMemsetAsync(relay_.data(), 0, kRelays * kQuestionHalves * sizeof(long long), device.stream));
   INNERSPHERE_CUDA(cudaMemsetAsync(sums_.data(), 0, 2 * kSumCopies * sizeof(DeviceSums), device.stream));
@@ -61,7 +58,7 @@ bool Resident::dismiss() {
 }
 
 void Resident::write(unsigned run, unsigned command, const Query* query) {
-  volatile unsigned long long* const halves = question_.data();
+  volatile unsigned long long* const halves = question_;
   const unsigned long long above = static_cast<unsigned long long>(run) << 32;
   for (unsigned i = kQuestionHalves - 1; i > 0; --i) {
     unsigned word = 0;

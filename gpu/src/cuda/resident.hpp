@@ -43,7 +43,8 @@ class Resident {
   unsigned clusters_ = 0;
   Batch batch_{};
   Mailbox mailbox_{};
-  PinnedArray<unsigned long long> question_;
+  PinnedArray<unsigned long long> questions_;  ///< two, which take turns
+  unsigned long long* question_ = nullptr;     ///< of the kernel that was launched last
   DeviceArray<unsigned long long> relay_;
   DeviceArray<DeviceSums> sums_;
   DeviceArray<Counters> counters_;
