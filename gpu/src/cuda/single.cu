@@ -186,7 +186,8 @@ __global__ void __launch_bounds__(kThreads, kSingleBlocks)
   // The sums of one run are cleared while the next one may begin, so they take turns.
   for (unsigned run = batch.run; receive(mailbox, run, shared.scene.query); ++run)
     traverse<goal>(batch, run, batch.sums + run % 2 * kSumCopies, batch.counters[run % 2], shared);
-  if (blockIdx.x == 0 && threadIdx.x == 0) *static_cast<volatile unsigned*>(&batch.signal->left) = mailbox.number;
+  if (blockIdx.x == 0 && threadIdx.x == 0)
+    *static_cast<volatile unsigned*>(&batch.signal->left) = mailbox.number;
 }
 
 template <Goal goal>
