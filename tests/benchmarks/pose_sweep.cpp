@@ -1,11 +1,13 @@
 // Time a pose of a sweep, beside a batch of queries: poses and results in memory of the host, pinned, and of
-// the device; and over all devices.
+// the device; in a stream of the user's; and over all devices. Or one long sweep, and the memory that it
+// takes.
 #include <cuda_runtime.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <string>
 #include <vector>
@@ -64,6 +66,22 @@ void column(std::size_t count, std::size_t runs, const std::function<void()>& wo
   std::fflush(stdout);
 }
 
+/// Sweeps in a stream, to their end; and how long the host is at it, for all poses.
+void streamed(QueryContext& context, const PairQuery& pair, const QueryOptions& options, std::size_t count,
+              std::size_t runs, const double* poses, Overlap* overlaps) {
+  cudaStream_t stream = nullptr;
+  cudaStreamCreate(&stream);
+  std::vector<double> started;
+  column(count, runs, [&] {
+    started.push_back(timeOf([&] {
+      context.startSweep(pair, {count, poses, nullptr, nullptr}, options, overlaps, stream);
+    }));
+    context.waitSweep();
+  });
+  std::printf(" %.0f (%.0f) |", median(started), quantile(started, 0.99));
+  cudaStreamDestroy(stream);
+}
+
 void measure(std::size_t spheres, std::size_t count, std::size_t runs) {
   const CollisionModel a(benchmarks::greedyBall(spheres, 1)), b(benchmarks::greedyBall(spheres, 2));
   PairQuery pair;
@@ -101,6 +119,7 @@ void measure(std::size_t spheres, std::size_t count, std::size_t runs) {
     sweep(one, matrices.data(), overlaps.data());
     sweep(one, pinned_poses, pinned);
     sweep(one, device_poses, on_device);
+    streamed(one, pair, options, count, runs, device_poses, on_device);
     sweep(all, matrices.data(), overlaps.data());
     sweep(all, pinned_poses, pinned);
     std::printf("\n");
@@ -111,15 +130,57 @@ void measure(std::size_t spheres, std::size_t count, std::size_t runs) {
   cudaFree(on_device);
 }
 
+double freeMemory() {
+  std::size_t free = 0, all = 0;
+  cudaMemGetInfo(&free, &all);
+  return static_cast<double>(free);
+}
+
+/// Poses that no memory of a device has to hold. Quaternions turn about one axis.
+void longSweep(std::size_t spheres, std::size_t count) {
+  const CollisionModel a(benchmarks::greedyBall(spheres, 1)), b(benchmarks::greedyBall(spheres, 2));
+  PairQuery pair;
+  pair.a = &a;
+  pair.b = &b;
+  std::vector<double> positions(3 * count), quaternions(4 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count);
+    positions[3 * i] = 1.6 + 0.4 * share;  // from an overlap to none
+    quaternions[4 * i + 2] = std::sin(3 * share);
+    quaternions[4 * i + 3] = std::cos(3 * share);
+  }
+  std::vector<Overlap> overlaps(count);
+  QueryContext context({Backend::cuda});
+  context.sweep(pair, {1, nullptr, positions.data(), quaternions.data()}, {}, overlaps.data());
+  const double before = freeMemory();
+  const double time = timeOf([&] {
+    context.sweep(pair, {count, nullptr, positions.data(), quaternions.data()}, {}, overlaps.data());
+  });
+  const double taken = before - freeMemory();
+  std::size_t touching = 0, wrong = 0, checked = 0;
+  for (const Overlap& overlap : overlaps) touching += overlap.pair_count > 0;
+  for (std::size_t i = 0; i < count; i += count / 97 + 1, ++checked) {
+    Overlap alone;
+    context.sweep(pair, {1, nullptr, positions.data() + 3 * i, quaternions.data() + 4 * i}, {}, &alone);
+    wrong += std::memcmp(&alone, &overlaps[i], sizeof alone) != 0;
+  }
+  std::printf(
+      "%zu poses of %zu spheres: %.2f s, %.3f us a pose; %.0f MiB of the device; %zu touch; of %zu asked for "
+      "alone, %zu differ\n",
+      count, spheres, 1e-6 * time, time / static_cast<double>(count), taken / (1 << 20), touching, checked,
+      wrong);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Time a pose of a sweep.");
   std::vector<std::size_t> spheres{4000, 60000};
-  std::size_t poses = 100000, runs = 11;
+  std::size_t poses = 100000, runs = 11, long_sweep = 0;
   app.add_option("--spheres", spheres, "Of both bodies")->delimiter(',');
   app.add_option("--poses", poses, "Of a sweep");
   app.add_option("--runs", runs, "Of each kind");
+  app.add_option("--long", long_sweep, "Only one sweep, of so many poses");
   CLI11_PARSE(app, argc, argv);
   std::printf("%s\n", benchmarks::heading("Sweeps of poses", argc, argv).c_str());
   cudaDeviceProp properties{};
@@ -127,10 +188,14 @@ int main(int argc, char** argv) {
   std::printf(
       "%d x %s. %zu poses a sweep. Microseconds a pose as the host sees it: median (p99) of %zu sweeps.\n\n",
       cudaDeviceCount(), properties.name, poses, runs);
+  if (long_sweep > 0) {
+    for (const std::size_t count : spheres) longSweep(count, long_sweep);
+    return 0;
+  }
   std::printf(
-      "| spheres | overlap | batch of queries | sweep | pinned | on the device | all devices | all, pinned "
-      "|\n");
-  std::printf("|---|---|---|---|---|---|---|---|\n");
+      "| spheres | overlap | batch of queries | sweep | pinned | on the device | in a stream | of all, the "
+      "host's | all devices | all, pinned |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::size_t count : spheres) measure(count, count > 20000 ? poses / 10 : poses, runs);
   return 0;
 }

@@ -75,6 +75,8 @@ struct QueryResult {
 inline constexpr int kCurrentDevice = -1;  ///< The CUDA device that is current in the calling thread.
 inline constexpr int kAllDevices = -2;     ///< All CUDA devices of the machine.
 
+inline constexpr double kMostResidentSeconds = 1;  ///< See QueryContextOptions::resident_seconds.
+
 /// Says how queries run.
 struct QueryContextOptions {
   Backend backend = Backend::automatic;  ///< Where queries run.
@@ -83,6 +85,12 @@ struct QueryContextOptions {
   /// The CUDA device: a number from 0 on, kCurrentDevice, or kAllDevices, which share a batch or a sweep.
   /// Results do not depend on it. Each device keeps copies of the models that it has worked on.
   int device = kCurrentDevice;
+  /// How long a kernel stays on the device after a single query without pairs or contacts [s], from 0 to
+  /// kMostResidentSeconds, waiting for the next one with the same models: then none has to be launched, which
+  /// saves some microseconds, as a control loop at 1 kHz may want. 0: none stays. As long as it is there it
+  /// fills the device: work of others, also of other contexts, waits until it leaves. Other queries of this
+  /// context send it away. Not with time_kernels.
+  double resident_seconds = 0;
 };
 
 /// Returns the number of CUDA devices that answer; 0 if CUDA is not compiled in. Creates no CUDA context.

@@ -44,11 +44,25 @@ INNERSPHERE_HD inline FixedSum shifted(std::int64_t x, int shift) {
 /// Says how one kind of term is rounded: its quantum is 2^-(coarse_shift + fine_bits). Terms are below
 /// 2^(kCoarseBits - coarse_shift).
 struct Unit {
-  double coarse;  ///< 2^coarse_shift
-  double fine;    ///< 2^fine_bits
+  double coarse;  ///< 1.5 * 2^(52 - coarse_shift): the last bits of what is added to it are a coarse part
+  double fine;    ///< The same for a fine part.
   int coarse_shift;
   int fine_bits;
 };
+
+/// Equals std::ldexp(1, exponent), where that is a normal number.
+INNERSPHERE_HD inline double doublePowerOfTwo(int exponent) {
+  constexpr int kBias = 1023, kMantissaBits = 52;
+  const std::uint64_t bits = static_cast<std::uint64_t>(exponent + kBias) << kMantissaBits;
+  double x;
+  memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+INNERSPHERE_HD inline Unit unitWith(int coarse_shift, int fine_bits) {
+  return {1.5 * doublePowerOfTwo(52 - coarse_shift), 1.5 * doublePowerOfTwo(52 - coarse_shift - fine_bits),
+          coarse_shift, fine_bits};
+}
 
 constexpr int kCoarseBits = 49;    ///< of a term's coarse part
 constexpr int kFineBits = 40;      ///< at most, of its fine part
@@ -61,40 +75,38 @@ struct ShortSum {
   std::uint64_t fine;
 };
 
-constexpr std::uint64_t kMagicBits = 0x4338000000000000u;  ///< of 1.5 * 2^52
+INNERSPHERE_HD inline std::uint64_t bitsOf(double x) {
+  std::uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
 
 /// Holds the two parts of a term, rounded to nearest, ties to even, so that a term and its negation cancel:
-/// what the bits of these numbers are above kMagicBits.
+/// what their bits are above those of the unit's numbers.
 struct Parts {
   double coarse, fine;
 };
 
 INNERSPHERE_HD inline Parts split(double x, const Unit& unit) {
-  constexpr double kMagic =
-      6755399441055744.0;  // 1.5 * 2^52: the last bits of what is added to it are an integer
-  const double scaled = x * unit.coarse;
-  const double coarse = scaled + kMagic;
-  return {coarse, (scaled - (coarse - kMagic)) * unit.fine + kMagic};
+  const double coarse = x + unit.coarse;
+  return {coarse, (x - (coarse - unit.coarse)) + unit.fine};
 }
 
-/// Adds the bits of a term's parts as they are: withoutMagic() makes it the sum.
+/// Adds the bits of a term's parts as they are: withoutUnit() makes it the sum.
 INNERSPHERE_HD inline void addBits(ShortSum& sum, double x, const Unit& unit) {
   const Parts parts = split(x, unit);
-  std::uint64_t bits;
-  memcpy(&bits, &parts.coarse, sizeof bits);
-  sum.coarse += bits;
-  memcpy(&bits, &parts.fine, sizeof bits);
-  sum.fine += bits;
+  sum.coarse += bitsOf(parts.coarse);
+  sum.fine += bitsOf(parts.fine);
 }
 
 /// Makes a sum of the bits of `terms` terms their sum.
-INNERSPHERE_HD inline ShortSum withoutMagic(const ShortSum& sum, std::uint64_t terms) {
-  return {sum.coarse - terms * kMagicBits, sum.fine - terms * kMagicBits};
+INNERSPHERE_HD inline ShortSum withoutUnit(const ShortSum& sum, std::uint64_t terms, const Unit& unit) {
+  return {sum.coarse - terms * bitsOf(unit.coarse), sum.fine - terms * bitsOf(unit.fine)};
 }
 
 INNERSPHERE_HD inline void add(ShortSum& sum, double x, const Unit& unit) {
   addBits(sum, x, unit);
-  sum = withoutMagic(sum, 1);
+  sum = withoutUnit(sum, 1, unit);
 }
 
 /// Returns the sum in units of the quantum.

@@ -43,21 +43,10 @@ INNERSPHERE_HD inline double length(const Vec3d& v) {
   return most * sqrt(dot(scaled, scaled));
 }
 
-/// Equals std::ldexp(1, exponent), where that is a normal number.
-INNERSPHERE_HD inline double doublePowerOfTwo(int exponent) {
-  constexpr int kBias = 1023, kMantissaBits = 52;
-  const std::uint64_t bits = static_cast<std::uint64_t>(exponent + kBias) << kMantissaBits;
-  double x;
-  memcpy(&x, &bits, sizeof x);
-  return x;
-}
-
 /// Equals std::ilogb of a positive normal number.
 INNERSPHERE_HD inline int exponentOf(double x) {
   constexpr int kBias = 1023, kMantissaBits = 52;
-  std::uint64_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  return static_cast<int>(bits >> kMantissaBits) - kBias;
+  return static_cast<int>(bitsOf(x) >> kMantissaBits) - kBias;
 }
 
 /// Returns how far the product of a matrix with its transpose is from the identity, and that product's
@@ -138,11 +127,8 @@ INNERSPHERE_HD inline bool boxMeets(const Side& searching, const Side& searched,
 
 INNERSPHERE_HD inline Fault makeUnit(double bound, int pair_bits, Unit& unit) {
   if (!(bound > 1e-270) || !(bound < 1e270)) return Fault::lengths;
-  unit.coarse_shift = kCoarseBits - 1 - exponentOf(bound);
   const int room = kFixedBits - kCoarseBits - pair_bits - 1;
-  unit.fine_bits = kFineBits < room ? kFineBits : room;
-  unit.coarse = doublePowerOfTwo(unit.coarse_shift);
-  unit.fine = doublePowerOfTwo(unit.fine_bits);
+  unit = unitWith(kCoarseBits - 1 - exponentOf(bound), kFineBits < room ? kFineBits : room);
   return Fault::none;
 }
 

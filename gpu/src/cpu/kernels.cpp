@@ -71,7 +71,7 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
     const core::Unit unit = core::unitOf(setup.units, i);
     core::ShortSum sum{0, 0};
     for (std::size_t k = 0; k < n; ++k) core::addBits(sum, terms[i][k], unit);
-    tally.sums[static_cast<std::size_t>(i)] = core::withoutMagic(sum, n);
+    tally.sums[static_cast<std::size_t>(i)] = core::withoutUnit(sum, n, unit);
   }
 }
 

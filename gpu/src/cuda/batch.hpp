@@ -56,6 +56,7 @@ struct DeviceSums {
   Limbs terms[core::kTerms];
 };
 constexpr unsigned kSumWords = sizeof(DeviceSums) / sizeof(unsigned long long);
+constexpr unsigned kSumCopies = 8;  ///< that the blocks of a single query add to
 
 /// Counts for the kernels of one batch; all are zero before each.
 struct Counters {
@@ -93,13 +94,29 @@ struct HostSignal {
   unsigned fault;               ///< the first one since the host has cleared it
   unsigned long long in_poses;  ///< where the part begins that it is in
   unsigned long long found;
+  unsigned left;  ///< the number of the last resident kernel that has left
+};
+
+/// Halves of a question: what is to be done, and the words of the query. As HostSignal::halves, each is below
+/// the number of its run.
+constexpr unsigned kQuestionHalves = 1 + sizeof(Query) / sizeof(unsigned);
+constexpr unsigned kAsk = 0, kLeave = 1;
+constexpr unsigned kRelays = 8;  ///< copies of a question for the blocks of a resident kernel
+
+/// Holds where a resident kernel finds questions about two models.
+struct Mailbox {
+  const Grid* grids[2];
+  const unsigned long long* question;  ///< in memory of the host
+  unsigned long long* relay;           ///< kRelays questions, none of them of a run to come
+  unsigned number;                     ///< of the kernel, from 1 on
+  unsigned long long idle;             ///< so long the kernel waits for the next question [ns]
 };
 
 /// Holds the arguments of the launches; pointers are to the device.
 struct Batch {
   const Query* queries;
   unsigned count;
-  DeviceSums* sums;  ///< zero before, and again after a single query
+  DeviceSums* sums;  ///< of a single query kSumCopies, which are zero before, and again after it
   Counters* counters;
   unsigned long long*
       tasks;  ///< active clusters of all queries, kTaskClusters neighbours in each: see packTask()

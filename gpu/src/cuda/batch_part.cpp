@@ -89,9 +89,30 @@ void BatchPart::start(const Device& device, std::span<const PreparedQuery> queri
     batch_.bits_a = std::max(batch_.bits_a, bitsOf(setup.a.count));
     batch_.bits_b = std::max(batch_.bits_b, bitsOf(setup.b.count));
   }
+  if (!isResident() || !resident_.isFor(queries[range.begin], goal())) dismiss();
   results_.reserve(range.size());
   gather(queries, workers);
-  launch();
+  if (isResident() && most_clusters_ > 0) {
+    ask(queries[range.begin]);
+  } else {
+    launch();
+  }
+}
+
+void BatchPart::dismiss() {
+  if (resident_.dismiss()) ++run_;
+}
+
+void BatchPart::ask(const PreparedQuery& query) {
+  batch_.found_pairs = nullptr;
+  batch_.signal = signal_.data();
+  batch_.run = ++run_;
+  resident_.ask(query, *queries_.data(), goal(), batch_, device_);
+  stage_ = Stage::traversal;
+}
+
+Goal BatchPart::goal() const {
+  return want_ == Want::touch ? Goal::touch : want_ == Want::volume ? Goal::volume : Goal::wrench;
 }
 
 void BatchPart::begin(const Device& device, Range range, Want want) {
@@ -120,6 +141,7 @@ void BatchPart::streamSweep(const Device& device, const Sweep& sweep, Overlap* o
 }
 
 void BatchPart::launchSweep(const Device& device, const Sweep& sweep, Range range, Overlap* overlaps) {
+  dismiss();
   begin(device, range, sweep.want);
   batch_.first_pose = range.begin;
   sweep_ = &sweep;
@@ -210,12 +232,13 @@ void BatchPart::launch() {
     stage_ = Stage::traversed;
     return;
   }
-  if (counters_.capacity() < 1 || sums_.capacity() < count) clean_ = false;
+  const std::size_t sums = std::max<std::size_t>(count, kSumCopies);
+  if (counters_.capacity() < 1 || sums_.capacity() < sums) clean_ = false;
   counters_.reserve(1);
-  sums_.reserve(count);
+  sums_.reserve(sums);
   if (!single || !clean_) {
     INNERSPHERE_CUDA(cudaMemsetAsync(counters_.data(), 0, sizeof(Counters), device_.stream));
-    INNERSPHERE_CUDA(cudaMemsetAsync(sums_.data(), 0, sizeof(DeviceSums), device_.stream));
+    INNERSPHERE_CUDA(cudaMemsetAsync(sums_.data(), 0, kSumCopies * sizeof(DeviceSums), device_.stream));
   }
   clean_ = false;
   if (!single) {
@@ -240,10 +263,12 @@ void BatchPart::launch() {
   batch_.results = results_.data();
   batch_.signal = signal_.data();
   batch_.run = ++run_;
-  const Goal goal = want_ == Want::touch ? Goal::touch : want_ == Want::volume ? Goal::volume : Goal::wrench;
   if (device_.time_kernels) INNERSPHERE_CUDA(cudaEventRecord(start_.get(), device_.stream));
-  launchTraversal(goal, batch_, single ? queries_.data() : nullptr, most_clusters_, most_tasks_,
-                  device_.processors, device_.stream);
+  if (single) {
+    launchSingle(goal(), batch_, *queries_.data(), device_.processors, device_.stream);
+  } else {
+    launchTraversal(goal(), batch_, most_clusters_, most_tasks_, device_.processors, device_.stream);
+  }
   if (device_.time_kernels) INNERSPHERE_CUDA(cudaEventRecord(stop_.get(), device_.stream));
   stage_ = Stage::traversal;
 }
@@ -266,7 +291,7 @@ void BatchPart::takeResult() {
     words[i] = (signal.halves[2 * i] & 0xffffffffu) | signal.halves[2 * i + 1] << 32;
   std::memcpy(results_.data(), words, sizeof(core::Totals));
   found_ = words[kResultWords];
-  clean_ = true;
+  if (!isResident()) clean_ = true;
 }
 
 bool BatchPart::advance() {
@@ -275,7 +300,10 @@ bool BatchPart::advance() {
     if (!traversed()) {
       const cudaError_t status = cudaStreamQuery(device_.stream);  // the driver knows if the kernels failed
       if (status != cudaErrorNotReady) INNERSPHERE_CUDA(status);
-      if (!traversed()) return false;
+      if (!traversed()) {
+        if (status == cudaSuccess && isResident()) resident_.launch(device_);  // it left without an answer
+        return false;
+      }
     }
     takeResult();
     if (device_.time_kernels) {

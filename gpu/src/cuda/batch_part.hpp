@@ -8,16 +8,9 @@
 #include "cuda/kernels.hpp"
 #include "cuda/memory.hpp"
 #include "cuda/pair_sorter.hpp"
+#include "cuda/resident.hpp"
 
 namespace innersphere::device {
-
-/// Says where a part runs.
-struct Device {
-  int number = 0;
-  unsigned processors = 1;
-  cudaStream_t stream = nullptr;
-  bool time_kernels = false;
-};
 
 /// Runs a part of a batch. Keeps its memory from one run to the next. What goes to the device is one copy, or
 /// for a single query the arguments of its launch; sums come home through memory of the host that the kernels
@@ -34,6 +27,9 @@ class BatchPart {
 
   void start(const Device& device, std::span<const PreparedQuery> queries, Range range, Want want,
              Workers& workers);
+
+  /// Tells a resident kernel to leave, so that nothing has to wait until it does.
+  void dismiss();
 
   /// Returns how many poses of a sweep a part may have.
   static std::size_t mostPoses(const Sweep& sweep);
@@ -65,12 +61,16 @@ class BatchPart {
   void launchSweep(const Device& device, const Sweep& sweep, Range range, Overlap* overlaps);
   void gather(std::span<const PreparedQuery> queries, Workers& workers);
   void launch();
+  void ask(const PreparedQuery& query);
+  Goal goal() const;
   void prepareSweep();
   template <typename T>
   const T* bring(const T* from, std::size_t count, PinnedArray<T>& pinned, DeviceArray<T>& on_device);
   /// Returns whether the part is one query, which goes to the device as an argument.
   bool isSingle() const { return !sweep_ && range_.size() == 1; }
   bool traversed() const;
+  /// Whether the part's only query goes to a kernel that stays.
+  bool isResident() const { return isSingle() && device_.resident_seconds > 0 && !wantsPairs(want_); }
   void takeResult();
   void sort();
 
@@ -88,6 +88,7 @@ class BatchPart {
   unsigned run_ = 0;
   bool clean_ = false;  ///< sums and counters of the device are zero
   PinnedArray<HostSignal> signal_;
+  Resident resident_;
   PinnedArray<Query> queries_;
   PinnedArray<core::Totals> results_;
   const Sweep* sweep_ = nullptr;

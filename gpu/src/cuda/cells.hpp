@@ -112,7 +112,7 @@ __device__ void forCells(const GridLevels& grid_levels, const ListTask& task, co
     shared[lane] = near;
   }
   const CellBoxOfWarp box(near, calls > 0);
-  const unsigned scanned = scan(calls, lane), begin = scanned - calls;
+  const unsigned scanned = scan(calls), begin = scanned - calls;
   const unsigned total = __shfl_sync(kAll, scanned, kWarp - 1);
   __syncwarp();
   for (unsigned all = task.slice * kWarp; all < total; all += task.slices * kWarp) {

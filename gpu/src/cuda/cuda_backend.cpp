@@ -21,12 +21,14 @@ using device::BatchPart;
 class CudaBackend : public OneDevice {
  public:
   /// `device` is a number, or kCurrentDevice.
-  CudaBackend(Workers& workers, bool time_kernels, int device) : workers_(workers) {
+  CudaBackend(Workers& workers, const QueryContextOptions& options, int device) : workers_(workers) {
     device_.number = device;
-    device_.time_kernels = time_kernels;
+    device_.time_kernels = options.time_kernels;
+    device_.resident_seconds = options.time_kernels ? 0 : options.resident_seconds;
   }
   ~CudaBackend() override {
     if (!device_.stream) return;
+    for (BatchPart& part : parts_) part.dismiss();
     if (streaming_) cudaStreamSynchronize(users_.stream);
     cudaStreamSynchronize(device_.stream);
     cudaStreamDestroy(device_.stream);
@@ -230,7 +232,8 @@ bool isOnCudaDevice(const void* p) {
   return cudaDeviceAnswers() && memoryOf(p).device >= 0;
 }
 
-std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, bool time_kernels, int device) {
+std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, const QueryContextOptions& options) {
+  const int device = options.device;
   const int devices = cudaDevices();
   if (devices == 0) {
     throw Error(ErrorCode::no_device,
@@ -241,10 +244,10 @@ std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, bool time_kernel
                                           std::to_string(devices) + ", from 0 on");
   }
   if (device != kAllDevices || devices == 1)
-    return std::make_unique<CudaBackend>(workers, time_kernels, device == kAllDevices ? 0 : device);
+    return std::make_unique<CudaBackend>(workers, options, device == kAllDevices ? 0 : device);
   std::vector<std::unique_ptr<OneDevice>> all;
   for (int number = 0; number < devices; ++number)
-    all.push_back(std::make_unique<CudaBackend>(workers, time_kernels, number));
+    all.push_back(std::make_unique<CudaBackend>(workers, options, number));
   return splitOver(std::move(all));
 }
 

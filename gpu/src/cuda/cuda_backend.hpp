@@ -17,8 +17,9 @@ int cudaDevices();
 /// Returns true for memory that only a device reaches.
 bool isOnCudaDevice(const void* p);
 
-/// Returns a backend that uses this device; kCurrentDevice: the one that is current in the calling thread
-/// when it first runs; kAllDevices: all. Throws Error no_device if there is none of that number.
-std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, bool time_kernels, int device);
+/// Returns a backend that uses the device of the options; kCurrentDevice: the one that is current in the
+/// calling thread when it first runs; kAllDevices: all. Throws Error no_device if there is none of that
+/// number.
+std::unique_ptr<QueryBackend> makeCudaBackend(Workers& workers, const QueryContextOptions& options);
 
 }  // namespace innersphere

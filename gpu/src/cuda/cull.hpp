@@ -41,7 +41,7 @@ __global__ void __launch_bounds__(kCullWarps* kWarp) cullClusters(const __grid_c
   unsigned tasks = 0;
   for (unsigned k = 0; k < kGroup; k += kTaskClusters)
     tasks += (mask >> k & ((1u << kTaskClusters) - 1)) != 0;
-  const unsigned before = scan(tasks, lane);
+  const unsigned before = scan(tasks);
   unsigned at = 0;
   if (lane == kWarp - 1 && before > 0) at = atomicAdd(&batch.counters->tasks, before);
   at = __shfl_sync(kAll, at, kWarp - 1) + before - tasks;

@@ -9,18 +9,23 @@ namespace innersphere::device {
 
 /// Describes the list that a sphere of the cluster goes through. A step tests up to kStepPairs pairs of its
 /// spheres that are `steps` apart, so that lanes with neighbouring steps read neighbours.
-struct alignas(16) ListTraversal {
-  HalfQuerySphere query_sphere;
-  unsigned self;   ///< place, with flags
-  unsigned shift;  ///< from the step of the warp to the first pair in the list, modulo 2^32
-  unsigned steps;
-  unsigned end;  ///< of the list's pairs
+struct ListTraversal {
+  struct alignas(16) Sphere {
+    HalfQuerySphere query_sphere;
+    unsigned self;  ///< place, with flags
+  };
+  struct alignas(16) Range {
+    unsigned shift;  ///< from the step of the warp to the first pair in the list, modulo 2^32
+    unsigned steps;
+    unsigned end;  ///< of the list's pairs
+  };
 };
 constexpr unsigned kStepPairs = 4;  ///< see entriesOfAll()
 
 /// Holds the spheres of the cluster that have a list to go through, as all lanes read them.
 struct ListTraversals {
-  ListTraversal of[kWarp];
+  ListTraversal::Sphere spheres[kWarp];  ///< apart from their ranges: lanes use different banks
+  ListTraversal::Range ranges[kWarp];
   core::Lookup lookups[kWarp];  ///< of those that look into several cells
 };
 
@@ -130,14 +135,14 @@ struct Lists {
 inline __device__ Lists lineUp(const core::Lookup& lookup, const List& list, unsigned self, unsigned lane,
                                ListTraversals& traversals) {
   const unsigned steps = (list.count + kStepPairs - 1) / kStepPairs;
-  const unsigned scanned = scan(steps, lane);
+  const unsigned scanned = scan(steps);
   const unsigned owners = __ballot_sync(kAll, steps != 0);
   const Lists lists{scanned - steps, steps != 0, __shfl_sync(kAll, scanned, kWarp - 1)};
   __syncwarp();
   if (lists.any) {
     const unsigned to = __popc(owners & ((1u << lane) - 1));
-    traversals.of[to] = {list.query_sphere, self | list.flags, list.first - lists.begin, steps,
-                         list.first + list.count};
+    storeWords(traversals.spheres[to], {list.query_sphere, self | list.flags});
+    storeWords(traversals.ranges[to], {list.first - lists.begin, steps, list.first + list.count});
     if (list.flags & kSeveral) traversals.lookups[to] = lookup;
   }
   __syncwarp();
@@ -158,9 +163,10 @@ inline __device__ bool testStep(const Grid& grid, const Lists& lists, std::uint3
   const unsigned owner = lists.ownerOf(first, lane);
   const auto pairOfBit = [](unsigned bit) { return 15 - bit % 16; };
   const bool any = first + lane < lists.total;
-  const ListTraversal& list = traversals.of[owner];
-  const unsigned self = list.self, end = list.end, steps = any ? list.steps : 0;
-  const unsigned at = any ? list.shift + first + lane : end;
+  const auto sphere = loadWords(traversals.spheres[owner]);
+  const auto range = loadWords(traversals.ranges[owner]);
+  const unsigned self = sphere.self, end = range.end, steps = any ? range.steps : 0;
+  const unsigned at = any ? range.shift + first + lane : end;
   EntryPair pairs[kStepPairs];  // maybe some beyond the end
 #pragma unroll
   for (unsigned k = 0; k < kStepPairs; ++k) pairs[k] = load(grid.entries + (at + k * steps));
@@ -168,7 +174,7 @@ inline __device__ bool testStep(const Grid& grid, const Lists& lists, std::uint3
   unsigned found = 0;  // bit 31 - k: the second of pair k; 15 - k: the first
 #pragma unroll
   for (unsigned k = 0; k < kStepPairs; ++k) {
-    const unsigned both = met(list.query_sphere, pairs[k]) >> k;
+    const unsigned both = met(sphere.query_sphere, pairs[k]) >> k;
     if (at + k * steps < end) found |= both;
   }
   if (found != 0 && self & kSeveral) {
@@ -178,7 +184,7 @@ inline __device__ bool testStep(const Grid& grid, const Lists& lists, std::uint3
       if (!countsHere(grid.view, traversals.lookups[owner], number, listed)) found ^= 1u << bit;
     }
   }
-  const unsigned mine = __popc(found), before = scan(mine, lane);
+  const unsigned mine = __popc(found), before = scan(mine);
   const unsigned total = __shfl_sync(kAll, before, kWarp - 1);
   if (queued + total > kQueue) return false;
   for (unsigned to = queued + before - mine; found != 0; found &= found - 1, ++to) {

@@ -16,7 +16,7 @@ bool isOnCudaDevice(const void*) {
   return false;
 }
 
-std::unique_ptr<QueryBackend> makeCudaBackend(Workers&, bool, int) {
+std::unique_ptr<QueryBackend> makeCudaBackend(Workers&, const QueryContextOptions&) {
   throw Error(
       ErrorCode::no_device,
       "InnerSphere was built without CUDA; install the toolkit and configure with INNERSPHERE_CUDA=ON");

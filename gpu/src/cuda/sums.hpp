@@ -15,21 +15,21 @@ struct Columns {
   static constexpr unsigned kGap = 2 * kColumnLanes;
   alignas(16) double of[2 * kPass][kWarp + kGap];
 
-  /// Returns the sum of the rows of one lane, as integers; see core::Parts.
+  /// Returns the sum of the bits in the rows of one lane; see core::Parts.
   __device__ unsigned long long sum(unsigned lane) const {
     const auto* rows = reinterpret_cast<const ulonglong2*>(of[lane / kColumnLanes]) + lane % kColumnLanes;
-    unsigned long long sum = 0ull - 2 * kTwos * core::kMagicBits;
+    unsigned long long sum = 0;
 #pragma unroll
     for (unsigned k = 0; k < kTwos; ++k) sum += rows[k * kColumnLanes].x + rows[k * kColumnLanes].y;
     return sum;
   }
 };
 
-/// Holds the sums of a warp: those of each lane, for every pass.
+/// Holds the sums of a warp: those of each lane, for every pass, with the bits of the units in them.
 struct Sums {
   static constexpr int kPasses = (core::kTerms + kPass - 1) / kPass;
   unsigned long long of[kPasses][kWarp];
-  unsigned pairs;
+  unsigned pairs, additions;
 };
 
 constexpr unsigned kMostWarps = 8;  ///< in a block
@@ -92,7 +92,8 @@ class Summer {
     if (pairs_ == 0) return;
     if (lane == 0) atomicAdd(&total.pairs, static_cast<unsigned long long>(pairs_));
 #pragma unroll
-    for (int pass = 0; pass < kPasses; ++pass) addPass(total, units, pass, sums.of[pass][lane], lane);
+    for (int pass = 0; pass < kPasses; ++pass)
+      addPass(total, units, pass, sums.of[pass][lane], additions_, lane);
     clear(lane, sums);
   }
 
@@ -102,16 +103,22 @@ class Summer {
   __device__ void flushBlock(DeviceSums& total, const core::Units& units, unsigned warps, unsigned lane,
                              const SumsOf& sumsOf) {
     const unsigned warp = threadIdx.x / kWarp;
-    if (lane == 0) sumsOf(warp).pairs = pairs_;
+    if (lane == 0) {
+      sumsOf(warp).pairs = pairs_;
+      sumsOf(warp).additions = additions_;
+    }
     __syncthreads();
-    unsigned pairs = 0;
-    for (unsigned w = 0; w < warps; ++w) pairs += sumsOf(w).pairs;
+    unsigned pairs = 0, additions = 0;
+    for (unsigned w = 0; w < warps; ++w) {
+      pairs += sumsOf(w).pairs;
+      additions += sumsOf(w).additions;
+    }
     if (pairs == 0) return;
     if (threadIdx.x == 0) atomicAdd(&total.pairs, static_cast<unsigned long long>(pairs));
     for (int pass = static_cast<int>(warp); pass < kPasses; pass += static_cast<int>(warps)) {
       unsigned long long sum = 0;
       for (unsigned w = 0; w < warps; ++w) sum += sumsOf(w).of[pass][lane];
-      addPass(total, units, pass, sum, lane);
+      addPass(total, units, pass, sum, additions, lane);
     }
   }
 
@@ -126,13 +133,15 @@ class Summer {
 
   /// Adds all lanes' sums of one pass.
   static __device__ void addPass(DeviceSums& total, const core::Units& units, int pass,
-                                 unsigned long long sum, unsigned lane) {
+                                 unsigned long long sum, unsigned additions, unsigned lane) {
     for (unsigned step = 1; step < kColumnLanes; step *= 2) sum += __shfl_xor_sync(kAll, sum, step);
-    const unsigned long long other = __shfl_xor_sync(kAll, sum, kColumnLanes);
     const unsigned column = lane / kColumnLanes;
-    const int term = pass * kPass + static_cast<int>(column / 2);
-    if (lane % kColumnLanes == 0 && term < kTerms)
-      addTerm(total.terms[term], unitOf(units, term).fine_bits, column % 2 == 0, sum, other);
+    const int term = min(pass * kPass + static_cast<int>(column / 2), kTerms - 1);
+    const core::Unit& unit = unitOf(units, term);
+    sum -= std::uint64_t{additions} * kWarp * core::bitsOf(column % 2 == 0 ? unit.coarse : unit.fine);
+    const unsigned long long other = __shfl_xor_sync(kAll, sum, kColumnLanes);
+    if (lane % kColumnLanes == 0 && pass * kPass + static_cast<int>(column / 2) < kTerms)
+      addTerm(total.terms[term], unit.fine_bits, column % 2 == 0, sum, other);
   }
 
   __device__ void exchange(const core::Pair& pair, const core::Units& units, unsigned lane, Columns& columns,
@@ -182,9 +191,8 @@ inline __device__ double totalOf(const DeviceSums& sums, const core::Units& unit
     return shift < 64 ? low : core::FixedSum{0, low.lo};
   };
   const int bits = unit.fine_bits;
-  return core::toDouble(part(__ldcg(&limbs.fine), 0) + part(__ldcg(&limbs.coarse_low), bits) +
-                            part(__ldcg(&limbs.coarse_high), bits + 32),
-                        unit);
+  return core::toDouble(
+      part(limbs.fine, 0) + part(limbs.coarse_low, bits) + part(limbs.coarse_high, bits + 32), unit);
 }
 
 /// Returns what a query gives back: word `word` of core::Totals.
@@ -192,8 +200,7 @@ template <Goal goal>
 inline __device__ unsigned long long resultOf(const DeviceSums& sums, const core::Units& units,
                                               unsigned word) {
   if (word >= core::kTerms) {
-    const unsigned long long pairs = __ldcg(&sums.pairs);
-    return goal == Goal::touch ? pairs != 0 : pairs;
+    return goal == Goal::touch ? sums.pairs != 0 : sums.pairs;
   }
   const int term = static_cast<int>(word);
   return static_cast<unsigned long long>(

@@ -46,6 +46,23 @@ inline __device__ EntryPair load(const EntryPair* pair) {
   return p;
 }
 
+/// Stores 16 bytes at once; the compiler would do it word by word.
+template <typename T>
+inline __device__ void storeWords(T& to, const T& from) {
+  static_assert(sizeof(T) == sizeof(uint4) && alignof(T) == sizeof(uint4));
+  uint4 words;
+  memcpy(&words, &from, sizeof words);
+  reinterpret_cast<uint4&>(to) = words;
+}
+template <typename T>
+inline __device__ T loadWords(const T& from) {
+  static_assert(sizeof(T) == sizeof(uint4) && alignof(T) == sizeof(uint4));
+  const uint4 words = reinterpret_cast<const uint4&>(from);
+  T to;
+  memcpy(&to, &words, sizeof words);
+  return to;
+}
+
 /// Returns false if nothing in the ball, which is in the query sphere's frame, can meet the grid.
 inline __device__ bool ballMeets(const core::GridView& grid, const core::Search& search, const Sphere& ball) {
   return core::ballMeets(search, grid, ball);
@@ -72,11 +89,17 @@ inline __device__ float maximum(float x) {
   return __int_as_float(swapped(maximum(swapped(__float_as_int(x)))));
 }
 
-/// Returns the sum over this lane and all before it.
-inline __device__ unsigned scan(unsigned x, unsigned lane) {
+/// Returns the sum over this lane and all before it. A shuffle says by itself whether there is a lane so far
+/// before, so no lane is compared.
+inline __device__ unsigned scan(unsigned x) {
+#pragma unroll
   for (unsigned step = 1; step < kWarp; step *= 2) {
-    const unsigned before = __shfl_up_sync(kAll, x, step);
-    if (lane >= step) x += before;
+    asm volatile(
+        "{ .reg .pred there; .reg .u32 before;"
+        "  shfl.sync.up.b32 before|there, %0, %1, 0, 0xffffffff;"
+        "  @there add.u32 %0, %0, before; }"
+        : "+r"(x)
+        : "r"(step));
   }
   return x;
 }

@@ -2,6 +2,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <atomic>
 #include <cmath>
 #include <string>
 
@@ -32,6 +33,11 @@ void checkMoved(const Sphere& s, std::size_t number) {
 }
 
 }  // namespace
+
+std::uint64_t newVersion() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
 
 CollisionModel::Impl::Impl(std::shared_ptr<const Packing> p) : packing(std::move(p)) {
   if (!packing) throw Error(ErrorCode::bad_argument, "a collision model needs a packing, not a null pointer");
@@ -115,7 +121,7 @@ void CollisionModel::Impl::update(const Sphere* spheres, std::size_t count) {
     }
   }
   moved_.assign(spheres, spheres + count);
-  ++version_;
+  version_ = newVersion();
 }
 
 CollisionModel::CollisionModel(std::shared_ptr<const Packing> packing)

@@ -15,6 +15,9 @@
 
 namespace innersphere {
 
+/// Returns a number that no spheres of any model had so far, from 1 on.
+std::uint64_t newVersion();
+
 struct CollisionModel::Impl : GridSource {
   explicit Impl(std::shared_ptr<const Packing> packing);
 
@@ -41,7 +44,7 @@ struct CollisionModel::Impl : GridSource {
   std::mutex mutex_;
   std::map<Key, ModelGrid> grids_;
   std::optional<SurfaceTree> surface_;
-  std::uint64_t version_ = 1;  ///< of the spheres
+  std::uint64_t version_ = newVersion();  ///< of the spheres
   std::vector<Sphere> moved_;  ///< those of the last update; empty: those of the packing
 
   /// Holds memory that is kept from update to update.

@@ -59,7 +59,7 @@ struct QueryContext::Impl {
     return cuda != nullptr;
   }
 
-  void makeCuda() { cuda = makeCudaBackend(workers, options.time_kernels, options.device); }
+  void makeCuda() { cuda = makeCudaBackend(workers, options); }
 
   void prepare(const PairQuery* queries, std::size_t count, Estimator estimator) {
     prepared.resize(count);
@@ -250,6 +250,10 @@ QueryContext::QueryContext(const QueryContextOptions& options) {
   }
   if (options.device < kAllDevices)
     throw Error(ErrorCode::bad_argument, "there is no CUDA device " + std::to_string(options.device));
+  if (!(options.resident_seconds >= 0 && options.resident_seconds <= kMostResidentSeconds))
+    throw Error(ErrorCode::bad_argument, "resident_seconds is " + std::to_string(options.resident_seconds) +
+                                             "; it must be from 0 to " +
+                                             std::to_string(kMostResidentSeconds));
   impl_ = std::make_unique<Impl>(options);
 }
 QueryContext::~QueryContext() = default;

@@ -18,7 +18,8 @@ using core::Unit;
 
 /// Terms are below 2^(core::kCoarseBits - coarse_shift).
 Unit makeUnit(int coarse_shift, int fine_bits = core::kFineBits) {
-  return {std::ldexp(1.0, coarse_shift), std::ldexp(1.0, fine_bits), coarse_shift, fine_bits};
+  return {std::ldexp(1.5, 52 - coarse_shift), std::ldexp(1.5, 52 - coarse_shift - fine_bits), coarse_shift,
+          fine_bits};
 }
 
 FixedSum fixed(double x, const Unit& unit) {
