@@ -10,6 +10,7 @@ import queue
 import resource
 import subprocess
 import sys
+import time
 
 from . import compare, meshes, overlaps, page, quantities, scene
 from .engines import Absent, all_engines
@@ -40,11 +41,19 @@ class Bench:
                   if "mesh" in body}
         say(f"Preparing {len(wanted)} meshes ...")
         with concurrent.futures.ProcessPoolExecutor(self.jobs) as pool:
-            list(pool.map(assets.of, wanted.values()))
+            list(pool.map(assets.make, wanted.values()))
         prepared = {name: scene.prepare(name, assets) for name in names}
         for name, made in prepared.items():
             self.scene_file(name).write_text(json.dumps(made))
         return prepared
+
+    def prepare_engines(self, names: list[str], prepared: dict[str, dict]) -> None:
+        """What engines make of the meshes of bodies that move."""
+        moving = {body["mesh"]: body for made in prepared.values() for body in made["bodies"]
+                  if "mesh" in body and body["mass"] > 0}
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            list(pool.map(lambda pair: all_engines()[pair[0]].prepare(pair[1]),
+                          [(name, body) for name in names for body in moving.values()]))
 
     def scene_file(self, name: str) -> pathlib.Path:
         return self.scenes_folder / f"{name}.json"
@@ -148,7 +157,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--engines", nargs="+", choices=list(all_engines()), default=list(all_engines()), metavar="ENGINE")
     parser.add_argument("--scenes", nargs="+", choices=scene.names(), default=scene.names(), metavar="SCENE")
     parser.add_argument("--rates", nargs="+", type=int, default=[240, 60], metavar="RATE", help="steps a second")
-    parser.add_argument("--limit", type=int, default=30, help="processor time of a run [s]")
+    parser.add_argument("--limit", type=int, default=20, help="processor time of a run [s]")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)), help="runs at a time, each on a core of its own")
     parser.add_argument("--spheres", type=int, default=1000, help="of packings")
     parser.add_argument("--tool", default="innersphere", help="the program innersphere")
@@ -161,17 +170,14 @@ def parse() -> argparse.Namespace:
 def main() -> None:
     if sys.argv[1:2] == ["compare"]:
         sys.exit(compare.main(sys.argv[2:]))
-    options = parse()
+    options, start = parse(), time.monotonic()
     meshes.tool = options.tool
     bench = Bench(options)
     versions = present(options.engines)
     if not options.page_only:
         kept = remember(bench.folder, versions, options)
         prepared = bench.prepare(options.scenes, options.spheres)
-        for name, version in versions.items():
-            if version:
-                for made in prepared.values():
-                    all_engines()[name].prepare(made)
+        bench.prepare_engines([name for name in versions if versions[name]], prepared)
         cases = [(name, made, rate) for made in prepared.values() for rate in options.rates for name in versions
                  if versions[name]]
         rows: list[dict] = list(kept)
@@ -187,6 +193,9 @@ def main() -> None:
         write(bench.folder / "bench.csv", rows)
         if not options.no_queries:
             overlaps.write(bench.folder)
+        spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+        (bench.folder / "spent.json").write_text(json.dumps({"minutes": (time.monotonic() - start) / 60, "runs": len(cases),
+                                                             "processor_minutes": (spent.ru_utime + spent.ru_stime) / 60}))
     page.write(bench.folder)
 
 

@@ -17,9 +17,9 @@ namespace {
 using namespace innersphere;
 
 constexpr int kIterations = 50;   // of dWorldQuickStep, whose default is 20
-constexpr int kMostContacts = 64;  // of a pair
+constexpr std::size_t kMostContacts = 512;  // of a pair; with 64 a nut leaves its thread
 // Against jitter and pops, as its manual advises: what contacts may sink in, over the smallest body's size, and how fast they part [m/s].
-constexpr double kLayer = 1e-3, kParting = 0.5;
+constexpr double kLayer = 1e-4, kParting = 0.5;
 
 // A mesh as ODE wants it: the arrays must stay.
 struct Mesh {
@@ -91,13 +91,12 @@ class World {
   void collide(dGeomID a, dGeomID b) {
     const dBodyID body_a = dGeomGetBody(a), body_b = dGeomGetBody(b);
     if (!body_a && !body_b) return;
-    dContactGeom found[kMostContacts];
-    const int count = dCollide(a, b, kMostContacts, found, sizeof(dContactGeom));
+    const int count = dCollide(a, b, int(kMostContacts), found_.data(), sizeof(dContactGeom));
     for (int i = 0; i < count; ++i) {
       dContact contact{};
       contact.surface.mode = dContactApprox1;
       contact.surface.mu = scene_.friction;
-      contact.geom = found[i];
+      contact.geom = found_[std::size_t(i)];
       dJointAttach(dJointCreateContact(world_, contacts_, &contact), body_a, body_b);
     }
   }
@@ -163,6 +162,7 @@ class World {
   std::list<Mesh> meshes_;  // stay where they are
   std::map<std::string, dTriMeshDataID> known_;
   std::vector<dGeomID> geoms_, moving_;
+  std::vector<dContactGeom> found_{kMostContacts};
 };
 
 // "ODE, OPCODE": what it finds contacts of meshes with.

@@ -50,6 +50,15 @@ def _prism(outline: list, height: float, holes: list = ()) -> trimesh.Trimesh:
     return mesh
 
 
+def frame(outer: float, hole: float, thickness: float) -> trimesh.Trimesh:
+    """A square plate with a square hole, centred; edges of both [m]."""
+    return _prism(_square(outer), thickness, [_square(hole)])
+
+
+def _square(edge: float) -> list:
+    return [(-edge / 2, -edge / 2), (edge / 2, -edge / 2), (edge / 2, edge / 2), (-edge / 2, edge / 2)]
+
+
 def wedge(inner: float, outer: float, angle: float, depth: float) -> trimesh.Trimesh:
     """A stone of an arch: a sector of a ring about the origin with plane faces, upright, as deep along y. Degrees."""
     s, c = math.sin(math.radians(angle / 2)), math.cos(math.radians(angle / 2))
@@ -139,7 +148,7 @@ def brick(columns: int = 4, rows: int = 2, pitch: float = 0.08, clearance: float
 def make(description: dict) -> trimesh.Trimesh:
     """Calls the one generator that a description names. Raises ValueError if the mesh is not closed."""
     (name, sizes), = description.items()
-    generators = (solid, box, ball, torus, cylinder, plate, wedge, gear, bowl, half_pipe, t_slot, t_slider, mug, brick)
+    generators = (solid, box, ball, torus, cylinder, plate, frame, wedge, gear, bowl, half_pipe, t_slot, t_slider, mug, brick)
     generator = {g.__name__: g for g in generators}[name]
     mesh = generator(*(sizes if isinstance(sizes, list) else [sizes]))
     if not mesh.is_watertight or mesh.volume <= 0:

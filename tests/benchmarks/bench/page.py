@@ -80,6 +80,16 @@ def _commit() -> str:
     return done.stdout.strip() or "unknown"
 
 
+def _spent(folder: pathlib.Path) -> str:
+    """How long the last command took."""
+    known = folder / "spent.json"
+    if not known.exists():
+        return "unknown"
+    spent = json.loads(known.read_text())
+    return (f"{spent['runs']} runs and their repetition took {spent['minutes']:.0f} minutes by the clock and "
+            f"{spent['processor_minutes']:.0f} of processor time, meshes and packings included")
+
+
 def _summary(results: Results) -> str:
     """Truths that hold, by engine and rate, and what else can be counted."""
     rows = []
@@ -254,6 +264,7 @@ increments of its total energy are more than {100 * _ENERGY:.0f} % of what its b
 
 * machine: {_machine()}
 * date: {datetime.date.today()}, commit {_commit()}
+* time: {_spent(folder)}
 * command: `tests/benchmarks/run.sh bench FOLDER`; how it works: [the bench's own page](../bench/README.md)
 
 """]
@@ -267,7 +278,7 @@ increments of its total energy are more than {100 * _ENERGY:.0f} % of what its b
     if overlaps:
         parts.append("## Overlaps\n\nErrors against closed forms ([overlaps.py](../bench/overlaps.py)): of the volume, of the centroid over "
                      "the solid's size, of the gradient of the volume, of the depth. Gradients of manifold3d and trimesh are differences of "
-                     "volumes. FCL and Coal tell the depth of pairs of triangles, not of solids: the largest is taken.\n\n"
+                     "volumes. FCL, Coal and PyBullet tell depths; those of FCL and Coal are of pairs of triangles, not of solids: the largest is taken.\n\n"
                      f"{_overlaps(overlaps)}\n")
     parts.append(f"## Motion\n\nHow far a body of each scene is from where it started [m], over time [s], at {fast}/s:\n\n"
                  "![Way of a body over time](bench-motion.png)\n\n" + "".join(f"![{text}]({file})\n\n" for file, text in shown))

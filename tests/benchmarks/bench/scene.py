@@ -36,6 +36,10 @@ def load(name: str) -> dict:
     return json.loads((folder / f"{name}.json").read_text())
 
 
+# What a mesh and its convex parts are made by: files are named by it, too, so that others are made when it changes.
+_SOURCES = [pathlib.Path(source).read_text() for source in (meshes.__file__, __file__)]
+
+
 class Assets:
     """Makes what engines need of a mesh, once: files in `folder`, named by what they are of."""
 
@@ -43,13 +47,22 @@ class Assets:
         self.folder, self.spheres = folder.resolve(), spheres
         folder.mkdir(parents=True, exist_ok=True)
 
+    def _file(self, description: dict) -> pathlib.Path:
+        key = hashlib.sha1(json.dumps([description, *_SOURCES]).encode()).hexdigest()[:12]
+        return self.folder / f"{next(iter(description))}-{key}.json"
+
     def of(self, description: dict) -> dict:
         """The mesh in its principal frame as OBJ, its packing, its convex parts, and its mass properties at density 1."""
-        key = hashlib.sha1(json.dumps([description, self.spheres]).encode()).hexdigest()[:12]
-        path = self.folder / f"{next(iter(description))}-{key}.json"
+        return json.loads(self._file(description).read_text())
+
+    def make(self, description: dict) -> None:
+        """Makes what of() tells: the packing anew, as the packer may have changed, the others if they are not there."""
+        path = self._file(description)
         if not path.exists():
             path.write_text(json.dumps(self._make(description, path.with_suffix(""))))
-        return json.loads(path.read_text())
+        made = self.of(description)
+        subprocess.run([meshes.tool, "pack", made["mesh"], "--spheres", str(self.spheres), "-o", made["packing"], "--force", "--quiet"],
+                       check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def _make(self, description: dict, stem: pathlib.Path) -> dict:
         mesh = meshes.make(description)
@@ -57,14 +70,11 @@ class Assets:
         mesh.apply_transform(np.linalg.inv(frame))
         surface = f"{stem}.obj"
         mesh.export(surface, digits=9)
-        packing = f"{stem}.cbor"
-        subprocess.run([meshes.tool, "pack", surface, "--spheres", str(self.spheres), "-o", packing, "--force", "--quiet"],
-                       check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         hulls = []
         for i, part in enumerate(_convex_parts(mesh)):
             hulls.append(f"{stem}-hull-{i}.obj")
             part.export(hulls[-1], digits=9)
-        return {"mesh": surface, "packing": packing, "hulls": hulls, "volume": mesh.volume,
+        return {"mesh": surface, "packing": f"{stem}.cbor", "hulls": hulls, "volume": mesh.volume,
                 "inertia": np.diag(mesh.moment_inertia).tolist(), "frame": frame.tolist(),
                 "size": float(np.linalg.norm(np.ptp(mesh.bounds, axis=0))), "vertices": len(mesh.vertices)}
 

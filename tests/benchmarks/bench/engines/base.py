@@ -19,8 +19,8 @@ class Engine:
         raise NotImplementedError
 
     @classmethod
-    def prepare(cls, scene: dict) -> None:
-        """Makes what it needs of the scene's meshes and keeps it beside them; not timed."""
+    def prepare(cls, body: dict) -> None:
+        """Makes what it needs of a body's mesh and keeps it beside that; not timed. No two processes prepare the same mesh."""
 
     def __init__(self, scene: dict, dt: float) -> None:
         """Builds a scene of scene.prepare(), to be moved in steps of dt [s]."""
@@ -47,7 +47,7 @@ class Program:
         raise NotImplementedError
 
     @classmethod
-    def prepare(cls, scene: dict) -> None:
+    def prepare(cls, body: dict) -> None:
         pass
 
     @classmethod

@@ -35,6 +35,9 @@ class _Dart(Engine):
         self._world.setGravity([0, 0, -9.81])
         self._world.getConstraintSolver().setCollisionDetector(getattr(dart.collision, self.detector)())
         self._world.setNumSimulationThreads(1)
+        sleeping = self._world.getDeactivationOptions()
+        sleeping.mEnabled = False
+        self._world.setDeactivationOptions(sleeping)
         self._shapes: dict[str, object] = {}
         if scene["ground"] is not None:
             self._ground(scene["ground"])
@@ -94,10 +97,8 @@ class _Dart(Engine):
         hinge = body["hinge"]
         joint.setAxis(in_body_axes(body, hinge["axis"]))
         joint.setDampingCoefficient(0, hinge.get("damping", 0))
-        if hinge.get("torque"):
-            joint.setActuatorType(self._dart.dynamics.ActuatorType.SERVO)
-            joint.setForceLowerLimit(0, -hinge["torque"])
-            joint.setForceUpperLimit(0, hinge["torque"])
+        if hinge.get("torque"):  # a SERVO, which is limited by its torque, stops as teeth touch
+            joint.setActuatorType(self._dart.dynamics.ActuatorType.VELOCITY)
 
     def step(self, time: float) -> None:
         for body, node in zip(self._scene["bodies"], self._nodes):
@@ -118,14 +119,18 @@ class _Dart(Engine):
         return np.array(found)
 
 
+_SOLVER = ("its default solver (boxed LCP by Dantzig, then PGS), no sleeping; motors are VELOCITY actuators, as gears stop with a SERVO "
+           "of 10,000 N m; split impulses do better for a stack, worse for bricks, and are off as by default")
+
+
 class DartFcl(_Dart):
     name, detector = "dart-fcl", "FCLCollisionDetector"
-    settings = "triangle meshes, its default detector, its default solver (boxed LCP by Dantzig, then PGS)"
+    settings = f"triangle meshes, its default detector; {_SOLVER}"
 
 
 class DartBullet(_Dart):
     name, detector = "dart-bullet", "BulletCollisionDetector"
-    settings = "triangle meshes, its detector of Bullet, which is GImpact there; its default solver"
+    settings = f"triangle meshes, its detector of Bullet, which is GImpact there; {_SOLVER}"
 
 
 ENGINES = [DartFcl, DartBullet]

@@ -9,8 +9,8 @@ from .programs import program
 class Ode(Program):
     name = "ode"
     settings = ("triangle meshes, with the last transforms set (manual, Trimesh class); dWorldQuickStep with 50 iterations, ERP 0.2, a "
-                "surface layer of 1e-3 of the smallest body and contacts that part at 0.5 m/s at most (manual), pyramids of "
-                "friction (dContactApprox1), at most 64 contacts a pair")
+                "surface layer of 1e-4 of the smallest body and contacts that part at 0.5 m/s at most (manual), pyramids of "
+                "friction (dContactApprox1), at most 512 contacts a pair: with 64 a nut leaves its thread")
 
     @classmethod
     def version(cls) -> str:

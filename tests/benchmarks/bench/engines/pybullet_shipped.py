@@ -1,6 +1,8 @@
 """PyBullet as it comes from PyPI."""
 
 import os
+import subprocess
+import sys
 
 from .pybullet_world import PyBulletWorld
 
@@ -9,21 +11,24 @@ def _parts(body: dict) -> str:
     return body["mesh"].replace(".obj", "-vhacd.obj")
 
 
+def vhacd(mesh: str, parts: str) -> None:
+    """PyBullet's, with its defaults; in a process of its own, as it prints its progress at length."""
+    code = "import pybullet, sys; pybullet.connect(pybullet.DIRECT); pybullet.vhacd(*sys.argv[1:])"
+    subprocess.run([sys.executable, "-c", code, mesh, parts, parts + ".log"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
 class PyBulletShipped(PyBulletWorld):
     name = "pybullet"
     settings = ("moving bodies of the hulls that p.vhacd() makes with its defaults, fixed ones GEOM_FORCE_CONCAVE_TRIMESH (Quickstart "
                 "Guide); 50 iterations; no damping, no sleeping")
 
     @classmethod
-    def prepare(cls, scene: dict) -> None:
-        import pybullet as p
-
-        client = p.connect(p.DIRECT)
-        for body in scene["bodies"]:
-            if "mesh" in body and body["mass"] > 0 and not os.path.exists(_parts(body)):
-                p.vhacd(body["mesh"], _parts(body) + ".tmp.obj", body["mesh"] + ".log", physicsClientId=client)
-                os.replace(_parts(body) + ".tmp.obj", _parts(body))
-        p.disconnect(client)
+    def prepare(cls, body: dict) -> None:
+        if os.path.exists(_parts(body)):
+            return
+        made = _parts(body) + ".tmp.obj"
+        vhacd(body["mesh"], made)
+        os.replace(made, _parts(body))
 
     def _shape(self, body: dict) -> int:
         p = self._p
