@@ -7,7 +7,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-bool PackingProbe::probe(const btVector3& patch_normal, ProbedSample& sample) const {
+bool PackingProbe::probe(const btVector3& patch_normal, btScalar separation, ProbedSample& sample) const {
   OpposedPoints start;
   const auto probeAlong = [&](const btVector3& direction) {
     sample.direction = direction;
@@ -18,13 +18,14 @@ bool PackingProbe::probe(const btVector3& patch_normal, ProbedSample& sample) co
   // No line is longer than the way to the nearest point may be.
   if (!nearest(sample.index, to_nearest, start)) return false;
   bool found = probeAlong(to_nearest);
+  if (found && sample.isFarFromBend(separation)) return true;
   const bool fits = found && opposed(sample.points) && to_nearest.dot(patch_normal) > kPatchCosine;
   if (!fits) found = probeAlong(patch_normal);
   if (found) align(sample);
   return found;
 }
 
-bool PackingProbe::probeAgain(const btVector3& patch_normal, const Samples::Line& line,
+bool PackingProbe::probeAgain(const btVector3& patch_normal, btScalar separation, const Samples::Line& line,
                               ProbedSample& sample) const {
   if (line.direction.isZero()) return false;
   sample.direction = line.direction;
@@ -32,7 +33,7 @@ bool PackingProbe::probeAgain(const btVector3& patch_normal, const Samples::Line
   sample.points.triangle_b = line.triangle_b;
   // A line to an edge misses it when the bodies have moved.
   if (!probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points))
-    return probe(patch_normal, sample);
+    return probe(patch_normal, separation, sample);
   align(sample);
   return true;
 }

@@ -90,15 +90,33 @@ TEST_F(Balls, AreFoundFromTheDirectionOfThePatch) {
   for (const std::size_t index : {0u, 1u}) {
     ProbedSample sample;
     sample.index = index;
-    ASSERT_TRUE(probe().probe(off, sample));
+    ASSERT_TRUE(probe().probe(off, btScalar(0.1), sample));
     EXPECT_NEAR(sample.direction.distance(direction), 0, 1e-2);
     EXPECT_NEAR(sample.points.depthAlong(sample.direction), kDepth, kTessellation);
     ProbedSample again;
     again.index = index;
     const Samples::Line line{sample.direction, sample.points.triangle_a, sample.points.triangle_b};
-    ASSERT_TRUE(probe().probeAgain(off, line, again));
+    ASSERT_TRUE(probe().probeAgain(off, btScalar(0.1), line, again));
     EXPECT_NEAR(again.points.on_a.distance(sample.points.on_a), 0, 1e-3);
-    EXPECT_FALSE(probe().probeAgain(off, {}, again));
+    EXPECT_FALSE(probe().probeAgain(off, btScalar(0.1), {}, again));
+  }
+}
+
+TEST_F(Balls, AreNotProbedAgainWhereTheyAreFar) {
+  // Apart by 6 cm: the line to the nearest point, the only one, leads from centre to centre.
+  const PlacedPacking apart{*b, at(origin + direction * btScalar(kRadiusA + kRadiusB + 0.06)), Estimator::raw,
+                            btScalar(0.1)};
+  const PackingProbe probe(placed_a, apart, contacts, 1);
+  const btVector3 off = (direction + btVector3(2, 2, 1) / 3 * btScalar(0.36)).normalized();
+  for (const std::size_t index : {0u, 1u}) {
+    for (const double separation : {0.05, 0.07}) {
+      ProbedSample sample;
+      sample.index = index;
+      ASSERT_TRUE(probe.probe(off, btScalar(separation), sample));
+      EXPECT_NEAR(sample.direction.distance(direction), 0, 1e-2);
+      EXPECT_NEAR(sample.points.depthAlong(sample.direction), -0.06, kTessellation);
+      EXPECT_EQ(sample.isFarFromBend(btScalar(separation)), separation < 0.06);
+    }
   }
 }
 
@@ -129,14 +147,14 @@ TEST(ABallOverAnEdge, IsFoundAgainWhenItHasMoved) {
       now(btScalar(0.31), 0, btScalar(std::sqrt(1 - 0.31 * 0.31)));
   const PlacedPacking b_before = placedB(before), b_now = placedB(now);
   ProbedSample sample;
-  ASSERT_TRUE(PackingProbe(placed_a, b_before, contacts, 0).probe(up, sample));
+  ASSERT_TRUE(PackingProbe(placed_a, b_before, contacts, 0).probe(up, btScalar(0.1), sample));
   EXPECT_NEAR(sample.points.depthAlong(sample.direction), kDepth, kTessellation);
   const Samples::Line line{sample.direction, sample.points.triangle_a, sample.points.triangle_b};
   const PackingProbe probe(placed_a, b_now, contacts, 0);
   // The line passes by the cube now.
   ASSERT_FALSE(probe.probeLine(0, line.direction, btVector3(0, 0, 0), sample.points));
   ProbedSample again;
-  ASSERT_TRUE(probe.probeAgain(up, line, again));
+  ASSERT_TRUE(probe.probeAgain(up, btScalar(0.1), line, again));
   EXPECT_NEAR(again.points.depthAlong(again.direction), kDepth, kTessellation);
 }
 
@@ -176,7 +194,7 @@ TEST_F(CubeOnSlab, HasItsLowestCornerOverTheFace) {
   const PackingProbe probe(a, placed_slab, contacts, 1);
   const btVector3 down(0, 0, -1);
   ProbedSample sample;
-  ASSERT_TRUE(probe.probe(down, sample));
+  ASSERT_TRUE(probe.probe(down, btScalar(0.1), sample));
   std::vector<std::uint32_t> vertices;
   std::vector<EdgeContact> corners;
   probe.corners(0, sample.points, down, true, vertices, corners);
@@ -198,7 +216,7 @@ TEST_F(CubeOnSlab, HasBothEndsOfALevelEdgeOverTheFace) {
   const PackingProbe probe(a, placed_slab, contacts, 1);
   const btVector3 down(0, 0, -1);
   ProbedSample sample;
-  ASSERT_TRUE(probe.probe(down, sample));
+  ASSERT_TRUE(probe.probe(down, btScalar(0.1), sample));
   std::vector<std::uint32_t> vertices;
   std::vector<EdgeContact> corners;
   probe.corners(0, sample.points, down, true, vertices, corners);
