@@ -3,8 +3,8 @@
 #
 #   ./tests/benchmarks/run.sh PART [ARGUMENTS]      for example: packing_benchmark --help
 #
-# PARTs `bench`, `query`, `scenes`, `contact-scenes`, `substep` and `trade` run all that belongs to one question: see bench.sh,
-# query.sh, scenes.sh, contact_scenes.sh, substep.sh, trade.sh. Tables go to stdout as Markdown. To keep one: redirect it into
+# PARTs `bench`, `coverage`, `query`, `scenes`, `contact-scenes`, `substep` and `trade` run all that belongs to one question: see
+# bench.sh, coverage.sh, query.sh, scenes.sh, contact_scenes.sh, substep.sh, trade.sh. Tables go to stdout as Markdown. To keep one: redirect it into
 # tests/benchmarks/results/PART.md. Only what the part needs is built, in build-benchmarks/, and CUDA only where there is a device.
 set -euo pipefail
 caller=$PWD
@@ -18,7 +18,7 @@ if [ -z "$part" ]; then
   exit 2
 fi
 shift
-if [[ $part =~ ^(bench|query|scenes|contact-scenes|substep|trade)$ ]]; then
+if [[ $part =~ ^(bench|coverage|query|scenes|contact-scenes|substep|trade)$ ]]; then
   cd "$caller"
   exec "$here/${part//-/_}.sh" "$@"
 fi
