@@ -3,9 +3,10 @@
 #
 #   ./tests/benchmarks/run.sh PART [ARGUMENTS]      for example: packing_benchmark --help
 #
-# PARTs `bench`, `query`, `scenes`, `contact-scenes`, `solver`, `substep` and `trade` run all that belongs to one question: see bench.sh,
-# query.sh, scenes.sh, contact_scenes.sh, solver.sh, substep.sh, trade.sh. Tables go to stdout as Markdown. To keep one: redirect it into
-# tests/benchmarks/results/PART.md. Only what the part needs is built, in build-benchmarks/, and CUDA only where there is a device.
+# PARTs `bench`, `coverage`, `query`, `scenes`, `contact-scenes`, `solver`, `substep` and `trade` run all that belongs to one question:
+# see bench.sh, coverage.sh, query.sh, scenes.sh, contact_scenes.sh, solver.sh, substep.sh, trade.sh. Tables go to stdout as Markdown. To
+# keep one: redirect it into tests/benchmarks/results/PART.md. Only what the part needs is built, in build-benchmarks/, and CUDA only where
+# there is a device.
 set -euo pipefail
 caller=$PWD
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -18,7 +19,7 @@ if [ -z "$part" ]; then
   exit 2
 fi
 shift
-if [[ $part =~ ^(bench|query|scenes|contact-scenes|solver|substep|trade)$ ]]; then
+if [[ $part =~ ^(bench|coverage|query|scenes|contact-scenes|solver|substep|trade)$ ]]; then
   cd "$caller"
   exec "$here/${part//-/_}.sh" "$@"
 fi
