@@ -24,7 +24,8 @@ struct Row {
 
 std::vector<Row> readTable(const std::string& text) {
   const auto rows = readCsv(text);
-  EXPECT_EQ(text.substr(0, text.find('\n')), "pose,volume,cx,cy,cz,fx,fy,fz,tx,ty,tz,stiffness,pairs");
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "pose,volume,cx,cy,cz,fx,fy,fz,tx,ty,tz,stiffness,pairs,error,error_bound");
   std::vector<Row> table;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     EXPECT_EQ(rows[i].size(), 13u);
