@@ -19,14 +19,14 @@ namespace {
 constexpr std::size_t kStride = 16;
 
 // Less than this of the solid is found from triangles: samples are too coarse, and triangles few.
-constexpr double kShallow = 0.01;
+constexpr double kShallowShare = 0.01;
 
 // How near to what is wanted a depth has to be, and how often it is looked for.
 constexpr double kAbout = 1.2;
-constexpr int kSteps = 24;
+constexpr int kMostSteps = 24;
 
 // Overlaps, as fractions of the solid, that are looked for.
-constexpr double kLeastByTriangles = 1e-5, kLeastBySamples = 0.002, kMost = 0.45;
+constexpr double kLeastByTriangles = 1e-5, kLeastBySamples = 0.002, kMostShared = 0.45;
 
 /// Three numbers in [0, 1) that look random.
 Point random(std::size_t trial, std::uint32_t purpose) {
@@ -60,14 +60,15 @@ class TrueOverlap {
   /// The fraction of the solid, with all samples; `way` leads from the solid to the copy. It is about
   /// `expected`.
   Voxels::Shared at(const Pose& pose, const Point& way, double expected) const {
-    return tree_ && expected < kShallow ? Voxels::Shared{byTriangles(pose, way), 0} : voxels_.shared(pose);
+    return tree_ && expected < kShallowShare ? Voxels::Shared{byTriangles(pose, way), 0}
+                                             : voxels_.shared(pose);
   }
 
   /// The fraction, with few samples where it is not shallow. It is less than `most`.
   double coarsely(const Pose& pose, const Point& way, double most) const {
-    if (tree_ && most < kShallow) return byTriangles(pose, way);
+    if (tree_ && most < kShallowShare) return byTriangles(pose, way);
     const double samples = voxels_.shared(pose, kStride).fraction;
-    return tree_ && samples < kShallow ? byTriangles(pose, way) : samples;
+    return tree_ && samples < kShallowShare ? byTriangles(pose, way) : samples;
   }
 
  private:
@@ -103,7 +104,7 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Voxels& voxels, std::si
   };
   Step near{0, overlap.coarsely(at(0), way, 1)}, before = near;  // the last two that are too deep
   double far = std::numbers::sqrt3;
-  for (int i = 0; i < kSteps && near.share > kAbout * target; ++i) {
+  for (int i = 0; i < kMostSteps && near.share > kAbout * target; ++i) {
     double distance = (near.distance + far) / 2;
     // Overlaps grow about as the square of their depth.
     const double fallen = std::sqrt(before.share) - std::sqrt(near.share);
@@ -132,7 +133,7 @@ OverlapTrials makeOverlapTrials(const Container& container, const Surface& surfa
   OverlapTrials result{std::vector<OverlapTrial>(count), overlap.knowsSurface() ? kOverlapDepths[0] : least};
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    result.trials[i] = findTrial(overlap, voxels, i, least * steady::pow(kMost / least, part));
+    result.trials[i] = findTrial(overlap, voxels, i, least * steady::pow(kMostShared / least, part));
   });
   std::erase_if(result.trials, [](const OverlapTrial& trial) { return !(trial.truth.fraction > 0); });
   return result;
