@@ -22,35 +22,48 @@ double diagonalOf(const Surface& surface) {
 // The last six prefixes: shorter ones are for programs.
 constexpr std::size_t kPrefixesShown = 6;
 
+std::string percentages(const ByDepth& fractions) {
+  std::string text;
+  for (double f : fractions) {
+    char cell[32];
+    std::snprintf(cell, sizeof cell, "%8.3g", 100 * f);
+    text += cell;
+  }
+  return text + " %";
+}
+
 void addOverlapErrors(const OverlapErrors& errors, Report& report) {
+  const auto entry = [](const OverlapErrors::Estimate& estimate) {
+    return nlohmann::ordered_json{{"mean", estimate.mean}, {"bound", estimate.bound}};
+  };
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const OverlapErrors::Prefix& prefix : errors.prefixes) {
-    rows.push_back({{"count", prefix.count}, {"raw", prefix.raw}, {"volume_true", prefix.volume_true}});
+    rows.push_back(
+        {{"count", prefix.count}, {"raw", entry(prefix.raw)}, {"volume_true", entry(prefix.volume_true)}});
   }
-  report.add("overlap_errors", "",
-             {{"bins", kOverlapBins},
+  report.add("expected_errors", "",
+             {{"depths", kOverlapDepths},
               {"poses", errors.poses},
+              {"shallowest", errors.shallowest},
               {"sampling_error", errors.sampling_error},
               {"prefixes", rows}},
              "");
   if (errors.prefixes.empty()) return;
-  const auto line = [](const std::array<double, 4>& fractions) {
-    std::string text;
-    for (double f : fractions) {
-      char cell[32];
-      std::snprintf(cell, sizeof cell, "%10.2f", 100 * f);
-      text += cell;
-    }
-    return text + " %";
-  };
-  report.addLine("overlap error, mean", " of overlaps < 1 %     1-5 %    5-15 %    > 15 % of the solid");
+  report.addLine("error of overlaps of", percentages(kOverlapDepths) + " of the solid");
   const std::size_t all = errors.prefixes.size();
   for (std::size_t i = all - std::min(all, kPrefixesShown); i < all; ++i) {
     const OverlapErrors::Prefix& prefix = errors.prefixes[i];
-    report.addLine("  " + std::to_string(prefix.count) + ", plain", line(prefix.raw));
-    report.addLine("  " + std::to_string(prefix.count) + ", volume-true", line(prefix.volume_true));
+    const std::string count = "  " + std::to_string(prefix.count);
+    report.addLine(count + ", plain", percentages(prefix.raw.mean));
+    report.addLine(count + ", volume-true", percentages(prefix.volume_true.mean));
+    report.addLine("    95 % of them below", percentages(prefix.volume_true.bound));
   }
-  report.addLine("  its sampling error", line(errors.sampling_error));
+  if (errors.shallowest > kOverlapDepths[0]) {
+    char text[80];
+    std::snprintf(text, sizeof text, "nothing below %g %%: the surface is not closed",
+                  100 * errors.shallowest);
+    report.addLine("  measured", text);
+  }
 }
 
 void addCoverage(const Packing& packing, double diagonal, Report& report) {

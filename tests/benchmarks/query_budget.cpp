@@ -23,6 +23,7 @@ namespace {
 using namespace innersphere;
 using namespace innersphere::benchmarks;
 
+constexpr std::array<double, 5> kOverlapBins{0, 0.01, 0.05, 0.15, 1};  // fractions of the solid
 constexpr std::size_t kDepths = kOverlapBins.size() - 1;
 constexpr std::array<Estimator, 2> kEstimators{Estimator::raw, Estimator::volume_true};
 constexpr std::array<const char*, 2> kEstimatorNames{"raw", "volume-true"};

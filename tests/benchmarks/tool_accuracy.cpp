@@ -20,6 +20,7 @@ namespace {
 using namespace innersphere;
 using namespace innersphere::benchmarks;
 
+constexpr std::array<double, 5> kOverlapBins{0, 0.01, 0.05, 0.15, 1};  // fractions of the solid
 constexpr std::size_t kDepths = kOverlapBins.size() - 1;
 
 /// Deviations of poses that are equally deep.

@@ -99,7 +99,8 @@ inline bool sameBytes(const Packing& a, const Packing& b) {
   }
   for (std::size_t i = 0; i < a.overlap_errors.prefixes.size(); ++i) {
     const OverlapErrors::Prefix &p = a.overlap_errors.prefixes[i], &q = b.overlap_errors.prefixes[i];
-    if (p.raw != q.raw || p.volume_true != q.volume_true) return false;
+    if (p.raw.mean != q.raw.mean || p.raw.bound != q.raw.bound) return false;
+    if (p.volume_true.mean != q.volume_true.mean || p.volume_true.bound != q.volume_true.bound) return false;
   }
   return a.certificate.delta == b.certificate.delta &&
          a.certificate.largest_missing_radius == b.certificate.largest_missing_radius &&

@@ -20,20 +20,22 @@ struct Row {
   Vector centroid, force, torque;
   double stiffness;
   long pairs;
+  double error, error_bound;
 };
 
 std::vector<Row> readTable(const std::string& text) {
   const auto rows = readCsv(text);
-  EXPECT_EQ(text.substr(0, text.find('\n')), "pose,volume,cx,cy,cz,fx,fy,fz,tx,ty,tz,stiffness,pairs");
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "pose,volume,cx,cy,cz,fx,fy,fz,tx,ty,tz,stiffness,pairs,error,error_bound");
   std::vector<Row> table;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    EXPECT_EQ(rows[i].size(), 13u);
+    EXPECT_EQ(rows[i].size(), 15u);
     const auto number = [&](int column) { return std::stod(rows[i][static_cast<std::size_t>(column)]); };
     const auto vector = [&](int column) {
       return Vector{number(column), number(column + 1), number(column + 2)};
     };
-    table.push_back(
-        {rows[i][0], number(1), vector(2), vector(5), vector(8), number(11), std::lround(number(12))});
+    table.push_back({rows[i][0], number(1), vector(2), vector(5), vector(8), number(11),
+                     std::lround(number(12)), number(13), number(14)});
   }
   return table;
 }
@@ -62,6 +64,10 @@ TEST_F(Overlap, VolumeTrueMeetsTheCylinder) {
   }
   EXPECT_EQ(table[2].volume, 0);
   EXPECT_EQ(table[2].pairs, 0);
+  EXPECT_GT(table[0].error_bound, table[0].error);
+  EXPECT_GT(table[0].error, 1e-4);
+  EXPECT_LT(table[0].error, 0.1);
+  EXPECT_TRUE(std::isnan(table[2].error) && std::isnan(table[2].error_bound));
 }
 
 // The sums of the paper over all pairs of spheres, B's centres moved by `place`, the torque about

@@ -1,4 +1,4 @@
-// Runs overlap queries within a limit of time or work, and says how exact they are.
+// Runs overlap queries within a limit of time or work, and says how exact overlaps are.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,15 @@ struct BoundedOverlap {
   Overlap overlap;             ///< The sums.
   std::uint32_t prefix_a = 0;  ///< The number of spheres of A that were used.
   std::uint32_t prefix_b = 0;  ///< The number of spheres of B that were used.
-  /// The expected |relative error| of the volume. It was measured for overlaps of this depth when the worse
-  /// of the two packings was made (see Packing::overlap_errors). NaN if nothing overlaps or nothing was
-  /// measured, 0 with Estimator::surface.
-  double error = 0;
+  double error = 0;            ///< The expected |relative error| of the volume: ExpectedError::mean.
+  double error_bound = 0;      ///< What it exceeds in 1 of 20 cases: ExpectedError::bound.
 };
+
+/// Returns how far off a volume is to be expected that a query has found [m^3], from what was measured for
+/// overlaps of this depth when the packings were made (see Packing::overlap_errors); of A and B the worse
+/// one. NaN if nothing overlaps, nothing was measured, or nothing so shallow; 0 with Estimator::surface.
+/// Margins and CollisionModel::update() are not considered. Throws Error bad_argument for a null model.
+ExpectedError expectedError(const PairQuery& query, Estimator estimator, double volume);
 
 /// Runs single queries with the longest prefixes that a budget allows. Both bodies use 64, 128, 256, ...
 /// spheres, up to all they have. The time of such a step is predicted from the slowest of the last few

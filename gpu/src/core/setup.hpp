@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
+#include "common/mat3.hpp"
 #include "core/fixed_sum.hpp"
 #include "core/grid_view.hpp"
-#include "core/mat3.hpp"
 
 namespace innersphere::core {
 

@@ -41,24 +41,36 @@ std::size_t stepsOf(const PairQuery& query) {
   return steps;
 }
 
-/// The error that a packing gives for overlaps of this volume.
-double errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator, double volume) {
+/// The errors that a packing gives for overlaps of this volume; NaN if it gives none.
+ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator, double volume) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  if (estimator == Estimator::surface) return 0;
   const OverlapErrors& errors = packing.overlap_errors;
   const OverlapErrors::Prefix* best = nullptr;
   for (const OverlapErrors::Prefix& candidate : errors.prefixes) {
     if (candidate.count <= prefix) best = &candidate;
   }
-  if (!best || !(packing.solid.volume > 0)) return kUnknown;
   const double fraction = volume / packing.solid.volume;
-  std::size_t bin = 0;
-  while (bin + 1 < errors.poses.size() && fraction >= kOverlapBins[bin + 1]) ++bin;
-  if (errors.poses[bin] == 0) return kUnknown;
-  return (estimator == Estimator::raw ? best->raw : best->volume_true)[bin];
+  if (!best || !(fraction > 0) || fraction < errors.shallowest) return {kUnknown, kUnknown};
+  return expectedError(estimator == Estimator::raw ? best->raw : best->volume_true, fraction);
+}
+
+double worse(double a, double b) {
+  return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN() : std::max(a, b);
 }
 
 }  // namespace
+
+ExpectedError expectedError(const PairQuery& query, Estimator estimator, double volume) {
+  const std::uint32_t prefix_a = limitOf(query.a, query.prefix_a),
+                      prefix_b = limitOf(query.b, query.prefix_b);
+  if (estimator == Estimator::surface) return {0, 0};
+  const auto of = [&](const CollisionModel& model, std::uint32_t prefix, double scale) {
+    return errorOf(model.packing(), prefix, estimator, volume / (scale * scale * scale));
+  };
+  const ExpectedError a = of(*query.a, prefix_a, query.placement_a.scale),
+                      b = of(*query.b, prefix_b, query.placement_b.scale);
+  return {worse(a.mean, b.mean), worse(a.bound, b.bound)};
+}
 
 void BoundedQuery::warmUp(const PairQuery& query, const QueryOptions& options) {
   const std::size_t steps = stepsOf(query);
@@ -77,11 +89,9 @@ BoundedOverlap BoundedQuery::overlap(const PairQuery& query, const QueryBudget& 
   result.overlap = timedRun(query, options, step);
   result.prefix_a = bounded.prefix_a;
   result.prefix_b = bounded.prefix_b;
-  const double volume = result.overlap.volume;
-  const double error_a = errorOf(query.a->packing(), bounded.prefix_a, options.estimator, volume);
-  const double error_b = errorOf(query.b->packing(), bounded.prefix_b, options.estimator, volume);
-  const bool known = volume > 0 && !std::isnan(error_a) && !std::isnan(error_b);
-  result.error = known ? std::max(error_a, error_b) : std::numeric_limits<double>::quiet_NaN();
+  const ExpectedError error = expectedError(bounded, options.estimator, result.overlap.volume);
+  result.error = error.mean;
+  result.error_bound = error.bound;
   return result;
 }
 

@@ -62,25 +62,50 @@ struct Coverage {
 /// surface counts as not covered.
 inline constexpr double kCoverageDistance = 0.01;
 
-/// These are depths of overlaps, as volumes relative to the solid's. Errors are given for the four bins
-/// between two depths.
-inline constexpr std::array<double, 5> kOverlapBins{0, 0.01, 0.05, 0.15, 1};
+/// These are depths of overlaps, as volumes relative to the solid's, for which errors are given.
+inline constexpr std::array<double, 9> kOverlapDepths{3e-5, 1e-4, 3e-4, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3};
+
+/// Holds a number for each of kOverlapDepths.
+using ByDepth = std::array<double, kOverlapDepths.size()>;
+
+/// Tells how far a volume that was found with spheres may be from the truth.
+struct ExpectedError {
+  /// The mean |relative error|: a prediction limit, which the mean of as many poses as it was measured in
+  /// (kOverlapErrorPoses) exceeds in 1 of 20 cases.
+  double mean = 0;
+  /// What the |relative error| of a single volume exceeds in 1 of 20 cases.
+  double bound = 0;
+};
 
 /// Tells how far overlap volumes found with the spheres are from the truth. The packer measures this with the
-/// solid and copies of it at different places, 0.2 % to 45 % of its volume deep, unless
-/// PackOptions::overlap_errors is off. Each array has a number for each bin of kOverlapBins.
+/// solid and copies of it at different places, down to 0.001 % of its volume, unless
+/// PackOptions::overlap_errors is off. Depth is what the spheres find, not the truth, which a query does not
+/// know. For each depth those kOverlapErrorPoses count whose found volumes are nearest to it: a limit of 95 %
+/// for the mean of as many others (Student's t), and the second largest error, which one more pose exceeds
+/// with a probability of 2 / (kOverlapErrorPoses + 1), whatever the distribution.
 struct OverlapErrors {
+  /// Holds the errors by depth.
+  struct Estimate {
+    ByDepth mean{};   ///< See ExpectedError::mean.
+    ByDepth bound{};  ///< See ExpectedError::bound.
+  };
   /// Holds the errors of one prefix.
   struct Prefix {
-    std::uint32_t count = 0;              ///< The length of the prefix, one that has volume-true radii.
-    std::array<double, 4> raw{};          ///< The mean |relative error| with the spheres' own radii.
-    std::array<double, 4> volume_true{};  ///< The mean |relative error| with volume-true radii.
+    std::uint32_t count = 0;  ///< The length of the prefix, one that has volume-true radii.
+    Estimate raw;             ///< The errors with the spheres' own radii.
+    Estimate volume_true;     ///< The errors with volume-true radii.
   };
-  std::array<std::uint32_t, 4> poses{};  ///< The number of copies. 0: nothing was measured.
-  std::array<double, 4>
-      sampling_error{};          ///< The relative standard error of a true volume, which is sampled, too.
+  std::uint32_t poses = 0;  ///< The number of copies. 0: nothing was measured.
+  /// The least depth that was measured. It is greater than the first of kOverlapDepths if the solid has no
+  /// closed surface: true volumes are then sampled.
+  double shallowest = 0;
+  /// The relative standard error of true volumes, by depth. 0 where they come from the surface.
+  ByDepth sampling_error{};
   std::vector<Prefix> prefixes;  ///< The errors by rising count. May be empty.
 };
+
+/// The number of poses from which the errors at one depth are found.
+inline constexpr std::size_t kOverlapErrorPoses = 39;
 
 /// Tells where a packing comes from, so that a file can be traced and made again.
 struct Provenance {
@@ -122,6 +147,10 @@ struct Packing {
 /// Returns the stored volume-true radii of the longest prefix that is not longer than `count`, or null if
 /// there is none.
 const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count);
+
+/// Returns the errors to expect where the spheres share `fraction` of the solid's volume with another one's.
+/// Between two of kOverlapDepths the logarithms are linear; deeper than the last, its errors hold.
+ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double fraction);
 
 /// Returns the coverage of the longest measured prefix that is not longer than `count`, or null if there is
 /// none.

@@ -144,18 +144,22 @@ std::vector<Coverage> coverageOf(const Entry& entry) {
   return prefixes;
 }
 
+OverlapErrors::Estimate estimateOf(const Entry& entry) {
+  constexpr std::size_t kDepths = kOverlapDepths.size();
+  return {entry["mean"].numbers<kDepths>(), entry["bound"].numbers<kDepths>()};
+}
+
 OverlapErrors overlapErrorsOf(const Entry& entry) {
-  if (entry["bins"].numbers<kOverlapBins.size()>() != kOverlapBins) {
-    damaged("'overlap_errors.bins' are not the ones that this version knows");
+  if (entry["depths"].numbers<kOverlapDepths.size()>() != kOverlapDepths) {
+    damaged("'expected_errors.depths' are not the ones that this version knows");
   }
   OverlapErrors errors;
-  const std::vector<std::uint32_t> poses = entry["poses"].indices(errors.poses.size());
-  if (poses.size() != errors.poses.size()) damaged("'overlap_errors.poses' has the wrong length");
-  std::copy(poses.begin(), poses.end(), errors.poses.begin());
-  errors.sampling_error = entry["sampling_error"].numbers<4>();
+  errors.poses = entry["poses"].index();
+  errors.shallowest = entry["shallowest"].number();
+  errors.sampling_error = entry["sampling_error"].numbers<kOverlapDepths.size()>();
   for (const Entry& prefix : entry["prefixes"].items()) {
     errors.prefixes.push_back(
-        {prefix["count"].index(), prefix["raw"].numbers<4>(), prefix["volume_true"].numbers<4>()});
+        {prefix["count"].index(), estimateOf(prefix["raw"]), estimateOf(prefix["volume_true"])});
   }
   return errors;
 }
@@ -188,10 +192,16 @@ Packing packingOf(const json& value) {
   if (document.has("origin")) packing.origin = document["origin"].vector();
   if (document.has("order")) packing.order = orderOf(document["order"]);
   if (document.has("coverage")) packing.coverage = coverageOf(document["coverage"]);
-  if (document.has("overlap_errors")) packing.overlap_errors = overlapErrorsOf(document["overlap_errors"]);
+  if (document.has("expected_errors")) packing.overlap_errors = overlapErrorsOf(document["expected_errors"]);
   if (document.has("mass_weights")) packing.mass_weights = document["mass_weights"].floats(1);
   if (document.has("warnings")) {
     for (const Entry& warning : document["warnings"].items()) packing.warnings.push_back(warning.text());
+  }
+  // Means of four bins, 2 to 4 times too small for shallow overlaps.
+  if (document.has("overlap_errors")) {
+    packing.warnings.push_back(
+        "the file's estimates of errors are of an older kind and are left out; pack the solid again to have "
+        "them");
   }
 
   const Entry solid = document["solid"];

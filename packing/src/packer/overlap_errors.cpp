@@ -2,76 +2,25 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "common/steady_math.hpp"
+#include "packer/overlap_trials.hpp"
 #include "packer/sphere_grid.hpp"
-#include "packer/voxels.hpp"
 
 namespace innersphere {
 namespace {
 
 constexpr double kVoxels = 1 << 20;
-constexpr std::size_t kBins = kOverlapBins.size() - 1;
-constexpr std::size_t kPosesPerBin = 8;
 
-// Poses are searched for with fewer samples.
-constexpr std::size_t kStride = 16;
+// About as many for each depth as errors are found from.
+constexpr std::size_t kTrials = kOverlapErrorPoses * (kOverlapDepths.size() + 1);
 
-// Overlaps, as fractions of the solid, that are looked for.
-constexpr double kLeastOverlap = 0.002;
-constexpr double kMostOverlap = 0.45;
-
-struct Trial {
-  Pose pose;
-  Voxels::Shared truth;
-};
-
-/// Number i of a sequence that fills [0, 1)^3 evenly (Roberts' R3: powers of 1/p, where p^4 = p + 1).
-Point evenly(std::size_t i) {
-  constexpr double kStep[] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-  Point u;
-  for (int k = 0; k < 3; ++k) u[k] = std::fmod(0.5 + static_cast<double>(i + 1) * kStep[k], 1.0);
-  return u;
-}
-
-Eigen::Quaterniond rotation(const Point& u) {
-  // Uniform in the space of rotations (Shoemake 1992).
-  const double a = 2 * std::numbers::pi * u[1], b = 2 * std::numbers::pi * u[2];
-  const double s = std::sqrt(1 - u[0]), c = std::sqrt(u[0]);
-  return {c * steady::cos(b), s * steady::sin(a), s * steady::cos(a), c * steady::sin(b)};
-}
-
-Point direction(const Point& u) {
-  const double z = 2 * u[0] - 1, a = 2 * std::numbers::pi * u[1], s = std::sqrt(1 - z * z);
-  return {s * steady::cos(a), s * steady::sin(a), z};
-}
-
-/// Turns the copy about `centre` and moves it away until the solids share the fraction `target`.
-Trial findTrial(const Voxels& voxels, const Point& centre, std::size_t number, double target) {
-  Eigen::Quaterniond turn = rotation(evenly(2 * number));
-  if (turn.w() < 0) turn.coeffs() *= -1;
-  const Point way = direction(evenly(2 * number + 1));
-  const auto at = [&](double distance) {
-    const Eigen::Matrix3d r = turn.toRotationMatrix();
-    return Pose{r, centre - r * centre + distance * way};
-  };
-  // A thin solid and its turned copy may share less than that wherever the copy is: turn it half as far.
-  while (turn.vec().norm() > 5e-4 && voxels.shared(at(0), kStride).fraction < 1.2 * target) {
-    turn.w() += 1;
-    turn.normalize();
-  }
-  double near = 0, far = std::numbers::sqrt3;
-  for (int step = 0; step < 12; ++step) {
-    const double middle = (near + far) / 2;
-    (voxels.shared(at(middle), kStride).fraction > target ? near : far) = middle;
-  }
-  const Pose pose = at((near + far) / 2);
-  return {pose, voxels.shared(pose)};
-}
+// Student's t of 95 %, one-sided, with kOverlapErrorPoses - 1 degrees of freedom.
+constexpr double kStudent = 1.686;
+static_assert(kOverlapErrorPoses == 39);
 
 /// What two balls share, by the closed form of the lens.
 double lens(double r1, double r2, double d) {
@@ -122,52 +71,83 @@ class Prefix {
   double overshoot_ = 0;  // how far these reach out of the solid, at most
 };
 
-std::size_t binOf(double fraction) {
-  std::size_t bin = 0;
-  while (bin + 1 < kBins && fraction >= kOverlapBins[bin + 1]) ++bin;
-  return bin;
+/// What was found in one pose.
+struct Finding {
+  double depth;  ///< found with spheres, or true
+  double error;  ///< relative to the truth
+};
+
+/// Calls f(number of a depth, the findings nearest to it) for each of kOverlapDepths.
+template <typename F>
+void forEachDepth(std::vector<Finding> findings, const F& f) {
+  std::erase_if(findings, [](const Finding& one) { return !(one.depth > 0); });
+  std::sort(findings.begin(), findings.end(),
+            [](const Finding& a, const Finding& b) { return a.depth < b.depth; });
+  const std::size_t size = std::min(kOverlapErrorPoses, findings.size());
+  for (std::size_t k = 0; k < kOverlapDepths.size(); ++k) {
+    const double depth = kOverlapDepths[k];
+    std::size_t first = 0;  // the window moves up while the next finding is nearer than its first, as a ratio
+    while (first + size < findings.size() &&
+           findings[first].depth * findings[first + size].depth < depth * depth)
+      ++first;
+    f(k, std::span(findings).subspan(first, size));
+  }
+}
+
+OverlapErrors::Estimate estimateFrom(const std::vector<Finding>& findings) {
+  OverlapErrors::Estimate estimate;
+  forEachDepth(findings, [&](std::size_t depth, std::span<const Finding> near) {
+    estimate.mean[depth] = estimate.bound[depth] = 1;
+    if (near.size() < kOverlapErrorPoses) return;  // the spheres find next to nothing
+    const auto count = static_cast<double>(near.size());
+    double sum = 0, squares = 0;
+    std::array<double, 2> largest{};  // the second one first
+    for (const Finding& one : near) {
+      sum += one.error;
+      squares += one.error * one.error;
+      largest = {std::max(largest[0], std::min(largest[1], one.error)), std::max(largest[1], one.error)};
+    }
+    const double mean = sum / count;
+    const double variance = std::max(0.0, squares - count * mean * mean) / (count - 1);
+    estimate.mean[depth] = mean + kStudent * std::sqrt(2 * variance / count);  // the others' scatter, too
+    estimate.bound[depth] = largest[0];
+  });
+  return estimate;
 }
 
 }  // namespace
 
-OverlapErrors findOverlapErrors(const Container& container, std::span<const Ball> balls,
-                                const std::vector<VolumeTrueRadii>& radii, double volume,
-                                const Point& centre_of_mass) {
+OverlapErrors findOverlapErrors(const Container& container, const Surface& surface,
+                                std::span<const Ball> balls, const std::vector<VolumeTrueRadii>& radii,
+                                double volume) {
   const Voxels voxels(container, volume, kVoxels);
-  std::vector<Trial> trials(kBins * kPosesPerBin);
-  tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
-    const std::size_t bin = i / kPosesPerBin;
-    const double low = std::max(kOverlapBins[bin], kLeastOverlap),
-                 high = std::min(kOverlapBins[bin + 1], kMostOverlap);
-    const double part = (static_cast<double>(i % kPosesPerBin) + 0.5) / kPosesPerBin;
-    trials[i] = findTrial(voxels, centre_of_mass, i, low * steady::pow(high / low, part));
-  });
-
+  const auto [trials, shallowest] = makeOverlapTrials(container, surface, voxels, volume, kTrials);
+  if (trials.size() < kOverlapErrorPoses) return {};
   OverlapErrors errors;
-  std::array<double, kBins> squared{};
-  for (const Trial& trial : trials) {
-    if (trial.truth.fraction <= 0) continue;
-    const std::size_t bin = binOf(trial.truth.fraction);
-    ++errors.poses[bin];
-    squared[bin] += std::pow(trial.truth.error / trial.truth.fraction, 2);
-  }
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
-    if (errors.poses[bin] > 0) errors.sampling_error[bin] = std::sqrt(squared[bin] / errors.poses[bin]);
-  }
+  errors.poses = static_cast<std::uint32_t>(trials.size());
+  errors.shallowest = shallowest;
+  std::vector<Finding> findings;
+  for (const OverlapTrial& trial : trials)
+    findings.push_back({trial.truth.fraction, trial.truth.error / trial.truth.fraction});
+  forEachDepth(findings, [&](std::size_t depth, std::span<const Finding> near) {
+    double squares = 0;
+    for (const Finding& one : near) squares += one.error * one.error;
+    errors.sampling_error[depth] = std::sqrt(squares / static_cast<double>(near.size()));
+  });
   for (const VolumeTrueRadii& prefix : radii) {
     const Prefix spheres(balls, prefix, container.side());
     std::vector<Prefix::Sums> sums(trials.size());
     tbb::parallel_for(std::size_t{0}, trials.size(),
                       [&](std::size_t i) { sums[i] = spheres.overlap(trials[i].pose, voxels); });
-    OverlapErrors::Prefix& row = errors.prefixes.emplace_back();
-    row.count = prefix.count;
-    for (std::size_t i = 0; i < trials.size(); ++i) {
-      if (trials[i].truth.fraction <= 0) continue;
-      const std::size_t bin = binOf(trials[i].truth.fraction);
-      const double exact = trials[i].truth.fraction * volume;
-      row.raw[bin] += std::abs(sums[i].raw / exact - 1) / errors.poses[bin];
-      row.volume_true[bin] += std::abs(sums[i].volume_true / exact - 1) / errors.poses[bin];
-    }
+    const auto estimate = [&](double Prefix::Sums::*sum) {
+      for (std::size_t i = 0; i < trials.size(); ++i) {
+        const double found = sums[i].*sum / volume, exact = trials[i].truth.fraction;
+        findings[i] = {found, std::abs(found / exact - 1)};
+      }
+      return estimateFrom(findings);
+    };
+    errors.prefixes.push_back(
+        {prefix.count, estimate(&Prefix::Sums::raw), estimate(&Prefix::Sums::volume_true)});
   }
   return errors;
 }

@@ -297,10 +297,9 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   const std::vector<double> cell_volumes = addVolumeTrueRadii(problem, chosen, arena, report, packing);
   report("measuring", 0);
   if (options.overlap_errors) {
-    const Point centre = problem.container.fromWorld(packing.solid.centre_of_mass);
     arena.execute([&] {
-      packing.overlap_errors =
-          findOverlapErrors(problem.container, chosen.balls, packing.volume_true, problem.volume, centre);
+      packing.overlap_errors = findOverlapErrors(problem.container, packing.surface, chosen.balls,
+                                                 packing.volume_true, problem.volume);
     });
   }
   packing.solid.centre_of_mass = packing.solid.centre_of_mass - packing.origin;

@@ -83,6 +83,11 @@ const Voxels::Block* Voxels::blockAt(const Point& x) const {
   return &blocks_[(z * blocks_in_[1] + y) * blocks_in_[0] + static_cast<std::size_t>(at[0])];
 }
 
+Point Voxels::point(double part) const {
+  const auto& points = points_[points_[0].size() < points_[1].size()];
+  return points[static_cast<std::size_t>(part * static_cast<double>(points.size()))].cast<double>();
+}
+
 double Voxels::outsideBy(const Point& x) const {
   const Block* block = blockAt(x);
   return block ? std::max(0.0, -block->distance - (x - block->centre).norm()) : 0;

@@ -34,6 +34,9 @@ class Voxels {
   /// Returns what the solid shares with its copy, by every `stride`-th point.
   Shared shared(const Pose& pose, std::size_t stride = 1) const;
 
+  /// Returns one of the points inside; `part` is in [0, 1). There must be one.
+  Point point(double part) const;
+
   /// Returns a length by which x is at least outside of the solid, or 0 if that is not known.
   double outsideBy(const Point& x) const;
 

@@ -1,5 +1,6 @@
 #include "innersphere/packing.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -15,6 +16,17 @@ const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count
     if (radii.count <= count && (!best || radii.count > best->count)) best = &radii;
   }
   return best;
+}
+
+ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double fraction) {
+  std::size_t next = 1;
+  while (next + 1 < kOverlapDepths.size() && fraction > kOverlapDepths[next]) ++next;
+  const double low = kOverlapDepths[next - 1], high = kOverlapDepths[next];
+  const double part = std::clamp(std::log(fraction / low) / std::log(high / low), 0.0, 1.0);
+  const auto at = [&](const ByDepth& errors) {
+    return std::pow(errors[next - 1], 1 - part) * std::pow(errors[next], part);
+  };
+  return {at(estimate.mean), at(estimate.bound)};
 }
 
 const Coverage* coverageOf(const Packing& packing, std::size_t count) {
@@ -86,7 +98,7 @@ void validateMeasures(const Packing& packing) {
       throw Error(ErrorCode::bad_argument, "the mass weights are not all positive and finite");
     }
   }
-  const auto requireFinite = [](const std::array<double, 4>& errors) {
+  const auto requireFinite = [](const ByDepth& errors) {
     for (double x : errors) {
       if (!std::isfinite(x)) notFinite("a number of the overlap errors");
     }
@@ -98,8 +110,10 @@ void validateMeasures(const Packing& packing) {
   }
   requireFinite(packing.overlap_errors.sampling_error);
   for (const OverlapErrors::Prefix& prefix : packing.overlap_errors.prefixes) {
-    requireFinite(prefix.raw);
-    requireFinite(prefix.volume_true);
+    for (const OverlapErrors::Estimate* estimate : {&prefix.raw, &prefix.volume_true}) {
+      requireFinite(estimate->mean);
+      requireFinite(estimate->bound);
+    }
   }
 }
 

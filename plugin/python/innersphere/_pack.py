@@ -48,7 +48,7 @@ def pack(
         of the largest, spheres come first where the surface is farthest from all before, so that few spheres are in all thin
         walls and slender parts.
     delta: each sphere has at least 1/(1+delta) of the largest possible radius, 0.001 to 1. Less is denser and slower.
-    overlap_errors: whether to measure how far volumes of overlaps are off, which takes half of the time.
+    overlap_errors: whether to measure how far volumes of overlaps are off, which takes more than half of the time.
     threads: 0 are all cores. The result does not depend on it.
     repair: whether a mesh with holes is packed all the same. They are closed with flat fans.
     scale: factor for all coordinates: 0.001 for millimetres.

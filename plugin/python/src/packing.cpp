@@ -255,7 +255,7 @@ nb::tuple overlapErrorsOf(const SharedPacking& self) {
   const OverlapErrors& errors = self.packing().overlap_errors;
   for (const OverlapErrors::Prefix& prefix : errors.prefixes) {
     if (prefix.count <= self.count)
-      rows.append(nb::make_tuple(prefix.count, nb::cast(prefix.raw), nb::cast(prefix.volume_true)));
+      rows.append(nb::make_tuple(prefix.count, nb::cast(prefix.raw.mean), nb::cast(prefix.volume_true.mean)));
   }
   return nb::tuple(rows);
 }
@@ -393,8 +393,8 @@ largest_missing_radius: no larger sphere fits between those that are there [m].)
           nb::sig("def overlap_errors(self) -> tuple[tuple[int, list[float], list[float]], ...]"),
           R"(How far off volumes of overlaps are: the mean |relative error|, measured when it was packed.
 
-A row for each number of spheres: that number, the errors with estimator="raw", and those with "volume_true". Four errors
-each, for overlaps of 0 to 1, 1 to 5, 5 to 15 and 15 to 100 % of the solid. Empty with pack(overlap_errors=False).)")
+A row for each number of spheres: that number, the errors with estimator="raw", and those with "volume_true". Nine errors
+each, for overlaps of 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10 and 30 % of the solid. Empty with pack(overlap_errors=False).)")
       .def_prop_ro(
           "warnings", [](const SharedPacking& p) { return p.packing().warnings; },
           "What to know of the packing, a sentence each: what was mended in the mesh, parts without spheres.")

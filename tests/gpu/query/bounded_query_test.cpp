@@ -17,14 +17,25 @@ class BoundedQueryConformance : public Conformance {
   BoundedQueryConformance() {
     const auto packing = makePacking(randomSpheres(1000, 0.2, 30, 1));
     packing->solid.volume = 7;
-    packing->overlap_errors.poses = {5, 5, 5, 0};
-    packing->overlap_errors.prefixes = {{64, {0.5, 0.4, 0.3, 0}, {0.25, 0.2, 0.1, 0}},
-                                        {512, {0.4, 0.3, 0.2, 0}, {0.05, 0.04, 0.03, 0}}};
+    OverlapErrors& errors = packing->overlap_errors;
+    errors.poses = 100;
+    errors.shallowest = 0.01;
+    errors.prefixes = {{64, estimate(0.5), estimate(0.25)}, {512, estimate(0.4), estimate(0.05)}};
     a = std::make_shared<CollisionModel>(packing);
     b = makeModel(randomSpheres(300, 0.3, 20, 2));
     query.a = a.get();
     query.b = a.get();
     query.placement_b = at({0.2, 0.1, 0});
+  }
+
+  /// A mean that falls as 1 / (100 times the depth), from a hundredth on, and twice that as bound.
+  static OverlapErrors::Estimate estimate(double at_a_hundredth) {
+    OverlapErrors::Estimate result;
+    for (std::size_t k = 0; k < kOverlapDepths.size(); ++k) {
+      result.mean[k] = at_a_hundredth * 0.01 / kOverlapDepths[k];
+      result.bound[k] = 2 * result.mean[k];
+    }
+    return result;
   }
 
   std::shared_ptr<CollisionModel> a, b;
@@ -77,17 +88,23 @@ TEST_P(BoundedQueryConformance, ErrorIsThatOfThePackings) {
   };
   for (const std::uint64_t spheres : {128u, 1024u}) {
     const BoundedOverlap result = error(spheres, Estimator::raw);
-    const double share = result.overlap.volume / 7;
-    ASSERT_GT(share, 0);
-    ASSERT_LT(share, 0.15);
-    const std::size_t bin = share < 0.01 ? 0 : share < 0.05 ? 1 : 2;
-    EXPECT_EQ(result.error, a->packing().overlap_errors.prefixes[spheres == 128 ? 0 : 1].raw[bin]);
+    const double share = result.overlap.volume / 7, mean = (spheres == 128 ? 0.5 : 0.4) * 0.01 / share;
+    ASSERT_GT(share, 0.01);
+    ASSERT_LT(share, 0.3);
+    EXPECT_NEAR(result.error, mean, 1e-9 * mean);
+    EXPECT_NEAR(result.error_bound, 2 * mean, 1e-9 * mean);
   }
   EXPECT_LT(error(1024, Estimator::volume_true).error, error(1024, Estimator::raw).error);
-  query.placement_b = at({0, 0, 0});
-  query.placement_b.scale = 3;  // deeper than anything that was measured
-  EXPECT_GT(error(0, Estimator::raw).overlap.volume, 0.15 * 7);
-  EXPECT_TRUE(std::isnan(error(0, Estimator::raw).error));
+  // Depth is relative to the scaled solid; of two bodies the worse one counts; beyond the last depth its
+  // errors hold.
+  query.placement_b.scale = 3;
+  const double volume = 0.1 * 7;
+  EXPECT_NEAR(expectedError(query, Estimator::raw, volume * 27).mean, 0.04, 1e-9);
+  EXPECT_NEAR(expectedError(query, Estimator::raw, 1000).mean, 0.4 * 0.01 / 0.3, 1e-9);
+  EXPECT_TRUE(std::isnan(expectedError(query, Estimator::raw, volume / 11).mean));  // too shallow for A
+  EXPECT_TRUE(
+      std::isnan(expectedError(query, Estimator::raw, volume).mean));  // too shallow for B, which is large
+  EXPECT_EQ(expectedError(query, Estimator::surface, volume).bound, 0);
   query.placement_b = at({50, 0, 0});
   EXPECT_TRUE(std::isnan(error(0, Estimator::raw).error));
   query.placement_b = at({0.2, 0.1, 0});

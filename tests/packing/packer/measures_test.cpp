@@ -159,29 +159,33 @@ TEST(PackerMeasures, OverlapErrorsOfABall) {
   const Container container(solid);
   const double unit = 1 / container.side(), small = 0.9;
   const std::vector<Ball> balls{{container.fromWorld({0, 0, 0}), small * unit}};
-  const OverlapErrors errors =
-      findOverlapErrors(container, balls, {{1, {1.0f}, 0}}, static_cast<double>(kBall) * std::pow(unit, 3),
-                        container.fromWorld({0, 0, 0}));
+  const OverlapErrors errors = findOverlapErrors(container, {}, balls, {{1, {1.0f}, 0}},
+                                                 static_cast<double>(kBall) * std::pow(unit, 3));
   ASSERT_EQ(errors.prefixes.size(), 1u);
-  const auto share = [](double distance) { return static_cast<double>(lens(1, 1, distance) / kBall); };
-  for (std::size_t bin = 0; bin < 4; ++bin) {
-    EXPECT_GE(errors.poses[bin], 6u);
-    EXPECT_LT(errors.sampling_error[bin], 0.02);
-    EXPECT_LT(errors.prefixes[0].volume_true[bin], 3 * errors.sampling_error[bin] + 1e-3);
-    // The error falls with depth, so those at the ends of the bin bound it.
-    double low = 1, high = 0;
-    for (double distance = 0; distance < 2; distance += 1e-3) {
-      const double fraction = share(distance);
-      if (fraction < std::max(kOverlapBins[bin], 0.0018) || fraction > std::min(kOverlapBins[bin + 1], 0.5))
-        continue;
-      const double error =
-          1 - static_cast<double>(lens(small, small, distance)) / (share(distance) * 4 * M_PI / 3);
-      low = std::min(low, error);
-      high = std::max(high, error);
-    }
-    EXPECT_GT(errors.prefixes[0].raw[bin], low - 1e-9);
-    EXPECT_LT(errors.prefixes[0].raw[bin], high + 1e-9);
+  EXPECT_GE(errors.poses, 300u);
+  EXPECT_EQ(errors.shallowest, 0.002);  // it has no surface
+  // The error of the small sphere where it finds a part of the ball.
+  const auto error = [&](double part) {
+    double distance = 0;
+    while (static_cast<double>(lens(small, small, distance) / kBall) > part) distance += 1e-4;
+    return static_cast<double>(1 - lens(small, small, distance) / lens(1, 1, distance));
+  };
+  for (std::size_t k = 0; k < kOverlapDepths.size(); ++k) {
+    if (kOverlapDepths[k] < 0.003) continue;
+    const OverlapErrors::Prefix& prefix = errors.prefixes[0];
+    EXPECT_LT(errors.sampling_error[k], 0.02);
+    EXPECT_LT(prefix.volume_true.mean[k], 3 * errors.sampling_error[k] + 1e-3);
+    EXPECT_LE(prefix.raw.mean[k], prefix.raw.bound[k] + 1e-12);
+    EXPECT_GT(prefix.raw.mean[k], error(3 * kOverlapDepths[k]));
+    EXPECT_LT(prefix.raw.bound[k], error(kOverlapDepths[k] / 3));
   }
+}
+
+TEST(PackerMeasures, OverlapErrorsAreFoundFromTheSurfaceWhereItIsClosed) {
+  const Packing packing = packed(*makeNamedSolid("lbracket"), 256);
+  EXPECT_EQ(packing.overlap_errors.shallowest, kOverlapDepths[0]);
+  for (std::size_t k = 0; kOverlapDepths[k] < 0.003; ++k)
+    EXPECT_EQ(packing.overlap_errors.sampling_error[k], 0);
 }
 
 TEST(PackerMeasures, OverlapErrorsFallWithMoreSpheres) {
@@ -191,11 +195,12 @@ TEST(PackerMeasures, OverlapErrorsFallWithMoreSpheres) {
   const OverlapErrors::Prefix &few = errors.prefixes.front(), &all = errors.prefixes.back();
   EXPECT_EQ(few.count, 64u);
   EXPECT_EQ(all.count, 1024u);
-  for (std::size_t bin = 0; bin < 4; ++bin) {
-    EXPECT_LT(all.raw[bin], few.raw[bin]);
-    EXPECT_LT(all.volume_true[bin], 0.5 * all.raw[bin]);
+  for (std::size_t k = 4; k < kOverlapDepths.size(); ++k) {
+    EXPECT_LT(all.raw.mean[k], few.raw.mean[k]);
+    EXPECT_LT(all.volume_true.mean[k], 0.5 * all.raw.mean[k]);
+    EXPECT_LT(all.volume_true.mean[k], all.volume_true.bound[k]);
   }
-  EXPECT_LT(all.volume_true[3], 0.02);
+  EXPECT_LT(all.volume_true.mean.back(), 0.02);
 }
 
 // What a packing at a program's start leaves out: nothing but the errors, and a file is read back without
@@ -209,7 +214,7 @@ TEST(PackerMeasures, OverlapErrorsCanBeLeftOut) {
   const Packing without = pack(*solid, options);
   EXPECT_FALSE(with.overlap_errors.prefixes.empty());
   EXPECT_TRUE(without.overlap_errors.prefixes.empty());
-  EXPECT_EQ(without.overlap_errors.poses, (std::array<std::uint32_t, 4>{}));
+  EXPECT_EQ(without.overlap_errors.poses, 0u);
 
   const Scratch scratch;
   const auto written = [&](Packing packing, const char* name) {

@@ -9,6 +9,9 @@
 
 namespace innersphere {
 
+/// Returns whether each edge is run along as often in one direction as in the other.
+bool isClosedSurface(const Surface& surface);
+
 /// Holds the triangles of a surface, in the order of the leaves of a tree of boxes.
 class SurfaceTree {
  public:

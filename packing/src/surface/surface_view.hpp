@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/mat3.hpp"
+#include "common/mat3.hpp"
 #include "surface/box.hpp"
 #include "surface/column_pair.hpp"
 #include "surface/surface_tree.hpp"

@@ -9,10 +9,7 @@
 
 namespace innersphere {
 
-namespace {
-
-/// Returns whether each edge is run along as often in one direction as in the other.
-bool isClosed(const Surface& surface) {
+bool isClosedSurface(const Surface& surface) {
   struct HalfEdge {
     std::uint32_t low, high;
     int direction;
@@ -37,14 +34,12 @@ bool isClosed(const Surface& surface) {
   return true;
 }
 
-}  // namespace
-
 SurfaceTree::SurfaceTree(const Surface& surface) {
   if (surface.triangles.empty()) {
     throw Error(ErrorCode::empty_input,
                 "the packing carries no triangles; pack the mesh again, or use another estimator");
   }
-  if (!isClosed(surface)) {
+  if (!isClosedSurface(surface)) {
     throw Error(ErrorCode::not_a_solid,
                 "the triangles that the packing carries are not closed; use another estimator");
   }

@@ -1,0 +1,142 @@
+#include "packer/overlap_trials.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "common/steady_math.hpp"
+#include "packer/jitter.hpp"
+#include "surface/shared_volume.hpp"
+
+namespace innersphere {
+namespace {
+
+// Poses are searched for with fewer samples.
+constexpr std::size_t kStride = 16;
+
+// Less than this of the solid is found from triangles: samples are too coarse, and triangles few.
+constexpr double kShallowShare = 0.01;
+
+// How near to what is wanted a depth has to be, and how often it is looked for.
+constexpr double kAbout = 1.2;
+constexpr int kMostSteps = 24;
+
+// Overlaps, as fractions of the solid, that are looked for.
+constexpr double kLeastByTriangles = 1e-5, kLeastBySamples = 0.002, kMostShared = 0.45;
+
+/// Three numbers in [0, 1) that look random.
+Point random(std::size_t trial, std::uint32_t purpose) {
+  const std::array<std::uint32_t, 3> at{static_cast<std::uint32_t>(trial), purpose, 0};
+  return {jitter(at, 0), jitter(at, 1), jitter(at, 2)};
+}
+
+Eigen::Quaterniond rotation(const Point& u) {
+  // Uniform in the space of rotations (Shoemake 1992).
+  const double a = 2 * std::numbers::pi * u[1], b = 2 * std::numbers::pi * u[2];
+  const double s = std::sqrt(1 - u[0]), c = std::sqrt(u[0]);
+  return {c * steady::cos(b), s * steady::sin(a), s * steady::cos(a), c * steady::sin(b)};
+}
+
+Point direction(const Point& u) {
+  const double z = 2 * u[0] - 1, a = 2 * std::numbers::pi * u[1], s = std::sqrt(1 - z * z);
+  return {s * steady::cos(a), s * steady::sin(a), z};
+}
+
+/// Tells what a solid shares with its copy.
+class TrueOverlap {
+ public:
+  TrueOverlap(const Container& container, const Surface& surface, const Voxels& voxels, double volume)
+      : voxels_(voxels), volume_(volume), scale_(1 / container.side()) {
+    shift_ = container.fromWorld(container.origin());
+    if (!surface.triangles.empty() && isClosedSurface(surface)) tree_.emplace(surface);
+  }
+
+  bool knowsSurface() const { return tree_.has_value(); }
+
+  /// The fraction of the solid, with all samples; `way` leads from the solid to the copy. It is about
+  /// `expected`.
+  Voxels::Shared at(const Pose& pose, const Point& way, double expected) const {
+    return tree_ && expected < kShallowShare ? Voxels::Shared{byTriangles(pose, way), 0}
+                                             : voxels_.shared(pose);
+  }
+
+  /// The fraction, with few samples where it is not shallow. It is less than `most`.
+  double coarsely(const Pose& pose, const Point& way, double most) const {
+    if (tree_ && most < kShallowShare) return byTriangles(pose, way);
+    const double samples = voxels_.shared(pose, kStride).fraction;
+    return tree_ && samples < kShallowShare ? byTriangles(pose, way) : samples;
+  }
+
+ private:
+  double byTriangles(const Pose& pose, const Point& way) const {
+    const Eigen::Matrix3d r = scale_ * pose.rotation;
+    const Point shift = pose.apply(shift_);
+    const PlacedSurface solid{*tree_, {{scale_, 0, 0, 0, scale_, 0, 0, 0, scale_}}, vectorOf(shift_)};
+    const PlacedSurface copy{
+        *tree_,
+        {{r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}},
+        vectorOf(shift)};
+    return sharedVolume(solid, copy, vectorOf(way)).volume / volume_;
+  }
+
+  static Vec3d vectorOf(const Point& x) { return {x[0], x[1], x[2]}; }
+
+  const Voxels& voxels_;
+  std::optional<SurfaceTree> tree_;
+  double volume_, scale_;
+  Point shift_;  // of the packing's frame
+};
+
+/// Turns the copy, puts a point of it on a point of the solid, and moves it away until both share about the
+/// fraction `target`, or leaves it there if they share less: thin solids do.
+OverlapTrial findTrial(const TrueOverlap& overlap, const Voxels& voxels, std::size_t number, double target) {
+  const Point way = direction(random(number, 0)), places = random(number, 1);
+  const Eigen::Matrix3d turn = rotation(random(number, 2)).toRotationMatrix();
+  const Point start = voxels.point(places[0]) - turn * voxels.point(places[1]);
+  const auto at = [&](double distance) { return Pose{turn, start + distance * way}; };
+
+  struct Step {
+    double distance, share;
+  };
+  Step near{0, overlap.coarsely(at(0), way, 1)}, before = near;  // the last two that are too deep
+  double far = std::numbers::sqrt3;
+  for (int i = 0; i < kMostSteps && near.share > kAbout * target; ++i) {
+    double distance = (near.distance + far) / 2;
+    // Overlaps grow about as the square of their depth.
+    const double fallen = std::sqrt(before.share) - std::sqrt(near.share);
+    if (fallen > 0) {
+      const double slope = fallen / (near.distance - before.distance);
+      const double guess = near.distance + (std::sqrt(near.share) - std::sqrt(target)) / slope;
+      if (guess < far) distance = guess;
+    }
+    const Step now{distance, overlap.coarsely(at(distance), way, near.share)};
+    if (now.share > target) {
+      before = near;
+      near = now;
+    } else {
+      far = distance;
+    }
+  }
+  return {at(near.distance), overlap.at(at(near.distance), way, near.share)};
+}
+
+}  // namespace
+
+OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface, const Voxels& voxels,
+                                double volume, std::size_t count) {
+  const TrueOverlap overlap(container, surface, voxels, volume);
+  const double least = overlap.knowsSurface() ? kLeastByTriangles : kLeastBySamples;
+  OverlapTrials result{std::vector<OverlapTrial>(count), overlap.knowsSurface() ? kOverlapDepths[0] : least};
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    result.trials[i] = findTrial(overlap, voxels, i, least * steady::pow(kMostShared / least, part));
+  });
+  std::erase_if(result.trials, [](const OverlapTrial& trial) { return !(trial.truth.fraction > 0); });
+  return result;
+}
+
+}  // namespace innersphere

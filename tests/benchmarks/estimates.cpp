@@ -1,0 +1,247 @@
+// Whether the errors that packings foretell hold: foretold and measured ones, by depth, for copies and for
+// pairs of different solids, in poses that the packer did not see.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <random>
+
+#include "innersphere/bounded_query.hpp"
+#include "innersphere/error.hpp"
+#include "innersphere/packer.hpp"
+#include "machine.hpp"
+#include "source.hpp"
+
+namespace {
+
+using namespace innersphere;
+using namespace innersphere::benchmarks;
+
+constexpr std::array<double, 8> kCells{1e-4, 3e-4, 0.001, 0.003, 0.01, 0.03, 0.1, 1};  // parts of the solid
+constexpr std::array<std::uint32_t, 3> kCounts{256, 1024, 4096};
+constexpr std::size_t kFewest = 30;  // poses of a cell that says anything
+
+struct Body {
+  std::string name;
+  std::shared_ptr<const CollisionModel> model;
+  double diagonal, volume;
+};
+
+/// Random rotations and directions, and what two bodies share in such poses.
+class Poses {
+ public:
+  Poses(const Body& a, const Body& b) : a_(a), b_(b), context_({Backend::cpu, 1}) {
+    query_.a = a.model.get();
+    query_.b = b.model.get();
+    query_.placement_b.scale = a.diagonal / b.diagonal;
+    whole_ = std::min(a.volume, b.volume * std::pow(query_.placement_b.scale, 3));
+  }
+
+  /// The volume of the smaller body.
+  double whole() const { return whole_; }
+
+  /// Turns B, puts a point of it on one of A, and moves it away until the true volume is a part of the
+  /// smaller body, if it is not less from the start. Returns the volume.
+  double next() {
+    std::uniform_real_distribution<double> part(std::log(1e-5), std::log(0.45));
+    const double wanted = std::exp(part(random_)) * whole_;
+    turn();
+    from_ = pointIn(a_);
+    to_ = pointIn(b_);
+    std::normal_distribution<double> normal;
+    Vec3d way{normal(random_), normal(random_), normal(random_)};
+    way = (a_.diagonal / norm(way)) * way;
+    double near = 0, far = 2.1;
+    for (int step = 0; step < 18; ++step) {
+      const double middle = (near + far) / 2;
+      (volumeAt(middle, way) > wanted ? near : far) = middle;
+    }
+    place(near, way);
+    return context_.overlap(query_, {Want::volume, Estimator::surface}).volume;
+  }
+
+  double found(std::uint32_t count, ExpectedError& expected) {
+    PairQuery query = query_;
+    query.prefix_a = query.prefix_b = count;
+    const double volume = context_.overlap(query, {Want::volume, Estimator::volume_true}).volume;
+    expected = expectedError(query, Estimator::volume_true, volume);
+    return volume;
+  }
+
+ private:
+  void turn() {
+    std::normal_distribution<double> normal;
+    double w = normal(random_), x = normal(random_), y = normal(random_), z = normal(random_);
+    const double length = std::hypot(std::hypot(w, x), std::hypot(y, z));
+    w /= length, x /= length, y /= length, z /= length;
+    query_.placement_b.rotation = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
+                                   2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+                                   2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
+  }
+
+  /// A random point in the spheres of a body: evenly spread but for what is between them.
+  Vec3d pointIn(const Body& body) {
+    const std::vector<Sphere>& spheres = body.model->packing().spheres;
+    const auto cube = [](const Sphere& s) { return std::pow(double{s.radius}, 3); };
+    std::uniform_real_distribution<double> unit;
+    std::normal_distribution<double> normal;
+    double sum = 0;
+    for (const Sphere& s : spheres) sum += cube(s);
+    double left = unit(random_) * sum;
+    std::size_t i = 0;
+    while (i + 1 < spheres.size() && left > cube(spheres[i])) left -= cube(spheres[i++]);
+    const Vec3d way{normal(random_), normal(random_), normal(random_)};
+    return Vec3d{spheres[i].x, spheres[i].y, spheres[i].z} +
+           (spheres[i].radius * std::cbrt(unit(random_)) / norm(way)) * way;
+  }
+
+  void place(double distance, const Vec3d& way) {
+    const Placement& at = query_.placement_b;
+    const Mat3d& r = at.rotation;
+    Vec3d turned{};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) turned[i] += at.scale * r[3 * i + j] * to_[j];
+    }
+    query_.placement_b.translation = from_ - turned + distance * way;
+  }
+
+  double volumeAt(double distance, const Vec3d& way) {
+    place(distance, way);
+    const double by_spheres = context_.overlap(query_, {Want::volume, Estimator::volume_true}).volume;
+    if (by_spheres > 0.02 * whole_) return by_spheres;  // deep: the surface would take long
+    return context_.overlap(query_, {Want::volume, Estimator::surface}).volume;
+  }
+
+  const Body &a_, &b_;
+  QueryContext context_;
+  PairQuery query_;
+  double whole_;
+  Vec3d from_, to_;  ///< points of A and of B that coincide at distance 0
+  std::mt19937_64 random_{12345};
+};
+
+/// What was foretold and measured in poses that are equally deep.
+struct Cell {
+  std::size_t poses = 0, beyond_bound = 0;
+  double foretold = 0, measured = 0;
+
+  void add(double error, const ExpectedError& expected) {
+    ++poses;
+    beyond_bound += error > expected.bound;
+    foretold += expected.mean;
+    measured += error;
+  }
+};
+
+/// Counts the cells that do not hold.
+struct Verdict {
+  std::size_t cells = 0, below = 0, far_above = 0, poses = 0, beyond_bound = 0;
+
+  void add(const Cell& cell) {
+    ++cells;
+    below += cell.foretold < cell.measured;
+    far_above += cell.foretold > 3 * cell.measured;
+    poses += cell.poses;
+    beyond_bound += cell.beyond_bound;
+  }
+  void print(const char* of) const {
+    std::printf("| %s | %zu | %zu (%.1f %%) | %zu | %zu | %.1f %% |\n", of, cells, below,
+                100.0 * static_cast<double>(below) / static_cast<double>(cells), far_above, poses,
+                100.0 * static_cast<double>(beyond_bound) / static_cast<double>(poses));
+  }
+};
+
+void printPair(const Body& a, const Body& b, std::size_t poses, Verdict& verdict, Verdict& of_bare) {
+  Poses all(a, b);
+  std::array<std::array<Cell, kCells.size() - 1>, kCounts.size()> table;
+  for (std::size_t i = 0; i < poses; ++i) {
+    const double truth = all.next();
+    if (!(truth > 0)) continue;
+    for (std::size_t k = 0; k < kCounts.size(); ++k) {
+      ExpectedError expected;
+      const double found = all.found(kCounts[k], expected);
+      if (found < kCells[0] * all.whole() || std::isnan(expected.mean)) continue;
+      std::size_t cell = 0;
+      while (cell + 2 < kCells.size() && found >= kCells[cell + 1] * all.whole()) ++cell;
+      table[k][cell].add(std::abs(found / truth - 1), expected);
+    }
+  }
+  const std::string name = &a == &b ? a.name : a.name + ", " + b.name;
+  for (std::size_t k = 0; k < kCounts.size(); ++k) {
+    const bool bare = !bareSurface(a.model->packing(), kCounts[k]).empty() ||
+                      !bareSurface(b.model->packing(), kCounts[k]).empty();
+    std::printf("| %s | %u%s |", name.c_str(), kCounts[k], bare ? ", bare" : "");
+    for (const Cell& cell : table[k]) {
+      if (cell.poses < kFewest) {
+        std::printf(" |");
+        continue;
+      }
+      (bare ? of_bare : verdict).add(cell);
+      const double count = static_cast<double>(cell.poses) / 100, ratio = cell.foretold / cell.measured;
+      std::printf(" %s%.3g / %.3g%s |", ratio < 1 || ratio > 3 ? "**" : "", cell.foretold / count,
+                  cell.measured / count, ratio < 1 || ratio > 3 ? "**" : "");
+    }
+    std::printf("\n");
+  }
+  std::fflush(stdout);
+}
+
+/// Packs a solid; "solid:coverage" in that order.
+std::shared_ptr<const Packing> packingOf(const std::string& source) {
+  const std::size_t colon = source.rfind(":coverage");
+  PackOptions options;
+  options.spheres = kCounts.back();
+  if (colon != std::string::npos) options.order = SphereOrder::coverage;
+  return std::make_shared<const Packing>(pack(*solidFrom(source.substr(0, colon)), options));
+}
+
+void run(const std::vector<std::string>& sources, std::size_t poses) {
+  std::vector<Body> bodies;
+  for (const std::string& source : sources) {
+    const auto packing = packingOf(source);
+    const Bounds box = boxOf(*packing);
+    bodies.push_back({plainName(source), std::make_shared<CollisionModel>(packing), norm(box.max - box.min),
+                      packing->solid.volume});
+  }
+  std::printf("| solid | spheres |");
+  for (std::size_t k = 0; k + 1 < kCells.size(); ++k)
+    std::printf(" %g-%g %% |", 100 * kCells[k], 100 * kCells[k + 1]);
+  std::printf("\n|---|---|");
+  for (std::size_t k = 0; k + 1 < kCells.size(); ++k) std::printf("---|");
+  std::printf("\n");
+  Verdict copies, pairs, bare;
+  for (const Body& body : bodies) printPair(body, body, poses, copies, bare);
+  for (std::size_t i = 0; i < bodies.size() && bodies.size() > 1; ++i)
+    printPair(bodies[i], bodies[(i + 1) % bodies.size()], poses, pairs, bare);
+  std::printf(
+      "\n| | cells | foretold below measured | more than 3 times above | poses | single errors beyond their "
+      "bound "
+      "|\n|---|---|---|---|---|---|\n");
+  copies.print("a solid and its copy");
+  if (bodies.size() > 1) pairs.print("two solids of one size");
+  if (bare.cells > 0) bare.print("either, with too few spheres by the packing's own warning");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Foretold and measured errors of overlap volumes, as Markdown tables on stdout");
+  std::vector<std::string> sources;
+  std::size_t poses = 500;
+  app.add_option("SOLID", sources, "Mesh files or names of solids; with :coverage behind it, in that order")
+      ->required();
+  app.add_option("--poses", poses, "Poses of each solid, and of each pair")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    std::printf("%s", heading("Foretold and measured errors", argc, argv).c_str());
+    std::printf(
+        "Mean |error| of the volume, %% foretold / %% measured, by the part of the smaller solid that was "
+        "found.\n\n");
+    run(sources, poses);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
