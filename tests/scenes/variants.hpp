@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "innersphere/query.hpp"
+#include "scenes/solver_choice.hpp"
 
 namespace innersphere::test {
 
@@ -18,6 +19,7 @@ struct Variant {
   double seconds = 0;       // 0: the scene's own
   double dt = 0;            // 0: the scene's own
   const char* name = "";
+  demo::SolverKind solver = demo::SolverKind::bullet;
 
   friend void PrintTo(const Variant& v, std::ostream* out) { *out << v.scene << v.name; }
 };

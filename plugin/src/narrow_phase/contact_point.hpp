@@ -26,7 +26,8 @@ struct ContactPoint {
   btVector3 normal{0, 0, 0};        ///< unit, from A to B
   btScalar depth = 0;               ///< [m], negative where the bodies do not touch yet
   std::uint64_t id = 0;             ///< of the sphere that it was found at, the same from step to step
-  Bend bend_a, bend_b;              ///< of the surfaces there, in the axes across the normal
+  Bend bend_a, bend_b;              ///< of the surfaces there, in two axes across the normal
+  btVector3 bend_x{1, 0, 0};        ///< the first one, which goes with B
   btScalar turn_a = btScalar(0.5);  ///< how much of A's turning the normal takes part in, the rest of B's
   /// How much deeper the surfaces are at the top of the hill that the point is on, by their slope and
   /// curvature [m]. 0 at a top, at a corner, and where faces are flat or fit together.

@@ -231,6 +231,7 @@ class PatchContactPoints {
     const SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
     point.point.bend_a = bends.a;
     point.point.bend_b = bends.b;
+    point.point.bend_x = axes.x;
     point.bends = !points.areFlat();
     point.slope = points.normal_b - points.normal_a;
     const Hill hill(bends.a, bends.b, point.point.depth, axes);

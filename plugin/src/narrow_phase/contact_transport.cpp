@@ -48,9 +48,7 @@ void rollOn(const btVector3& normal_a, const btVector3& normal_b, const btVector
                  bulge_b = turn_b.dot(on_b) / 2;
   point.depth = apart.dot(point.normal) + bulge_a + bulge_b;
   point.on_b += on_b + point.normal * bulge_b;
-  const Across across(point.normal);
-  point.bend_a = point.bend_a.along(across.x, across.y, axes);
-  point.bend_b = point.bend_b.along(across.x, across.y, axes);
+  point.bend_x = axes.x;
 }
 
 }  // namespace

@@ -75,7 +75,20 @@ bool ShapeProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints&
   return true;
 }
 
+Bend ShapeProbe::bendOfFacets(const OpposedPoints& points, const Across& axes) const {
+  SharpEdges b;
+  std::size_t triangle = OpposedPoints::kNone;
+  if (!other_.isMesh() || !faceOfB(points, b, triangle)) return {};
+  const btVector3 x = axes.x * b.axes, y = axes.y * b.axes;
+  const btScalar unit = (b.inside_out ? -1 : 1) / b.scale;
+  const btVector3 along_x = b.surface->normals().turn(triangle, x) * unit;
+  const btVector3 along_y = b.surface->normals().turn(triangle, y) * unit;
+  const Bend bend{along_x.dot(x), (along_x.dot(y) + along_y.dot(x)) / 2, along_y.dot(y)};
+  return bend.mean() < 0 ? bend : Bend{};
+}
+
 SurfaceProbe::Bends ShapeProbe::bends(const OpposedPoints& points, const Across& axes) const {
+  if (points.curvature_b == 0) return {bendAt(a_, points.triangle_a, axes), bendOfFacets(points, axes)};
   const btScalar x = points.straight_b.dot(axes.x), y = points.straight_b.dot(axes.y), c = points.curvature_b;
   return {bendAt(a_, points.triangle_a, axes), {c * (1 - x * x), -c * x * y, c * (1 - y * y)}};
 }

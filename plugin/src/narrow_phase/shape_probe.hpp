@@ -57,6 +57,9 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   }
   /// Finds the face of B that is nearest to a point of it. Returns false if its faces are not known.
   bool faceOfB(const OpposedPoints& points, SharpEdges& b, std::size_t& triangle) const;
+  /// Returns how the surface bends that a mesh was cut from, where it is hollow: what glides over its facets
+  /// comes to the next one in the step. Where it is convex, the next facet falls away.
+  Bend bendOfFacets(const OpposedPoints& points, const Across& axes) const;
   /// Returns true if the plane that a sphere is nearest to is still the surface of B at `place` of it.
   bool goesOn(const NearSphere& near_sphere, const btVector3& place) const;
   /// Returns the sphere nearest to a corner that knows the face under it, or null if there is none.

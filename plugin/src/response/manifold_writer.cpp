@@ -179,6 +179,12 @@ bool leavesItToTop(const ContactPatch& patch, int index, btScalar spacing) {
   return false;
 }
 
+/// How bodies bend at a point, in the axes in which a SubstepSolver is told so.
+PointBends bendsAcross(const ContactPoint& point) {
+  const Across to(point.normal), from(point.bend_x, point.normal.cross(point.bend_x));
+  return {point.bend_a.along(to.x, to.y, from), point.bend_b.along(to.x, to.y, from)};
+}
+
 /// Bullet has found the points' places on the bodies as if all of them were where kinematic ones will be.
 void takeToStart(const Placed& start, btPersistentManifold& manifold) {
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
@@ -204,7 +210,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     point.normal = patch.points[i].normal;
     point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
     point.on_b = origin + patch.points[i].on_b;
-    point.bends = {patch.points[i].bend_a, patch.points[i].bend_b};
+    point.bends = bendsAcross(patch.points[i]);
     point.aside = patch.points[i].aside;
     point.local_a = start.a.invXform(point.on_b + point.normal * point.depth);
     ++count;

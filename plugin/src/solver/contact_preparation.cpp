@@ -163,22 +163,26 @@ btVector3 ContactRows::wayAhead(const PointLanes& lanes, int lane, const Touchin
 /// not turn.
 void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, const TouchingPair& pair,
                             const SolverBodies& bodies) {
-  const PointBends bends = bendsOf(*source.point);
-  const Across told(-source.point->m_normalWorldOnB);  // out of the first body of the manifold
-  const auto bendOf = [&](const Bend& bend, const Across& axes) {
-    Bend seen = bend.along(axes.x, axes.y, told);
-    if (btFabs(seen.xy) < kAligned * btFabs(seen.xx - seen.yy)) seen.xy = 0;
-    return seen;
-  };
-  const btScalar size_a = bodies.size(pair.a), size_b = bodies.size(pair.b);
   const btVector3 normal = lanes.normal.get(lane);
+  lanes.normal_0.set(lane, normal);
+  lanes.gap_0[lane] = lanes.gap[lane];
+  lanes.pivot_a.set(lane, lanes.arm_a.get(lane));
+  lanes.pivot_b.set(lane, lanes.arm_b.get(lane));
+  const PointBends bends = bendsOf(*source.point);
   const btScalar both = btFabs(bends.a.xx) + btFabs(bends.a.yy) + btFabs(bends.b.xx) + btFabs(bends.b.yy);
+  if (both == 0) return;
+  const Across told(-source.point->m_normalWorldOnB);  // out of the first body of the manifold
   Across ahead(normal);
   ahead.x = wayAhead(lanes, lane, pair, both, bodies);
   ahead.y = normal.cross(ahead.x);
-  Bend a = bendOf(source.flipped ? bends.b : bends.a, ahead),
-       b = bendOf(source.flipped ? bends.a : bends.b, ahead);
+  const auto seenAhead = [&](const Bend& bend) {
+    Bend seen = bend.along(ahead.x, ahead.y, told);
+    if (btFabs(seen.xy) < kAligned * btFabs(seen.xx - seen.yy)) seen.xy = 0;
+    return seen;
+  };
+  Bend a = seenAhead(source.flipped ? bends.b : bends.a), b = seenAhead(source.flipped ? bends.a : bends.b);
   const Hill hill(a, b, -source.point->getDistance(), ahead);
+  const btScalar size_a = bodies.size(pair.a), size_b = bodies.size(pair.b);
   const btScalar size = size_b > 0 ? std::min(size_a, size_b) : size_a;
   btVector3 axis[2];
   for (int i = 0; i < 2; ++i)
@@ -203,8 +207,6 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
   lanes.b_22[lane] = b.yy;
   lanes.radius_a[lane] = radius_a;
   lanes.radius_b[lane] = radius_b;
-  lanes.normal_0.set(lane, normal);
-  lanes.gap_0[lane] = lanes.gap[lane];
   lanes.pivot_a.set(lane, lanes.arm_a.get(lane) + normal * radius_a);
   lanes.pivot_b.set(lane, lanes.arm_b.get(lane) - normal * radius_b);
 }

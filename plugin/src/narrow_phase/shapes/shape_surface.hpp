@@ -37,6 +37,9 @@ class ShapeSurface {
   virtual void findNearSpheres(const PlacedPacking& body, const btTransform& world,
                                std::vector<NearSphere>& near_spheres) = 0;
 
+  /// Returns true if it has flat faces, and may be hollow.
+  virtual bool isMesh() const { return false; }
+
   /// Returns true if the shape is as it was when it was asked last, and false if that cannot be told.
   virtual bool isAsBefore() { return false; }
   /// Renews the distances of near spheres for where the bodies are now; they may be further away by then.

@@ -132,6 +132,8 @@ class TriangleSurface : public ShapeSurface {
     }
   }
 
+  bool isMesh() const override { return true; }
+
   bool distanceOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
                   btScalar& distance) override {
     SharpEdges faces;
