@@ -102,7 +102,8 @@ def _summary(results: Results) -> str:
             whole = [results.held(engine, name, rate) == 1 for name in results.scenes if results.of(engine, name, rate)]
             mine = [r for r in results.rows if r["engine"] == engine and int(r["rate"]) == rate]
             cells += [f"{sum(whole)} of {len(whole)}", f"{sum(r['holds'] == 'True' for r in mine)} of {len(mine)}"]
-        runs = {(r["scene"], r["rate"]): r for r in results.rows if r["engine"] == engine}.values()
+        # The first row of each run has what is told of the run.
+        runs = {(r["scene"], r["rate"]): r for r in reversed(results.rows) if r["engine"] == engine}.values()
         done = [r for r in runs if not r["why"]]
         memory = max((float(r["memory_mb"]) for r in done), default=0)
         gained = [r for r in done if r["energy"] and float(r["energy"]) > _ENERGY]
