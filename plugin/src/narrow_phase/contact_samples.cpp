@@ -38,12 +38,13 @@ ProbedSample sampleAt(const PatchSamples& of, std::size_t i, const ContactSphere
   return sample;
 }
 
-void probeAll(const PackingProbe& probe, const PatchSamples& of, std::vector<SampleScratch::Tried>& tried) {
+void probeAll(const PackingProbe& probe, const PatchSamples& of, btScalar separation,
+              std::vector<SampleScratch::Tried>& tried) {
   tried.resize(of.count());
   const auto probeOne = [&](std::size_t i) {
     ProbedSample sample = sampleAt(of, i, probe);
     const bool found = of.again ? probe.probeAgain(of.samples.lines[of.begin + i], sample)
-                                : probe.probe(of.patch.normal, sample);
+                                : probe.probe(of.patch.normal, separation, sample);
     tried[i] = {sample, found};
   };
   // Bodies that are linked have many; other pairs are done long before them.
@@ -65,17 +66,12 @@ void probeAll(const ShapeProbe& probe, const PatchSamples& of, std::vector<Sampl
   }
 }
 
-/// Too far apart for a contact, until the samples are selected again. On flat surfaces it is of use all the
-/// same: it tells where faces end.
-bool isFar(const ProbedSample& sample, btScalar separation) {
-  return !sample.points.areFlat() && sample.points.depthAlong(sample.direction) < -separation;
-}
-
 Samples::Line lineOf(const ProbedSample& sample) {
   return {sample.direction, sample.points.triangle_a, sample.points.triangle_b};
 }
 
-/// Sorts what was tried into `probed`, and keeps the lines of those that are near.
+/// Sorts what was tried into `probed`, and keeps the lines of those that are near, until the samples are
+/// selected again. On flat surfaces those that are far are of use all the same: they tell where faces end.
 void keepProbed(const PatchSamples& of, btScalar separation, SampleScratch& scratch) {
   scratch.probed.clear();
   scratch.places.clear();
@@ -85,7 +81,7 @@ void keepProbed(const PatchSamples& of, btScalar separation, SampleScratch& scra
     if (!found) continue;
     scratch.probed.push_back(sample);
     scratch.places.push_back(of.begin + i);
-    if (of.again || !isFar(sample, separation)) of.samples.lines[of.begin + i] = lineOf(sample);
+    if (of.again || !sample.isFar(separation)) of.samples.lines[of.begin + i] = lineOf(sample);
   }
 }
 
@@ -263,13 +259,15 @@ SampleScratch::SampleScratch() {
 void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation, Samples& samples,
                        SampleScratch& scratch, std::vector<WeightedPoint>& found) {
   const PatchSamples of(samples, p);
-  probeAll(probe, of, scratch.tried);
+  probeAll(probe, of, separation, scratch.tried);
   keepProbed(of, separation, scratch);
   appendDeepestPoints(probe, separation, scratch.probed);
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, &probe);
   PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
-  for (const ProbedSample& sample : scratch.probed) points.addSample(sample, normals.at(sample));
+  for (const ProbedSample& sample : scratch.probed) {
+    if (!sample.isFarFromBend(separation)) points.addSample(sample, normals.at(sample));
+  }
   points.shareOutArea();
 }
 

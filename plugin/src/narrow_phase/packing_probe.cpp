@@ -7,7 +7,7 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-bool PackingProbe::probe(const btVector3& patch_normal, ProbedSample& sample) const {
+bool PackingProbe::probe(const btVector3& patch_normal, btScalar separation, ProbedSample& sample) const {
   OpposedPoints start;
   const auto probeAlong = [&](const btVector3& direction) {
     sample.direction = direction;
@@ -18,6 +18,7 @@ bool PackingProbe::probe(const btVector3& patch_normal, ProbedSample& sample) co
   // No line is longer than the way to the nearest point may be.
   if (!nearest(sample.index, to_nearest, start)) return false;
   bool found = probeAlong(to_nearest);
+  if (found && sample.isFarFromBend(separation)) return true;
   const bool fits = found && opposed(sample.points) && to_nearest.dot(patch_normal) > kPatchCosine;
   if (!fits) found = probeAlong(patch_normal);
   if (found) align(sample);

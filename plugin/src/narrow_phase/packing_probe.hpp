@@ -20,9 +20,10 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
       : a_(a), b_(b), contacts_(contacts), count_a_(count_a) {}
 
   /// Probes a sample for the first time: towards the nearest point of the other surface, or, where the
-  /// surfaces do not oppose each other there, in the direction of the patch. Returns false if the line met no
-  /// surfaces.
-  bool probe(const btVector3& patch_normal, ProbedSample& sample) const;
+  /// surfaces do not oppose each other there, in the direction of the patch. Where both bend, and the nearest
+  /// point is further than `separation` [m] from where the line leaves its own solid, so is all of the other
+  /// surface: no other line is drawn. Returns false if the line met no surfaces.
+  bool probe(const btVector3& patch_normal, btScalar separation, ProbedSample& sample) const;
   /// Probes a sample where it was probed before. Returns false as probe() does.
   bool probeAgain(const Samples::Line& line, ProbedSample& sample) const;
 

@@ -48,6 +48,16 @@ struct ProbedSample {
   /// How much deeper the surfaces are at the top of the hill that an ascent from here would reach, by their
   /// slope and bend [m]. 0 where that is not known: where faces are flat, fit together, or are steep.
   btScalar below_top = 0;
+
+  /// Returns true if the surfaces bend and are too far apart for a contact along the line. All that can be
+  /// near is then the top of their hill.
+  bool isFar(btScalar separation) const {
+    return !points.areFlat() && points.depthAlong(direction) < -separation;
+  }
+  /// Returns true if that holds, and neither has a corner there.
+  bool isFarFromBend(btScalar separation) const {
+    return points.curvature_a != 0 && points.curvature_b != 0 && isFar(separation);
+  }
 };
 
 /// Finds opposed points along lines through the spheres in contact. `index` is that of a contact in the list

@@ -90,7 +90,7 @@ TEST_F(Balls, AreFoundFromTheDirectionOfThePatch) {
   for (const std::size_t index : {0u, 1u}) {
     ProbedSample sample;
     sample.index = index;
-    ASSERT_TRUE(probe().probe(off, sample));
+    ASSERT_TRUE(probe().probe(off, btScalar(0.1), sample));
     EXPECT_NEAR(sample.direction.distance(direction), 0, 1e-2);
     EXPECT_NEAR(sample.points.depthAlong(sample.direction), kDepth, kTessellation);
     ProbedSample again;
@@ -99,6 +99,25 @@ TEST_F(Balls, AreFoundFromTheDirectionOfThePatch) {
     ASSERT_TRUE(probe().probeAgain(line, again));
     EXPECT_NEAR(again.points.on_a.distance(sample.points.on_a), 0, 1e-3);
     EXPECT_FALSE(probe().probeAgain({}, again));
+  }
+}
+
+TEST_F(Balls, AreNotProbedAgainWhereTheyAreFar) {
+  // Apart by 6 cm: the line to the nearest point, the only one, leads from centre to centre.
+  const PlacedPacking apart{*b, at(origin + direction * btScalar(kRadiusA + kRadiusB + 0.06)), Estimator::raw,
+                            btScalar(0.1)};
+  const PackingProbe probe(placed_a, apart, contacts, 1);
+  const btVector3 off = (direction + btVector3(2, 2, 1) / 3 * btScalar(0.36)).normalized();
+  constexpr double kFacet = 0.025;  // half the angle of a facet: the nearest point is that of a triangle
+  for (const std::size_t index : {0u, 1u}) {
+    for (const double separation : {0.05, 0.07}) {
+      ProbedSample sample;
+      sample.index = index;
+      ASSERT_TRUE(probe.probe(off, btScalar(separation), sample));
+      EXPECT_NEAR(sample.direction.distance(direction), 0, kFacet);
+      EXPECT_NEAR(sample.points.depthAlong(sample.direction), -0.06, kTessellation);
+      EXPECT_EQ(sample.isFarFromBend(btScalar(separation)), separation < 0.06);
+    }
   }
 }
 
@@ -149,7 +168,7 @@ TEST_F(CubeOnSlab, HasItsLowestCornerOverTheFace) {
   const PackingProbe probe(a, placed_slab, contacts, 1);
   const btVector3 down(0, 0, -1);
   ProbedSample sample;
-  ASSERT_TRUE(probe.probe(down, sample));
+  ASSERT_TRUE(probe.probe(down, btScalar(0.1), sample));
   std::vector<std::uint32_t> vertices;
   std::vector<EdgeContact> corners;
   probe.corners(0, sample.points, down, true, vertices, corners);
@@ -171,7 +190,7 @@ TEST_F(CubeOnSlab, HasBothEndsOfALevelEdgeOverTheFace) {
   const PackingProbe probe(a, placed_slab, contacts, 1);
   const btVector3 down(0, 0, -1);
   ProbedSample sample;
-  ASSERT_TRUE(probe.probe(down, sample));
+  ASSERT_TRUE(probe.probe(down, btScalar(0.1), sample));
   std::vector<std::uint32_t> vertices;
   std::vector<EdgeContact> corners;
   probe.corners(0, sample.points, down, true, vertices, corners);
