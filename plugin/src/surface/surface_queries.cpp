@@ -23,10 +23,20 @@ constexpr btScalar kGrazing = btScalar(0.1);
 /// Cosine, 15 degrees: a nearest point that is seen from further aside lies on an edge.
 constexpr btScalar kOver = btScalar(0.966);
 
-/// How far along a ray its parts inside of boxes begin.
+/// The same vector in every lane.
+struct VectorLanes {
+  explicit VectorLanes(const btVector3& v) {
+    for (int k = 0; k < 3; ++k) all[k] = Lanes{} + static_cast<float>(v[k]);
+  }
+  Lanes all[3];
+};
+
+/// How far along a ray its parts inside of boxes begin, and at least where it meets triangles.
 class EntersAt {
  public:
-  EntersAt(const btVector3& from, const btVector3& direction) {
+  /// `rounding`: of heights over planes [m].
+  EntersAt(const btVector3& from, const btVector3& direction, float rounding)
+      : start_(from), way_(direction), rounding_(rounding) {
     for (int k = 0; k < 3; ++k) {
       from_[k] = static_cast<float>(from[k]);
       // Large, but finite: times nothing it is nothing.
@@ -43,9 +53,64 @@ class EntersAt {
     }
     return enter <= leave ? enter : Lanes{} + kFar;
   }
+  Lanes operator()(const TriangleBvh::Leaf& leaf) const;
 
  private:
+  VectorLanes start_, way_;
+  float rounding_;
   std::array<float, 3> from_, inverse_;
+};
+
+Lanes EntersAt::operator()(const TriangleBvh::Leaf& leaf) const {
+  const Lanes* const n = leaf.faces.normal;
+  const Lanes along = n[0] * way_.all[0] + n[1] * way_.all[1] + n[2] * way_.all[2];
+  const Lanes distance = -leaf.faces.heightsOf(start_.all) / along;
+  // The flatter the line, the less is known of where it passes the plane.
+  const Lanes error = rounding_ + rounding_ / TriangleBvh::greater(along, -along);
+  Lanes at[3];
+  for (int k = 0; k < 3; ++k) at[k] = start_.all[k] + way_.all[k] * distance;
+  Lanes height = leaf.edges[0].heightsOf(at);
+  for (int k = 1; k < 3; ++k) height = TriangleBvh::lesser(height, leaf.edges[k].heightsOf(at));
+  // Not a number, of a line along a plane, is no miss.
+  const auto misses = (height + error < leaf.lowest) | (distance + error < 0);
+  const Lanes least = distance - error;
+  return misses ? Lanes{} + kFar : (least > 0 ? least : Lanes{});
+}
+
+/// Whether boxes and triangles are surely apart from a box.
+class Apart {
+ public:
+  /// `rounding`: of heights over planes [m].
+  Apart(const btVector3& min, const btVector3& max, float rounding)
+      : min_(min), max_(max), middle_((min + max) / 2), half_((max - min) / 2), rounding_(rounding) {}
+  Lanes operator()(const TriangleBvh::Boxes& boxes) const {
+    Lanes distances{};
+    for (std::size_t lane = 0; lane < TriangleBvh::kWidth; ++lane) {
+      for (int k = 0; k < 3; ++k) {
+        if (boxes.max[k][lane] < min_[k] || boxes.min[k][lane] > max_[k]) distances[lane] = kFar;
+      }
+    }
+    return distances;
+  }
+  Lanes operator()(const TriangleBvh::Leaf& leaf) const {
+    Lanes gap = beside(leaf.faces, -1);
+    for (const TriangleBvh::Planes& edges : leaf.edges) gap = TriangleBvh::greater(gap, beside(edges, -1));
+    gap = TriangleBvh::greater(gap, beside(leaf.faces, 1));
+    return gap > 0 ? Lanes{} + kFar : Lanes{};
+  }
+
+ private:
+  /// How far all of the box is in front of planes, or, on the side -1, behind them.
+  Lanes beside(const TriangleBvh::Planes& planes, float side) const {
+    Lanes reach = Lanes{} + rounding_;
+    for (int k = 0; k < 3; ++k)
+      reach += TriangleBvh::greater(planes.normal[k], -planes.normal[k]) * half_.all[k];
+    return side * planes.heightsOf(middle_.all) - reach;
+  }
+
+  const btVector3 min_, max_;
+  const VectorLanes middle_, half_;
+  const float rounding_;
 };
 
 /// What the curved surface is like where its triangle is hit.
@@ -67,12 +132,20 @@ void complete(const SmoothNormals& normals, const SmoothNormals::Crossing& cross
 /// The nearest of the triangles that it is shown to a point.
 class NearestTriangle {
  public:
-  /// Triangles further away from `point` than `max_distance` do not count.
-  NearestTriangle(const SmoothNormals& triangles, const btVector3& point, btScalar max_distance)
-      : triangles_(triangles), point_(point), best2_(max_distance * max_distance) {}
+  /// Triangles further away from `point` than `max_distance` do not count. `rounding`: of heights over planes
+  /// [m].
+  NearestTriangle(const SmoothNormals& triangles, const btVector3& point, btScalar max_distance,
+                  float rounding)
+      : triangles_(triangles),
+        point_(point),
+        lanes_(point),
+        rounding_(rounding),
+        best2_(max_distance * max_distance) {}
 
-  /// Squares of distances from the point: of boxes, and that beyond which nothing is looked for.
-  Lanes distances2(const TriangleBvh::Boxes& boxes) const;
+  /// Squares of distances from the point, at least: of boxes, of triangles, and that beyond which nothing is
+  /// looked for.
+  Lanes operator()(const TriangleBvh::Boxes& boxes) const;
+  Lanes operator()(const TriangleBvh::Leaf& leaf) const;
   btScalar farthest2() const { return best2_ * (1 + kSame); }
   /// Shows it a triangle; farthest2() thereafter.
   btScalar test(std::size_t triangle);
@@ -93,6 +166,8 @@ class NearestTriangle {
 
   const SmoothNormals& triangles_;
   const btVector3 point_;
+  const VectorLanes lanes_;
+  const float rounding_;
   btScalar best2_;
   bool found_ = false;
   btScalar height_ = 0;
@@ -102,10 +177,10 @@ class NearestTriangle {
   btVoronoiSimplexSolver solver_;
 };
 
-Lanes NearestTriangle::distances2(const TriangleBvh::Boxes& boxes) const {
+Lanes NearestTriangle::operator()(const TriangleBvh::Boxes& boxes) const {
   Lanes sum{};
   for (int k = 0; k < 3; ++k) {
-    const float at = static_cast<float>(point_[k]);
+    const Lanes at = lanes_.all[k];
     const Lanes outside = TriangleBvh::greater(boxes.min[k] - at, at - boxes.max[k]);
     const Lanes gap = TriangleBvh::greater(outside, Lanes{});
     sum += gap * gap;
@@ -113,12 +188,19 @@ Lanes NearestTriangle::distances2(const TriangleBvh::Boxes& boxes) const {
   return sum;
 }
 
+Lanes NearestTriangle::operator()(const TriangleBvh::Leaf& leaf) const {
+  const Lanes height = leaf.faces.heightsOf(lanes_.all);
+  const Lanes over = TriangleBvh::greater(TriangleBvh::greater(height, -height) - rounding_, Lanes{});
+  Lanes beyond{};
+  for (const TriangleBvh::Planes& edges : leaf.edges)
+    beyond = TriangleBvh::greater(beyond, -edges.heightsOf(lanes_.all) - rounding_);
+  return over * over + beyond * beyond;
+}
+
 btScalar NearestTriangle::test(std::size_t t) {
   const btVector3& face = triangles_.face(t);
   if (face.isZero()) return farthest2();
   const btVector3* const corners = triangles_.corners(t);
-  const btScalar over_plane = face.dot(point_ - corners[0]);
-  if (over_plane * over_plane > farthest2() * (1 + kSame)) return farthest2();
   btSubSimplexClosestResult closest;
   closest.reset();
   solver_.closestPtPointTriangle(point_, corners[0], corners[1], corners[2], closest);
@@ -170,16 +252,7 @@ SurfaceQueries::SurfaceQueries(const Surface& surface) : surface_(surface), tree
 
 void SurfaceQueries::processTriangles(btTriangleCallback* callback, const btVector3& min,
                                       const btVector3& max) const {
-  const auto apart = [&](const TriangleBvh::Boxes& boxes) {
-    Lanes distances{};
-    for (std::size_t lane = 0; lane < TriangleBvh::kWidth; ++lane) {
-      for (int k = 0; k < 3; ++k) {
-        if (boxes.max[k][lane] < min[k] || boxes.min[k][lane] > max[k]) distances[lane] = kFar;
-      }
-    }
-    return distances;
-  };
-  tree_.search(0, apart, [&](std::uint32_t t) {
+  tree_.search(0, Apart(min, max, tree_.rounding()), [&](std::uint32_t t) {
     btVector3 corners[3];
     for (int k = 0; k < 3; ++k) corners[k] = toBullet(surface_.vertices[surface_.triangles[t][k]]);
     callback->processTriangle(corners, 0, static_cast<int>(t));
@@ -193,7 +266,7 @@ bool SurfaceQueries::cast(const btVector3& from, const btVector3& direction, btS
   SmoothNormals::Crossing nearest;
   nearest.distance = length;
   bool found = false;
-  tree_.search(length, EntersAt(from, direction), [&](std::uint32_t t) {
+  tree_.search(length, EntersAt(from, direction, tree_.rounding()), [&](std::uint32_t t) {
     SmoothNormals::Crossing crossing;
     if (!normals.cross(t, from, direction, crossing) || !(crossing.distance > 0))
       return nearest.distance * (1 + kShared);
@@ -234,10 +307,8 @@ bool SurfaceQueries::sharpEdge(std::size_t triangle, const btVector3& point, con
 }
 
 bool SurfaceQueries::nearest(const btVector3& point, btScalar max_distance, Nearest& result) const {
-  NearestTriangle search(normals(), point, max_distance);
-  tree_.search(
-      search.farthest2(), [&](const TriangleBvh::Boxes& boxes) { return search.distances2(boxes); },
-      [&](std::uint32_t t) { return search.test(t); });
+  NearestTriangle search(normals(), point, max_distance, tree_.rounding());
+  tree_.search(search.farthest2(), search, [&](std::uint32_t t) { return search.test(t); });
   if (!search.found()) return false;
   result = {search.distance(), search.normal(), search.triangle(), search.beside()};
   return true;

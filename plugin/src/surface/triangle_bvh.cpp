@@ -9,10 +9,12 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-constexpr std::size_t kTrianglesPerLeaf = 2;
 /// Boxes are larger than their triangles by this fraction of the surface's size, so that rounding does not
 /// let a ray miss the flat ones that it runs along.
 constexpr float kPadding = 4e-6F;
+/// In heights of a triangle: how far beyond its edges a line is still looked at. SmoothNormals lets it meet
+/// the triangle up to half as far.
+constexpr float kBeyond = 2e-4F;
 
 /// Largest coordinate: what rounding follows.
 float sizeOf(const Surface& surface) {
@@ -29,17 +31,47 @@ float middle(const Surface& surface, std::uint32_t triangle, int axis) {
   return sum;
 }
 
+Vec3d unit(const Vec3d& v) {
+  const double length = norm(v);
+  return length > 0 ? (1 / length) * v : Vec3d{};
+}
+
+void setPlane(const Vec3d& normal, const Vec3d& place, std::size_t lane, TriangleBvh::Planes& planes) {
+  for (std::size_t k = 0; k < 3; ++k) planes.normal[k][lane] = static_cast<float>(normal[k]);
+  planes.offset[lane] = static_cast<float>(dot(normal, place));
+}
+
+void setTriangle(const Surface& surface, std::uint32_t triangle, std::size_t lane, TriangleBvh::Leaf& leaf) {
+  Vec3d corners[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& vertex = surface.vertices[surface.triangles[triangle][k]];
+    corners[k] = {vertex[0], vertex[1], vertex[2]};
+  }
+  const Vec3d face = unit(cross(corners[1] - corners[0], corners[2] - corners[0]));
+  setPlane(face, corners[0], lane, leaf.faces);
+  double highest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d inwards = unit(cross(face, corners[(k + 1) % 3] - corners[k]));
+    setPlane(inwards, corners[k], lane, leaf.edges[k]);
+    highest = std::max(highest, dot(inwards, corners[(k + 2) % 3] - corners[k]));
+  }
+  leaf.lowest[lane] = -kBeyond * static_cast<float>(highest);
+  leaf.triangles[lane] = triangle;
+}
+
 }  // namespace
 
-TriangleBvh::TriangleBvh(const Surface& surface) : triangles_(surface.triangles.size()) {
+TriangleBvh::TriangleBvh(const Surface& surface)
+    : rounding_(kPadding * sizeOf(surface)), triangles_(surface.triangles.size()) {
   std::iota(triangles_.begin(), triangles_.end(), std::uint32_t(0));
   if (triangles_.empty()) return;
   build(surface, 0, triangles_.size());
   nodes_.shrink_to_fit();
-  const float padding = kPadding * sizeOf(surface);
+  leaves_.shrink_to_fit();
+  triangles_ = {};
   for (Node& node : nodes_) {
-    for (Lanes& axis : node.boxes.min) axis -= padding;
-    for (Lanes& axis : node.boxes.max) axis += padding;
+    for (Lanes& axis : node.boxes.min) axis -= rounding_;
+    for (Lanes& axis : node.boxes.max) axis += rounding_;
   }
 }
 
@@ -52,16 +84,23 @@ std::uint32_t TriangleBvh::build(const Surface& surface, std::size_t first, std:
                                                  halve(surface, half, end), end};
   for (std::size_t k = 0; k < kWidth; ++k) {
     enclose(surface, cuts[k], cuts[k + 1], k, nodes_[index].boxes);
-    const std::size_t count = cuts[k + 1] - cuts[k];
-    const Child child = count > kTrianglesPerLeaf
-                            ? Child{build(surface, cuts[k], cuts[k + 1]), kInner}
-                            : Child{static_cast<std::uint32_t>(cuts[k]), static_cast<std::uint32_t>(count)};
-    nodes_[index].children[k] = child;
+    const bool is_leaf = cuts[k + 1] - cuts[k] <= kWidth;
+    const std::uint32_t child =
+        is_leaf ? appendLeaf(surface, cuts[k], cuts[k + 1]) : build(surface, cuts[k], cuts[k + 1]);
+    nodes_[index].children[k] = {child, is_leaf};
   }
   return static_cast<std::uint32_t>(index);
 }
 
-/// Sorts triangles [first, end) into two halves, across the axis along which they are spread most.
+std::uint32_t TriangleBvh::appendLeaf(const Surface& surface, std::size_t first, std::size_t end) {
+  Leaf& leaf = leaves_.emplace_back();
+  leaf.count = static_cast<std::uint32_t>(end - first);
+  for (std::size_t i = first; i < end; ++i) setTriangle(surface, triangles_[i], i - first, leaf);
+  return static_cast<std::uint32_t>(leaves_.size() - 1);
+}
+
+/// Sorts triangles [first, end) into two halves, across the axis along which they are spread most. The first
+/// one fills whole leaves.
 std::size_t TriangleBvh::halve(const Surface& surface, std::size_t first, std::size_t end) {
   int axis = 0;
   float widest = 0;
@@ -77,7 +116,9 @@ std::size_t TriangleBvh::halve(const Surface& surface, std::size_t first, std::s
     }
   }
   const auto at = [&](std::size_t i) { return triangles_.begin() + static_cast<std::ptrdiff_t>(i); };
-  const std::size_t half = first + (end - first) / 2;
+  const std::size_t full = ((end - first) / 2 + kWidth - 1) / kWidth * kWidth;
+  const std::size_t half = std::min(first + full, end);
+  if (half == end) return end;
   std::nth_element(at(first), at(half), at(end), [&](std::uint32_t a, std::uint32_t b) {
     const float of_a = middle(surface, a, axis), of_b = middle(surface, b, axis);
     return of_a != of_b ? of_a < of_b : a < b;

@@ -32,18 +32,38 @@ class TriangleBvh {
   struct Boxes {
     Lanes min[3], max[3];  ///< x, y, z
   };
-  /// Visits triangles, those in nearer boxes first. bound(boxes) tells in Lanes how far away the triangles in
-  /// each box are at least, visit(triangle) returns how far away further ones may be to be visited still;
-  /// `farthest` is how far away the first ones may be. Distances may have any unit.
+  /// The places x with normal . x = offset.
+  struct Planes {
+    Lanes normal[3], offset;  ///< unit
+    /// Returns how far a place is in front of each.
+    Lanes heightsOf(const Lanes (&at)[3]) const {
+      return normal[0] * at[0] + normal[1] * at[1] + normal[2] * at[2] - offset;
+    }
+  };
+  /// Holds neighbouring triangles. Normals of those without area are 0.
+  struct Leaf {
+    Planes faces;     ///< theirs
+    Planes edges[3];  ///< along them and upright on the faces; triangles are in front
+    /// A line meets no triangle where its height above an edge is less than this [m].
+    Lanes lowest;
+    std::array<std::uint32_t, kWidth> triangles;
+    std::uint32_t count;
+  };
+  /// Returns how far off heights over planes may be, for rounding [m].
+  float rounding() const { return rounding_; }
+
+  /// Visits triangles, those in nearer boxes first. bound(boxes) and bound(leaf) tell in Lanes how far away
+  /// the triangles in each box, and those of a leaf, are at least. visit(triangle) returns how far away
+  /// further ones may be to be visited still; `farthest` is how far away the first ones may be. Distances may
+  /// have any unit.
   template <typename Bound, typename Visit>
   void search(btScalar farthest, const Bound& bound, const Visit& visit) const;
 
  private:
   struct Child {
-    std::uint32_t first;  ///< of its triangles, or its node
-    std::uint32_t count;  ///< of triangles, or kInner
+    std::uint32_t index;  ///< of its leaf or its node
+    bool is_leaf;
   };
-  static constexpr std::uint32_t kInner = ~std::uint32_t(0);
   struct Node {
     Boxes boxes;
     std::array<Child, kWidth> children;
@@ -52,12 +72,15 @@ class TriangleBvh {
   static constexpr std::size_t kMaxDepth = 16;
 
   std::uint32_t build(const Surface& surface, std::size_t first, std::size_t end);
+  std::uint32_t appendLeaf(const Surface& surface, std::size_t first, std::size_t end);
   std::size_t halve(const Surface& surface, std::size_t first, std::size_t end);
   void enclose(const Surface& surface, std::size_t first, std::size_t end, std::size_t child,
                Boxes& boxes) const;
 
+  float rounding_;
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> triangles_;
+  std::vector<Leaf> leaves_;
+  std::vector<std::uint32_t> triangles_;  ///< in order; only while it is built
 };
 
 template <typename Bound, typename Visit>
@@ -68,16 +91,19 @@ void TriangleBvh::search(btScalar farthest, const Bound& bound, const Visit& vis
   };
   std::array<Entry, (kWidth - 1) * kMaxDepth + 1> stack;
   std::size_t count = 0;
-  if (!nodes_.empty()) stack[count++] = {{0, kInner}, 0};
+  if (!nodes_.empty()) stack[count++] = {{0, false}, 0};
   while (count > 0) {
     const Entry entry = stack[--count];
     if (!(entry.distance <= farthest)) continue;
-    if (entry.child.count != kInner) {
-      for (std::uint32_t i = 0; i < entry.child.count; ++i)
-        farthest = visit(triangles_[entry.child.first + i]);
+    if (entry.child.is_leaf) {
+      const Leaf& leaf = leaves_[entry.child.index];
+      const Lanes distances = bound(leaf);
+      for (std::uint32_t k = 0; k < leaf.count; ++k) {
+        if (distances[k] <= farthest) farthest = visit(leaf.triangles[k]);
+      }
       continue;
     }
-    const Node& node = nodes_[entry.child.first];
+    const Node& node = nodes_[entry.child.index];
     const Lanes distances = bound(node.boxes);
     const std::size_t bottom = count;
     for (std::size_t k = kWidth; k-- > 0;) {

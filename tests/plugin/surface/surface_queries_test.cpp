@@ -57,6 +57,102 @@ TEST(SurfaceQueries, IsTheDistanceOfABox) {
   }
 }
 
+/// A ball of radius 1 with hills and hollows, of some thousand triangles.
+Surface wavyBall() {
+  Surface surface = singleBall(1).surface;
+  for (auto& v : surface.vertices) {
+    const float size = 1 + 0.2F * std::sin(7 * v[0]) * std::sin(5 * v[1]) * std::cos(6 * v[2]);
+    for (float& x : v) x *= size;
+  }
+  return surface;
+}
+
+struct Corners {
+  Corners(const Surface& surface, std::size_t triangle) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& v = surface.vertices[surface.triangles[triangle][k]];
+      at[k] = {v[0], v[1], v[2]};
+    }
+    normal = cross(at[1] - at[0], at[2] - at[0]);
+  }
+  /// The weight of corner k at a place of the plane: it is 0 on the edge across.
+  double weight(const Vec3d& place, int k) const {
+    const Vec3d from = place - at[(k + 1) % 3], edge = at[(k + 2) % 3] - at[(k + 1) % 3];
+    return dot(cross(edge, from), normal) / dot(normal, normal);
+  }
+  double least(const Vec3d& place) const {
+    return std::min({weight(place, 0), weight(place, 1), weight(place, 2)});
+  }
+  double distance(const Vec3d& from) const {
+    const double height = dot(from - at[0], normal) / norm(normal);
+    if (least(from) > 0) return std::fabs(height);
+    double nearest = 1e9;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d edge = at[(k + 1) % 3] - at[k];
+      const double along = std::clamp(dot(from - at[k], edge) / dot(edge, edge), 0.0, 1.0);
+      nearest = std::min(nearest, norm(from - at[k] - along * edge));
+    }
+    return nearest;
+  }
+  Vec3d at[3], normal;
+};
+
+btVector3 toBullet(const Vec3d& v) {
+  return {btScalar(v.x), btScalar(v.y), btScalar(v.z)};
+}
+
+TEST(SurfaceQueries, FindsTheNearestOfAllTriangles) {
+  const Surface surface = wavyBall();
+  const SurfaceQueries tree(surface);
+  std::mt19937 rng(7);
+  std::uniform_real_distribution<float> uniform(-1.3F, 1.3F);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3d p{uniform(rng), uniform(rng), uniform(rng)};
+    double nearest = 1e9;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+      nearest = std::min(nearest, Corners(surface, t).distance(p));
+    SurfaceQueries::Nearest found;
+    ASSERT_TRUE(tree.nearest(toBullet(p), 10, found));
+    EXPECT_NEAR(std::fabs(found.distance), nearest, 1e-5);
+    EXPECT_NEAR(Corners(surface, found.triangle).distance(p), nearest, 1e-5);
+  }
+}
+
+TEST(SurfaceQueries, FindsTheFirstOfAllTrianglesOnARay) {
+  const Surface surface = wavyBall();
+  const SurfaceQueries tree(surface);
+  std::mt19937 rng(8);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  int met = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3d from{1.3 * uniform(rng), 1.3 * uniform(rng), 1.3 * uniform(rng)};
+    const btVector3 direction = toBullet({uniform(rng), uniform(rng), uniform(rng)}).normalized();
+    const Vec3d way{direction.x(), direction.y(), direction.z()};
+    constexpr double kLength = 1.5, kEdge = 1e-3;
+    double first = 1e9;
+    bool is_clear = true;  // no edge is met, and the line does not end on the surface
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const Corners corners(surface, t);
+      const double distance = dot(corners.at[0] - from, corners.normal) / dot(way, corners.normal);
+      const double inside = corners.least(from + distance * way);
+      if (inside > -kEdge && std::fabs(distance) < 2 * kLength) {
+        is_clear = is_clear && inside > kEdge && std::fabs(distance) > kEdge &&
+                   std::fabs(distance - kLength) > kEdge;
+        if (distance > 0) first = std::min(first, distance);
+      }
+    }
+    if (!is_clear) continue;
+    SurfaceQueries::Hit hit;
+    const bool found = tree.cast(toBullet(from), direction, btScalar(kLength), direction, hit);
+    ASSERT_EQ(found, first < kLength) << i;
+    if (!found) continue;
+    ++met;
+    const Corners corners(surface, hit.triangle);
+    EXPECT_NEAR(dot(corners.at[0] - from, corners.normal) / dot(way, corners.normal), first, 1e-4) << i;
+  }
+  EXPECT_GT(met, 300);
+}
+
 TEST(SurfaceQueries, LooksNoFurtherThanItsReach) {
   const Packing box = latticeBox(kSize, 1);
   const SurfaceQueries tree(box.surface);
