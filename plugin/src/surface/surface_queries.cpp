@@ -77,19 +77,40 @@ Lanes EntersAt::operator()(const TriangleBvh::Leaf& leaf) const {
   return misses ? Lanes{} + kFar : (least > 0 ? least : Lanes{});
 }
 
-/// Whether boxes are apart from one; of triangles no more is asked.
-struct Apart {
+/// Whether boxes and triangles are surely apart from a box.
+class Apart {
+ public:
+  /// `rounding`: of heights over planes [m].
+  Apart(const btVector3& min, const btVector3& max, float rounding)
+      : min_(min), max_(max), middle_((min + max) / 2), half_((max - min) / 2), rounding_(rounding) {}
   Lanes operator()(const TriangleBvh::Boxes& boxes) const {
     Lanes distances{};
     for (std::size_t lane = 0; lane < TriangleBvh::kWidth; ++lane) {
       for (int k = 0; k < 3; ++k) {
-        if (boxes.max[k][lane] < min[k] || boxes.min[k][lane] > max[k]) distances[lane] = kFar;
+        if (boxes.max[k][lane] < min_[k] || boxes.min[k][lane] > max_[k]) distances[lane] = kFar;
       }
     }
     return distances;
   }
-  Lanes operator()(const TriangleBvh::Leaf&) const { return Lanes{}; }
-  const btVector3 &min, &max;
+  Lanes operator()(const TriangleBvh::Leaf& leaf) const {
+    Lanes gap = beside(leaf.faces, -1);
+    for (const TriangleBvh::Planes& edges : leaf.edges) gap = TriangleBvh::greater(gap, beside(edges, -1));
+    gap = TriangleBvh::greater(gap, beside(leaf.faces, 1));
+    return gap > 0 ? Lanes{} + kFar : Lanes{};
+  }
+
+ private:
+  /// How far all of the box is in front of planes, or, on the side -1, behind them.
+  Lanes beside(const TriangleBvh::Planes& planes, float side) const {
+    Lanes reach = Lanes{} + rounding_;
+    for (int k = 0; k < 3; ++k)
+      reach += TriangleBvh::greater(planes.normal[k], -planes.normal[k]) * half_.all[k];
+    return side * planes.heightsOf(middle_.all) - reach;
+  }
+
+  const btVector3 min_, max_;
+  const VectorLanes middle_, half_;
+  const float rounding_;
 };
 
 /// What the curved surface is like where its triangle is hit.
@@ -231,7 +252,7 @@ SurfaceQueries::SurfaceQueries(const Surface& surface) : surface_(surface), tree
 
 void SurfaceQueries::processTriangles(btTriangleCallback* callback, const btVector3& min,
                                       const btVector3& max) const {
-  tree_.search(0, Apart{min, max}, [&](std::uint32_t t) {
+  tree_.search(0, Apart(min, max, tree_.rounding()), [&](std::uint32_t t) {
     btVector3 corners[3];
     for (int k = 0; k < 3; ++k) corners[k] = toBullet(surface_.vertices[surface_.triangles[t][k]]);
     callback->processTriangle(corners, 0, static_cast<int>(t));
