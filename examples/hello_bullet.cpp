@@ -24,7 +24,7 @@ int main(int argc, char** argv) try {
   }
   const char* file = argv[1];
 
-  // An existing Bullet program has this already; with btSequentialImpulseConstraintSolver it needs steps of 1/240 s.
+  // An existing Bullet program has this already. With btSequentialImpulseConstraintSolver, step by 1/240 s.
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;

@@ -10,6 +10,7 @@ mkdir -p "$folder"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+# shellcheck disable=SC2154,SC2086  # a list of names
 need_packages $python_packages
 environment=$here/../../build-benchmarks/solver-env
 python_environment "$environment" numpy mujoco matplotlib
