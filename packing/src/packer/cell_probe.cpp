@@ -43,7 +43,8 @@ CellSearch::Probe CellSearch::probe(const Point& x, std::size_t begin, std::size
   const double distance = std::min(wall.distance, ball.value);
   if (distance <= negligible) return {distance, direction(wall.point, x), {wall.point, 0}};
   if (!isInside(x, distance))
-    return {-distance, direction(x, wall.point), {x, distance}, std::isfinite(wall.distance), wall.point, wall.triangle};
+    return {-distance,    direction(x, wall.point), {x, distance}, std::isfinite(wall.distance), wall.point,
+            wall.triangle};
   if (distance == ball.value) return ball;
   return {distance, direction(wall.point, x), {wall.point, 0}, true, wall.point, wall.triangle};
 }

@@ -141,8 +141,7 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
     if ((low || k == 0) && prove()) return Verdict::below;
     // Then only the balls' curvature is in the way.
     if (low) {
-      const bool below =
-          (straighten(program, cuts) && prove()) || (flatten(program, half, cuts) && prove());
+      const bool below = (straighten(program, cuts) && prove()) || (flatten(program, half, cuts) && prove());
       return below ? Verdict::below : Verdict::undecided;
     }
     x = centre + program.argmax();

@@ -21,9 +21,6 @@ constexpr double kGapSamples = 16;
 // A block is the smallest cube that is looked at as a whole: 4 x 4 x 4 samples.
 constexpr int kSampleBlock = 4;
 
-// Cubes that are not smaller than this are divided among threads.
-constexpr double kShared = 1.0 / 16;
-
 using Index = std::array<std::uint32_t, 3>;
 
 // The samples are dealt into two halves, whose difference tells the sampling error.
@@ -58,7 +55,7 @@ class Sampler {
       descend({at[0] + (octant & 1) * step, at[1] + (octant >> 1 & 1) * step, at[2] + (octant >> 2) * step},
               step, inside, balls);
     };
-    if (half >= kShared) {
+    if (half >= kSharedHalf) {
       tbb::parallel_for(0u, 8u, visit);
     } else {
       for (std::uint32_t octant = 0; octant < 8; ++octant) visit(octant);

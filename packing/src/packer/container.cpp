@@ -18,8 +18,7 @@ constexpr double kFarthest = 1e8;
 
 }  // namespace
 
-Container::Container(const Solid& solid)
-    : solid_(solid), mesh_(dynamic_cast<const MeshSolid*>(&solid)) {
+Container::Container(const Solid& solid) : solid_(solid), mesh_(dynamic_cast<const MeshSolid*>(&solid)) {
   const Bounds box = solid.bounds();
   double longest = 0, farthest = 0;
   for (int k = 0; k < 3; ++k) {

@@ -59,7 +59,7 @@ class Container {
 
   const Solid& solid_;
   Vec3d origin_{};
-  Vec3d corner_{};  // of the unit cube, in the packing's frame
+  Vec3d corner_{};               // of the unit cube, in the packing's frame
   const MeshSolid* const mesh_;  // the solid, if it is a mesh
   double side_ = 1;
   double margin_ = 0;

@@ -15,8 +15,8 @@
 #include "innersphere/error.hpp"
 #include "innersphere/mesh.hpp"
 #include "packer/container.hpp"
-#include "packer/pattern_search.hpp"
 #include "packer/near_balls.hpp"
+#include "packer/pattern_search.hpp"
 #include "packer/surface_samples.hpp"
 
 namespace innersphere {

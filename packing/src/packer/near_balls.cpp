@@ -13,12 +13,9 @@ namespace innersphere {
 namespace {
 
 // Where so few balls are left, or points, dividing costs more than it saves.
-constexpr std::size_t kFew = 8;
+constexpr std::size_t kFewBalls = 8;
 
-// Cubes that are not smaller than this are divided among threads.
-constexpr double kShared = 1.0 / 16;
-
-constexpr double kRounding = 1e-12;
+constexpr double kDistanceRounding = 1e-12;
 
 /// Divides the points that lie in a cube with it, until few balls are left for each.
 class Divider {
@@ -27,7 +24,7 @@ class Divider {
       : points_(points), nearest_(nearest) {}
 
   void divide(std::span<std::uint32_t> mine, const Point& centre, double half, const NearBalls& balls) const {
-    if (mine.size() <= kFew || balls.size() <= kFew) {
+    if (mine.size() <= kFewBalls || balls.size() <= kFewBalls) {
       for (std::uint32_t i : mine) nearest_[i] = balls.nearest(points_[i]);
       return;
     }
@@ -39,7 +36,7 @@ class Divider {
           centre + half / 2 * Point(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1);
       divide(parts[octant], middle, half / 2, NearBalls(balls, middle, half / 2));
     };
-    if (half >= kShared) {
+    if (half >= kSharedHalf) {
       tbb::parallel_for(0, 8, visit);
     } else {
       for (int octant = 0; octant < 8; ++octant) visit(octant);
@@ -80,7 +77,7 @@ NearBalls::NearBalls(const NearBalls& parent, const Point& centre, double half) 
   }
   // A distance differs by no more than `reach` between the middle and any point of the cube.
   for (std::size_t i = 0; i < distances.size(); ++i) {
-    if (distances[i] <= least + 2 * reach + kRounding) near_.push_back(parent.near_[i]);
+    if (distances[i] <= least + 2 * reach + kDistanceRounding) near_.push_back(parent.near_[i]);
   }
   inside_one_ = least <= -reach;
 }
@@ -89,7 +86,7 @@ NearBalls::Nearest NearBalls::nearest(const Point& x) const {
   Nearest best{std::numeric_limits<double>::infinity(), 0};
   for (std::uint32_t i : near_) {
     const Ball& ball = balls_[i];
-    const double reach = best.distance + ball.radius + kRounding;
+    const double reach = best.distance + ball.radius + kDistanceRounding;
     const double squared = (x - ball.centre).squaredNorm();
     if (reach <= 0 || squared >= reach * reach) continue;  // most, without a root
     const double distance = std::sqrt(squared) - ball.radius;

@@ -9,6 +9,9 @@
 
 namespace innersphere {
 
+/// Cubes of which half the side is not less than this are divided among threads.
+inline constexpr double kSharedHalf = 1.0 / 16;
+
 /// Holds the balls that can be the nearest one to a point of a cube. A cube that is divided hands its balls
 /// down, so that few are left where many points are looked at, however far away they are.
 class NearBalls {

@@ -86,7 +86,8 @@ std::vector<Coverage> SurfaceSamples::coverage(std::span<const Ball> balls,
   for (std::size_t count : counts) {
     const std::vector<NearBalls::Nearest> added = nearestBalls(points_, balls.subspan(known, count - known));
     known = count;
-    for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = std::min(gaps[i], std::max(0.0, added[i].distance));
+    for (std::size_t i = 0; i < gaps.size(); ++i)
+      gaps[i] = std::min(gaps[i], std::max(0.0, added[i].distance));
     const auto size = static_cast<double>(gaps.size());
     Coverage& now = prefixes.emplace_back();
     now.count = static_cast<std::uint32_t>(count);

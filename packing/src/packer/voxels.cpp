@@ -50,7 +50,8 @@ Voxels::Voxels(const Container& container, double volume, double wanted) {
     for (std::size_t b = row * blocks_in_[0]; b < (row + 1) * blocks_in_[0]; ++b) {
       const Index first = cell(b, 0);
       Block& block = blocks_[b];
-      block.centre = origin_ + (Point(first[0], first[1], first[2]) + Point::Constant(kBlock / 2.0)) * spacing_;
+      block.centre =
+          origin_ + (Point(first[0], first[1], first[2]) + Point::Constant(kBlock / 2.0)) * spacing_;
       const double cutoff = 4 * reach_;
       block.distance = clearances.signedDistance(container, block.centre, cutoff);
       if (block.distance <= -reach_) continue;

@@ -117,7 +117,9 @@ TEST(Prism, BoundsTheDistanceFromItsTriangle) {
       // In front, nothing is nearer than the triangle itself; behind, the cube ends.
       const bool front = inwards.dot(x - corners[0]) > 0;
       EXPECT_LE(away, (front ? prism.distance(x) : behind) + 1e-9);
-      if (front) EXPECT_NEAR(prism.distance(x), away, 1e-9);
+      if (front) {
+        EXPECT_NEAR(prism.distance(x), away, 1e-9);
+      }
       EXPECT_LE(prism.distance(x), away + 1e-9);
       EXPECT_LE(prism.distance((x + y) / 2), (prism.distance(x) + prism.distance(y)) / 2 + 1e-12);
     }
