@@ -121,25 +121,6 @@ TEST_F(Balls, AreNotProbedAgainWhereTheyAreFar) {
   }
 }
 
-TEST_F(Balls, AreNotProbedAgainWhereTheyAreFar) {
-  // Apart by 6 cm: the line to the nearest point, the only one, leads from centre to centre.
-  const PlacedPacking apart{*b, at(origin + direction * btScalar(kRadiusA + kRadiusB + 0.06)), Estimator::raw,
-                            btScalar(0.1)};
-  const PackingProbe probe(placed_a, apart, contacts, 1);
-  const btVector3 off = (direction + btVector3(2, 2, 1) / 3 * btScalar(0.36)).normalized();
-  constexpr double kFacet = 0.025;  // half the angle of a facet: the nearest point is that of a triangle
-  for (const std::size_t index : {0u, 1u}) {
-    for (const double separation : {0.05, 0.07}) {
-      ProbedSample sample;
-      sample.index = index;
-      ASSERT_TRUE(probe.probe(off, btScalar(separation), sample));
-      EXPECT_NEAR(sample.direction.distance(direction), 0, kFacet);
-      EXPECT_NEAR(sample.points.depthAlong(sample.direction), -0.06, kTessellation);
-      EXPECT_EQ(sample.isFarFromBend(btScalar(separation)), separation < 0.06);
-    }
-  }
-}
-
 TEST_F(Balls, HaveIdsOfTheirSpheresAndSides) {
   EXPECT_NE(probe().id(0), probe().id(1));
   EXPECT_LT(probe().id(1), kCrossingId);
