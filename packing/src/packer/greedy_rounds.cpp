@@ -16,10 +16,9 @@ namespace {
 constexpr std::size_t kTightSpheres = 300;
 constexpr double kTightDelta = 0.01;
 
-// Unless one round would have to look at this many cells for each sphere so far, and as many spheres more: up
-// to 55 are usual, and hundreds where the solid is equally thick over a large part. There proofs with a tight
-// delta are expensive and gain nothing.
-constexpr std::size_t kTightCells = 64;
+// Unless this many cells would have to be looked at in one round: the solid is equally thick over a large
+// part, where proofs with a tight delta are expensive and gain nothing.
+constexpr std::size_t kMostTightCells = 50000;
 
 // The part of delta that is left between the radii wanted and the bound to be proven. Smaller: fewer rounds;
 // more work where the solid is equally thick everywhere.
@@ -111,8 +110,7 @@ GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop,
 
   while (!queue.empty()) {
     const std::size_t step = queue.top();
-    const bool early = placed.top.size() < kTightSpheres &&
-                       queue.countAbove(step + 1) < kTightCells * (placed.top.size() + kTightCells);
+    const bool early = placed.top.size() < kTightSpheres && queue.countAbove(step + 1) < kMostTightCells;
     const std::size_t next = step + (early ? 1 : strides);
     const float top = schedule[step], bound = schedule[next];
     const Round round{top, bound, std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_)};
