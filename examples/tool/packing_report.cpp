@@ -26,7 +26,7 @@ std::string percentages(const ByDepth& fractions) {
   std::string text;
   for (double f : fractions) {
     char cell[32];
-    std::snprintf(cell, sizeof cell, "%8.3g", 100 * f);
+    std::snprintf(cell, sizeof cell, "%9.3g", 100 * f);
     text += cell;
   }
   return text + " %";
