@@ -67,7 +67,6 @@ const std::vector<Variant>& variants() {
                                            // Where the place of contact goes over saddles in a step.
                                            {"roll", 0, 0, 1.0 / 60, "_in_substeps", kSubstep},
                                            {"half-pipe-mesh", 0, 0, 1.0 / 60, "_in_substeps", kSubstep},
-                                           {"carabiner", 0, 0, 1.0 / 60, "_in_substeps", kSubstep},
                                            {"chain-rest", 0, 0, 1.0 / 60, "_in_substeps", kSubstep}};
   return all;
 }

@@ -33,10 +33,8 @@ struct SpherePairs {
   template <typename Lanes>
   void loadLanes(const core::Setup& setup, const std::uint32_t* places_a, const std::uint32_t* places_b,
                  std::size_t k) {
-    Lanes::load(setup.a.spheres, places_a,
-                {columns[0] + k, columns[1] + k, columns[2] + k, columns[3] + k});
-    Lanes::load(setup.b.spheres, places_b,
-                {columns[4] + k, columns[5] + k, columns[6] + k, columns[7] + k});
+    Lanes::load(setup.a.spheres, places_a, {columns[0] + k, columns[1] + k, columns[2] + k, columns[3] + k});
+    Lanes::load(setup.b.spheres, places_b, {columns[4] + k, columns[5] + k, columns[6] + k, columns[7] + k});
   }
 
   Sphere a(std::size_t k) const { return {columns[0][k], columns[1][k], columns[2][k], columns[3][k]}; }

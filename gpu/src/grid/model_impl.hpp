@@ -45,7 +45,7 @@ struct CollisionModel::Impl : GridSource {
   std::map<Key, ModelGrid> grids_;
   std::optional<SurfaceTree> surface_;
   std::uint64_t version_ = newVersion();  ///< of the spheres
-  std::vector<Sphere> moved_;  ///< those of the last update; empty: those of the packing
+  std::vector<Sphere> moved_;             ///< those of the last update; empty: those of the packing
 
   /// Holds memory that is kept from update to update.
   struct Scratch {

@@ -43,8 +43,9 @@ void probeAll(const PackingProbe& probe, const PatchSamples& of, btScalar separa
   tried.resize(of.count());
   const auto probeOne = [&](std::size_t i) {
     ProbedSample sample = sampleAt(of, i, probe);
-    const bool found = of.again ? probe.probeAgain(of.patch.normal, separation, of.samples.lines[of.begin + i], sample)
-                                : probe.probe(of.patch.normal, separation, sample);
+    const bool found =
+        of.again ? probe.probeAgain(of.patch.normal, separation, of.samples.lines[of.begin + i], sample)
+                 : probe.probe(of.patch.normal, separation, sample);
     tried[i] = {sample, found};
   };
   // Bodies that are linked have many; other pairs are done long before them.

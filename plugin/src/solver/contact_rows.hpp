@@ -125,8 +125,8 @@ class ContactRows {
   INNERSPHERE_WIDE void warmStartWide(int index, std::vector<BodyState>& states);
   INNERSPHERE_WIDE void solveWide(int index, Pass pass, std::vector<BodyState>& states);
   inline static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
-  inline static void roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way, Lanes3& to_a,
-                          Lanes3& to_b);
+  inline static void roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way,
+                          Lanes3& to_a, Lanes3& to_b);
   inline void startBounces(Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) const;
   inline static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
   inline void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;

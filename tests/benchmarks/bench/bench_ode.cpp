@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <ode/ode.h>
+#include <CLI/CLI.hpp>
 
 #include "bench_scene.hpp"
 
@@ -16,9 +16,10 @@ namespace {
 
 using namespace innersphere;
 
-constexpr int kIterations = 50;   // of dWorldQuickStep, whose default is 20
+constexpr int kIterations = 50;             // of dWorldQuickStep, whose default is 20
 constexpr std::size_t kMostContacts = 512;  // of a pair; with 64 a nut leaves its thread
-// Against jitter and pops, as its manual advises: what contacts may sink in, over the smallest body's size, and how fast they part [m/s].
+// Against jitter and pops, as its manual advises: what contacts may sink in, over the smallest body's size,
+// and how fast they part [m/s].
 constexpr double kLayer = 1e-4, kParting = 0.5;
 
 // A mesh as ODE wants it: the arrays must stay.
@@ -55,7 +56,8 @@ class World {
 
   void step(double time, double dt) {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) drive(i, time, dt);
-    dSpaceCollide(space_, this, [](void* self, dGeomID a, dGeomID b) { static_cast<World*>(self)->collide(a, b); });
+    dSpaceCollide(space_, this,
+                  [](void* self, dGeomID a, dGeomID b) { static_cast<World*>(self)->collide(a, b); });
     for (const dGeomID geom : moving_) rememberPlace(geom);
     dWorldQuickStep(world_, dt);
     dJointGroupEmpty(contacts_);
@@ -104,7 +106,8 @@ class World {
   // Where a mesh was in the step before: ODE's manual asks for it.
   static void rememberPlace(dGeomID geom) {
     const dReal *p = dGeomGetPosition(geom), *r = dGeomGetRotation(geom);
-    const dReal place[16] = {r[0], r[4], r[8], 0, r[1], r[5], r[9], 0, r[2], r[6], r[10], 0, p[0], p[1], p[2], 1};
+    const dReal place[16] = {r[0], r[4], r[8],  0, r[1], r[5], r[9], 0,
+                             r[2], r[6], r[10], 0, p[0], p[1], p[2], 1};
     dGeomTriMeshSetLastTransform(geom, place);
   }
 
@@ -116,22 +119,25 @@ class World {
     for (const auto& v : read.vertices) mesh.vertices.insert(mesh.vertices.end(), v.begin(), v.end());
     for (const auto& t : read.triangles) mesh.triangles.insert(mesh.triangles.end(), t.begin(), t.end());
     mesh.data = dGeomTriMeshDataCreate();
-    dGeomTriMeshDataBuildDouble(mesh.data, mesh.vertices.data(), 3 * sizeof(double), int(mesh.vertices.size() / 3),
-                                mesh.triangles.data(), int(mesh.triangles.size()), 3 * sizeof(dTriIndex));
+    dGeomTriMeshDataBuildDouble(mesh.data, mesh.vertices.data(), 3 * sizeof(double),
+                                int(mesh.vertices.size() / 3), mesh.triangles.data(),
+                                int(mesh.triangles.size()), 3 * sizeof(dTriIndex));
     dGeomTriMeshDataPreprocess2(mesh.data, 1u << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, nullptr);
     return known = mesh.data;
   }
 
   void addBody(const bench::Body& body) {
-    const dGeomID geom = body.mesh.empty() ? dCreateBox(space_, body.box[0], body.box[1], body.box[2])
-                                           : dCreateTriMesh(space_, dataOf(body.mesh), nullptr, nullptr, nullptr);
+    const dGeomID geom = body.mesh.empty()
+                             ? dCreateBox(space_, body.box[0], body.box[1], body.box[2])
+                             : dCreateTriMesh(space_, dataOf(body.mesh), nullptr, nullptr, nullptr);
     geoms_.push_back(geom);
     if (body.mass > 0 || body.told()) {
       const dBodyID added = dBodyCreate(world_);
       dGeomSetBody(geom, added);
       if (body.mass > 0) {
         dMass mass;
-        dMassSetParameters(&mass, body.mass, 0, 0, 0, body.inertia[0], body.inertia[1], body.inertia[2], 0, 0, 0);
+        dMassSetParameters(&mass, body.mass, 0, 0, 0, body.inertia[0], body.inertia[1], body.inertia[2], 0, 0,
+                           0);
         dBodySetMass(added, &mass);
       } else {
         dBodySetKinematic(added);
@@ -186,8 +192,9 @@ int main(int count, char** arguments) {
   try {
     const bench::Scene scene = bench::readScene(file);
     World world(scene);
-    bench::record(scene, rate, out, [&](double time) { world.step(time, 1.0 / rate); },
-                  [&](std::size_t i) { return world.pose(i); });
+    bench::record(
+        scene, rate, out, [&](double time) { world.step(time, 1.0 / rate); },
+        [&](std::size_t i) { return world.pose(i); });
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_ode: %s\n", error.what());
     return 1;

@@ -38,8 +38,9 @@ std::shared_ptr<PackingShape> named(const char* name) {
   return makeShape(pack(*makeNamedSolid(name), options));
 }
 
-/// What the meshes overlap by beyond the helicoids, at most: points on the vertices, edges and faces of either, in some of
-/// the places below, are 0.3 to 0.6 mm deeper in the other. Curved normals take most of that away.
+/// What the meshes overlap by beyond the helicoids, at most: points on the vertices, edges and faces of
+/// either, in some of the places below, are 0.3 to 0.6 mm deeper in the other. Curved normals take most of
+/// that away.
 constexpr double kFacets = 6e-4;
 
 TEST(Thread, TouchesAsTheHelixSays) {
