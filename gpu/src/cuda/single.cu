@@ -215,18 +215,14 @@ void launchResidentGoal(const Batch& batch, const Mailbox& mailbox, unsigned clu
 
 void launchSingle(Goal goal, const Batch& batch, const Query& query, unsigned processors,
                   cudaStream_t stream) {
-  const auto launch = goal == Goal::touch    ? &launchGoal<Goal::touch>
-                      : goal == Goal::volume ? &launchGoal<Goal::volume>
-                                             : &launchGoal<Goal::wrench>;
-  launch(batch, query, processors, stream);
+  forGoal(goal, &launchGoal<Goal::touch>, &launchGoal<Goal::volume>, &launchGoal<Goal::wrench>)(
+      batch, query, processors, stream);
 }
 
 void launchResident(Goal goal, const Batch& batch, const Mailbox& mailbox, unsigned clusters,
                     unsigned processors, cudaStream_t stream) {
-  const auto launch = goal == Goal::touch    ? &launchResidentGoal<Goal::touch>
-                      : goal == Goal::volume ? &launchResidentGoal<Goal::volume>
-                                             : &launchResidentGoal<Goal::wrench>;
-  launch(batch, mailbox, clusters, processors, stream);
+  forGoal(goal, &launchResidentGoal<Goal::touch>, &launchResidentGoal<Goal::volume>,
+          &launchResidentGoal<Goal::wrench>)(batch, mailbox, clusters, processors, stream);
 }
 
 }  // namespace innersphere::device

@@ -150,10 +150,8 @@ void launchPreparation(const Batch& batch, Query* queries, const core::SweptPair
 
 void launchTraversal(Goal goal, const Batch& batch, unsigned most_clusters, std::size_t most_tasks,
                      unsigned processors, cudaStream_t stream) {
-  const auto launch = goal == Goal::touch    ? &launchGoal<Goal::touch>
-                      : goal == Goal::volume ? &launchGoal<Goal::volume>
-                                             : &launchGoal<Goal::wrench>;
-  launch(batch, most_clusters, most_tasks, processors, stream);
+  forGoal(goal, &launchGoal<Goal::touch>, &launchGoal<Goal::volume>, &launchGoal<Goal::wrench>)(
+      batch, most_clusters, most_tasks, processors, stream);
 }
 
 }  // namespace innersphere::device

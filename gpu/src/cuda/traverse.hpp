@@ -5,6 +5,12 @@
 
 namespace innersphere::device {
 
+/// Returns the one of three functions that is for a goal.
+template <typename Launch>
+Launch forGoal(Goal goal, Launch touch, Launch volume, Launch wrench) {
+  return goal == Goal::touch ? touch : goal == Goal::volume ? volume : wrench;
+}
+
 struct WarpMemory {
   union {
     ListTraversals traversals;  ///< while candidates are found

@@ -210,7 +210,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     point.normal = patch.points[i].normal;
     point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
     point.on_b = origin + patch.points[i].on_b;
-    point.bends = bendsAcross(patch.points[i]);
+    if (solver.substeps) point.bends = bendsAcross(patch.points[i]);
     point.aside = patch.points[i].aside;
     point.local_a = start.a.invXform(point.on_b + point.normal * point.depth);
     ++count;
