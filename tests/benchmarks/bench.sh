@@ -14,7 +14,9 @@ need_packages $build_packages $python_packages libode-dev
 environment=build-benchmarks/bench-env
 python_environment $environment nanobind typing_extensions numpy scipy trimesh shapely mapbox_earcut manifold3d matplotlib pillow
 # Peers: one that cannot be installed here is a dash on the page.
-for package in coacd mujoco pybullet dartpy python-fcl coal; do
+peers="coacd mujoco pybullet dartpy python-fcl coal"
+if command -v nvidia-smi >/dev/null; then peers+=" mujoco-warp"; fi
+for package in $peers; do
   $environment/bin/pip show --quiet $package 2>/dev/null ||
     $environment/bin/pip install --quiet --disable-pip-version-check --only-binary :all: $package >&2 || say "There is no $package here."
 done

@@ -4,7 +4,7 @@ import importlib
 
 from .base import Absent, Engine, Program
 
-_modules = ("bullet", "pybullet_packings", "pybullet_shipped", "mujoco_engine", "dart", "ode")
+_modules = ("bullet", "pybullet_packings", "pybullet_shipped", "mujoco_engine", "mujoco_warp_engine", "dart", "ode")
 
 
 def all_engines() -> dict[str, type]:

@@ -46,13 +46,19 @@ class _MuJoCo(Engine):
         meshes = "".join(f'<mesh name="{name}" file="{file}" inertia="shell"/>' for file, name in self._mesh.items())
         ground = "" if scene["ground"] is None else f'<geom type="plane" size="50 50 1" pos="0 0 {scene["ground"]}"/>'
         bodies = "".join(self._body(i, body) for i, body in enumerate(scene["bodies"]))
-        motors = "".join(f'<velocity joint="j{i}" kv="1e5" ctrlrange="-100 100" forcerange="-{b["hinge"]["torque"]} '
-                         f'{b["hinge"]["torque"]}"/>' for i, b in enumerate(scene["bodies"]) if b.get("hinge", {}).get("torque"))
+        motors = "".join(self._motor(i, body["hinge"]) for i, body in enumerate(scene["bodies"])
+                         if body.get("hinge", {}).get("torque"))
         return f"""<mujoco><compiler inertiafromgeom="false" autolimits="true"/><size memory="1G"/>
 <option timestep="{self._dt!r}" gravity="0 0 -9.81" integrator="implicitfast" cone="elliptic" impratio="10" sdf_iterations="20"
  sdf_initpoints="40"/>
 <default><geom {contact} solref="0.01 1" solimp=".95 .99 .0001"/></default>
 <asset>{meshes}</asset><worldbody>{ground}{bodies}</worldbody><actuator>{motors}</actuator></mujoco>"""
+
+    @staticmethod
+    def _motor(i: int, hinge: dict) -> str:
+        """Its gain reaches the torque's limit at standstill. A stronger one is cut off there, and rings."""
+        torque, speed = hinge["torque"], abs(hinge["speed"])
+        return f'<velocity joint="j{i}" kv="{torque / speed!r}" ctrlrange="{-speed} {speed}" forcerange="{-torque} {torque}"/>'
 
     def _body(self, i: int, body: dict) -> str:
         mass, inertia, joints, more = body["mass"], body["inertia"], "", ""
