@@ -2,8 +2,10 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "grid/model_impl.hpp"
@@ -22,6 +24,20 @@ bool isTooLarge(const Sphere& s) {
 
 [[noreturn]] void tooLarge(const std::string& what) {
   throw Error(ErrorCode::bad_argument, what + " is beyond 1e15 m; scale the packing down");
+}
+
+/// True if all can be moved spheres of a model whose radii may go from `least` to `most`. Without branches, so that
+/// the compiler takes several at once; each comparison is false for what is not a number.
+bool allUsable(const Sphere* spheres, std::size_t count, float least, float most) {
+  unsigned bad = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Sphere& s = spheres[i];
+    bad |= static_cast<unsigned>(!(std::fabs(s.x) <= kLargest)) |
+           static_cast<unsigned>(!(std::fabs(s.y) <= kLargest)) |
+           static_cast<unsigned>(!(std::fabs(s.z) <= kLargest)) |
+           static_cast<unsigned>(!(s.radius >= least)) | static_cast<unsigned>(!(s.radius <= most));
+  }
+  return bad == 0;
 }
 
 void checkMoved(const Sphere& s, std::size_t number) {
@@ -53,6 +69,21 @@ CollisionModel::Impl::Impl(std::shared_ptr<const Packing> p) : packing(std::move
       if (r > kLargest) tooLarge("a volume-true radius of prefix " + std::to_string(radii.count));
     }
   }
+  setUsualRadii();
+}
+
+/// Volume-true radii grow with the spheres. Between half and twice what they can bear nobody need look at each.
+void CollisionModel::Impl::setUsualRadii() {
+  double smallest = 1, largest = 1;  // a volume-true radius over that of its sphere
+  for (const VolumeTrueRadii& radii : packing->volume_true) {
+    for (std::size_t i = 0; i < radii.count; ++i) {
+      const double growth = double{radii.radii[i]} / packing->spheres[i].radius;
+      smallest = std::min(smallest, growth);
+      largest = std::max(largest, growth);
+    }
+  }
+  constexpr float kSmallest = std::numeric_limits<float>::min();
+  usual_radii_ = {static_cast<float>(2 * kSmallest / smallest), static_cast<float>(kLargest / 2 / largest)};
 }
 
 const ModelGrid& CollisionModel::Impl::grid(std::uint32_t prefix, Estimator estimator) {
@@ -108,6 +139,13 @@ void CollisionModel::Impl::update(const Sphere* spheres, std::size_t count) {
                                              " moved spheres for a packing of " +
                                              std::to_string(packing->spheres.size()));
   }
+  if (!allUsable(spheres, count, usual_radii_.least, usual_radii_.most)) checkEach(spheres, count);
+  moved_.assign(spheres, spheres + count);
+  version_ = newVersion();
+}
+
+/// Throws what update() throws for the first sphere that cannot be.
+void CollisionModel::Impl::checkEach(const Sphere* spheres, std::size_t count) const {
   for (std::size_t i = 0; i < count; ++i) checkMoved(spheres[i], i);
   for (const VolumeTrueRadii& radii : packing->volume_true) {
     for (std::size_t i = 0; i < radii.count; ++i) {
@@ -120,8 +158,6 @@ void CollisionModel::Impl::update(const Sphere* spheres, std::size_t count) {
       }
     }
   }
-  moved_.assign(spheres, spheres + count);
-  version_ = newVersion();
 }
 
 CollisionModel::CollisionModel(std::shared_ptr<const Packing> packing)

@@ -40,6 +40,13 @@ struct CollisionModel::Impl : GridSource {
   using Key = std::pair<std::uint32_t, const VolumeTrueRadii*>;
 
   float radiusOf(std::size_t sphere, const VolumeTrueRadii& radii) const;
+  void setUsualRadii();
+  void checkEach(const Sphere* spheres, std::size_t count) const;
+
+  struct Radii {
+    float least, most;  ///< [m]
+  };
+  Radii usual_radii_{};  ///< of moved spheres, that need no closer look
 
   std::mutex mutex_;
   std::map<Key, ModelGrid> grids_;
