@@ -128,8 +128,7 @@ Report describe(const Packing& packing) {
   addOverlapErrors(packing.overlap_errors, report);
   // Programs get these as the file has them.
   const auto file = nlohmann::ordered_json::from_cbor(encodePacking(packing));
-  for (const char* measured : {"coverage", "expected_errors"})
-    report.add(measured, "", file.at(measured), "");
+  for (const char* measured : {"coverage", "volume_errors"}) report.add(measured, "", file.at(measured), "");
   addMassWeights(packing.mass_weights, report);
   report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
   Vec3d centre = solid.centre_of_mass;

@@ -29,7 +29,7 @@ TEST(FileCorpus, EveryInputIsSurvived) {
 }
 
 TEST(FileMutation, Json) {
-  feed("expected_errors_json");
+  feed("volume_errors_json");
 }
 TEST(FileMutation, Cbor) {
   feed("measures_cbor");
