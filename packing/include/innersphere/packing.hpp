@@ -85,7 +85,8 @@ struct ExpectedError {
 /// PackOptions::overlap_errors is off. Depth is what the spheres find, not the truth, which a query does not
 /// know. For each depth those kOverlapErrorPoses count whose found volumes are nearest to it: a limit of 95 %
 /// for the mean of as many others (Student's t), and the second largest error, which one more pose exceeds
-/// with a probability of 2 / (kOverlapErrorPoses + 1), whatever the distribution.
+/// with a probability of 2 / (kOverlapErrorPoses + 1), whatever the distribution. Copies are turned at
+/// random: walls along walls and faces on faces are not among them, and have larger errors.
 struct OverlapErrors {
   /// Holds the errors by depth.
   struct Estimate {
