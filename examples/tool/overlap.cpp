@@ -272,12 +272,10 @@ Command overlapCommand() {
       "sphere "
       "pairs. Forces are per unit of "
       "pressure (gradient,\n"
-      "[m^2]) or of force density (volume, [m^3]). error and error_bound: the expected |relative error| of "
-      "the "
-      "volume, and\n"
-      "what it exceeds in 1 of 20 cases; nan where nothing overlaps or no error was measured. Everything is "
-      "in A's "
-      "coordinates.";
+      "[m^2]) or of force density (volume, [m^3]). error and error_bound: the expected |error| of the "
+      "volume,\n"
+      "relative to the larger of found and true, and what it exceeds in 1 of 20 cases; nan where nothing\n"
+      "overlaps or no error was measured. Everything is in A's coordinates.";
   command.examples = {"innersphere overlap cow.cbor cow.cbor --poses poses.csv --spheres 4000 -o overlap.csv",
                       "innersphere overlap cow.cbor cow.cbor --poses poses.csv --shard 3/8 -o part-3.csv"};
   command.run = [arguments] {

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "innersphere/packing_file.hpp"
+
 namespace innersphere::tool {
 namespace {
 
@@ -33,21 +35,6 @@ std::string percentages(const ByDepth& fractions) {
 }
 
 void addOverlapErrors(const OverlapErrors& errors, Report& report) {
-  const auto entry = [](const OverlapErrors::Estimate& estimate) {
-    return nlohmann::ordered_json{{"mean", estimate.mean}, {"bound", estimate.bound}};
-  };
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const OverlapErrors::Prefix& prefix : errors.prefixes) {
-    rows.push_back(
-        {{"count", prefix.count}, {"raw", entry(prefix.raw)}, {"volume_true", entry(prefix.volume_true)}});
-  }
-  report.add("expected_errors", "",
-             {{"depths", kOverlapDepths},
-              {"poses", errors.poses},
-              {"shallowest", errors.shallowest},
-              {"sampling_error", errors.sampling_error},
-              {"prefixes", rows}},
-             "");
   if (errors.prefixes.empty()) return;
   report.addLine("error of overlaps of", percentages(kOverlapDepths) + " of the solid");
   const std::size_t all = errors.prefixes.size();
@@ -67,17 +54,7 @@ void addOverlapErrors(const OverlapErrors& errors, Report& report) {
 }
 
 void addCoverage(const Packing& packing, double diagonal, Report& report) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const Coverage& c : packing.coverage) {
-    rows.push_back({{"count", c.count},
-                    {"mean", c.mean},
-                    {"p95", c.p95},
-                    {"max", c.max},
-                    {"farthest", c.farthest},
-                    {"uncovered", c.uncovered}});
-  }
   report.add("order", "order", packing.order == SphereOrder::coverage ? "coverage" : "radius");
-  report.add("coverage", "", rows, "");
   if (packing.coverage.empty() || !(diagonal > 0)) return;
   report.addLine("coverage by spheres",
                  "  mean gap   95 %    max, % of the diagonal; without a sphere within 1 %");
@@ -149,6 +126,9 @@ Report describe(const Packing& packing) {
   }
   report.add("volume_true", "volume-true prefixes", prefixes, prefix_text.empty() ? "none" : prefix_text);
   addOverlapErrors(packing.overlap_errors, report);
+  // Programs get these as the file has them.
+  const auto file = nlohmann::ordered_json::from_cbor(encodePacking(packing));
+  for (const char* measured : {"coverage", "volume_errors"}) report.add(measured, "", file.at(measured), "");
   addMassWeights(packing.mass_weights, report);
   report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
   Vec3d centre = solid.centre_of_mass;

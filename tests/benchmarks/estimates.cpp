@@ -11,6 +11,7 @@
 #include "innersphere/bounded_query.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/packer.hpp"
+#include "innersphere/solid.hpp"
 #include "machine.hpp"
 #include "source.hpp"
 
@@ -22,17 +23,21 @@ using namespace innersphere::benchmarks;
 constexpr std::array<double, 8> kCells{1e-4, 3e-4, 0.001, 0.003, 0.01, 0.03, 0.1, 1};  // parts of the solid
 constexpr std::array<std::uint32_t, 3> kCounts{256, 1024, 4096};
 constexpr std::size_t kFewest = 30;  // poses of a cell that says anything
+constexpr double kNestedTurn = 20;   // one over the tangent of half the angle: 6 degrees
 
 struct Body {
   std::string name;
+  std::shared_ptr<const Solid> solid;
   std::shared_ptr<const CollisionModel> model;
   double diagonal, volume;
 };
 
-/// Random rotations and directions, and what two bodies share in such poses.
+/// Random rotations and directions, and what two bodies share in such poses. `nested`: B is turned by a few
+/// degrees at most, and moved from where it lies upon A, as cups stand in each other.
 class Poses {
  public:
-  Poses(const Body& a, const Body& b) : a_(a), b_(b), context_({Backend::cpu, 1}) {
+  Poses(const Body& a, const Body& b, bool nested)
+      : a_(a), b_(b), nested_(nested), context_({Backend::cpu, 1}) {
     query_.a = a.model.get();
     query_.b = b.model.get();
     query_.placement_b.scale = a.diagonal / b.diagonal;
@@ -49,7 +54,7 @@ class Poses {
     const double wanted = std::exp(part(random_)) * whole_;
     turn();
     from_ = pointIn(a_);
-    to_ = pointIn(b_);
+    to_ = nested_ ? from_ : pointIn(b_);
     std::normal_distribution<double> normal;
     Vec3d way{normal(random_), normal(random_), normal(random_)};
     way = (a_.diagonal / norm(way)) * way;
@@ -74,6 +79,7 @@ class Poses {
   void turn() {
     std::normal_distribution<double> normal;
     double w = normal(random_), x = normal(random_), y = normal(random_), z = normal(random_);
+    if (nested_) w = kNestedTurn * std::hypot(x, y, z);
     const double length = std::hypot(std::hypot(w, x), std::hypot(y, z));
     w /= length, x /= length, y /= length, z /= length;
     query_.placement_b.rotation = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
@@ -81,20 +87,15 @@ class Poses {
                                    2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
   }
 
-  /// A random point in the spheres of a body: evenly spread but for what is between them.
+  /// A random point of a body, evenly spread.
   Vec3d pointIn(const Body& body) {
-    const std::vector<Sphere>& spheres = body.model->packing().spheres;
-    const auto cube = [](const Sphere& s) { return std::pow(double{s.radius}, 3); };
-    std::uniform_real_distribution<double> unit;
-    std::normal_distribution<double> normal;
-    double sum = 0;
-    for (const Sphere& s : spheres) sum += cube(s);
-    double left = unit(random_) * sum;
-    std::size_t i = 0;
-    while (i + 1 < spheres.size() && left > cube(spheres[i])) left -= cube(spheres[i++]);
-    const Vec3d way{normal(random_), normal(random_), normal(random_)};
-    return Vec3d{spheres[i].x, spheres[i].y, spheres[i].z} +
-           (spheres[i].radius * std::cbrt(unit(random_)) / norm(way)) * way;
+    const Bounds box = body.solid->bounds();
+    for (;;) {
+      Vec3d point{};
+      for (int k = 0; k < 3; ++k)
+        point[k] = std::uniform_real_distribution<double>(box.min[k], box.max[k])(random_);
+      if (body.solid->contains(point)) return point - body.model->packing().origin;
+    }
   }
 
   void place(double distance, const Vec3d& way) {
@@ -115,6 +116,7 @@ class Poses {
   }
 
   const Body &a_, &b_;
+  bool nested_;
   QueryContext context_;
   PairQuery query_;
   double whole_;
@@ -153,8 +155,9 @@ struct Verdict {
   }
 };
 
-void printPair(const Body& a, const Body& b, std::size_t poses, Verdict& verdict, Verdict& of_bare) {
-  Poses all(a, b);
+void printPair(const Body& a, const Body& b, bool nested, std::size_t poses, Verdict& verdict,
+               Verdict& of_bare) {
+  Poses all(a, b, nested);
   std::array<std::array<Cell, kCells.size() - 1>, kCounts.size()> table;
   for (std::size_t i = 0; i < poses; ++i) {
     const double truth = all.next();
@@ -165,7 +168,7 @@ void printPair(const Body& a, const Body& b, std::size_t poses, Verdict& verdict
       if (found < kCells[0] * all.whole() || std::isnan(expected.mean)) continue;
       std::size_t cell = 0;
       while (cell + 2 < kCells.size() && found >= kCells[cell + 1] * all.whole()) ++cell;
-      table[k][cell].add(std::abs(found / truth - 1), expected);
+      table[k][cell].add(std::abs(found - truth) / std::max(found, truth), expected);
     }
   }
   const std::string name = &a == &b ? a.name : a.name + ", " + b.name;
@@ -189,22 +192,21 @@ void printPair(const Body& a, const Body& b, std::size_t poses, Verdict& verdict
 }
 
 /// Packs a solid; "solid:coverage" in that order.
-std::shared_ptr<const Packing> packingOf(const std::string& source) {
+Body bodyOf(const std::string& source) {
   const std::size_t colon = source.rfind(":coverage");
   PackOptions options;
   options.spheres = kCounts.back();
   if (colon != std::string::npos) options.order = SphereOrder::coverage;
-  return std::make_shared<const Packing>(pack(*solidFrom(source.substr(0, colon)), options));
+  const std::shared_ptr<const Solid> solid = solidFrom(source.substr(0, colon));
+  const auto packing = std::make_shared<const Packing>(pack(*solid, options));
+  const Bounds box = boxOf(*packing);
+  return {plainName(source), solid, std::make_shared<CollisionModel>(packing), norm(box.max - box.min),
+          packing->solid.volume};
 }
 
-void run(const std::vector<std::string>& sources, std::size_t poses) {
+void run(const std::vector<std::string>& sources, bool nested, std::size_t poses) {
   std::vector<Body> bodies;
-  for (const std::string& source : sources) {
-    const auto packing = packingOf(source);
-    const Bounds box = boxOf(*packing);
-    bodies.push_back({plainName(source), std::make_shared<CollisionModel>(packing), norm(box.max - box.min),
-                      packing->solid.volume});
-  }
+  for (const std::string& source : sources) bodies.push_back(bodyOf(source));
   std::printf("| solid | spheres |");
   for (std::size_t k = 0; k + 1 < kCells.size(); ++k)
     std::printf(" %g-%g %% |", 100 * kCells[k], 100 * kCells[k + 1]);
@@ -212,15 +214,16 @@ void run(const std::vector<std::string>& sources, std::size_t poses) {
   for (std::size_t k = 0; k + 1 < kCells.size(); ++k) std::printf("---|");
   std::printf("\n");
   Verdict copies, pairs, bare;
-  for (const Body& body : bodies) printPair(body, body, poses, copies, bare);
-  for (std::size_t i = 0; i < bodies.size() && bodies.size() > 1; ++i)
-    printPair(bodies[i], bodies[(i + 1) % bodies.size()], poses, pairs, bare);
+  for (const Body& body : bodies) printPair(body, body, nested, poses, copies, bare);
+  const bool has_pairs = bodies.size() > 1 && !nested;
+  for (std::size_t i = 0; i < bodies.size() && has_pairs; ++i)
+    printPair(bodies[i], bodies[(i + 1) % bodies.size()], false, poses, pairs, bare);
   std::printf(
       "\n| | cells | foretold below measured | more than 3 times above | poses | single errors beyond their "
       "bound "
       "|\n|---|---|---|---|---|---|\n");
   copies.print("a solid and its copy");
-  if (bodies.size() > 1) pairs.print("two solids of one size");
+  if (has_pairs) pairs.print("two solids of one size");
   if (bare.cells > 0) bare.print("either, with too few spheres by the packing's own warning");
 }
 
@@ -230,16 +233,19 @@ int main(int argc, char** argv) {
   CLI::App app("Foretold and measured errors of overlap volumes, as Markdown tables on stdout");
   std::vector<std::string> sources;
   std::size_t poses = 500;
+  bool nested = false;
   app.add_option("SOLID", sources, "Mesh files or names of solids; with :coverage behind it, in that order")
       ->required();
   app.add_option("--poses", poses, "Poses of each solid, and of each pair")->capture_default_str();
+  app.add_flag("--nested", nested, "Copies that lie nearly upon each other, instead of any poses and pairs");
   CLI11_PARSE(app, argc, argv);
   try {
     std::printf("%s", heading("Foretold and measured errors", argc, argv).c_str());
     std::printf(
-        "Mean |error| of the volume, %% foretold / %% measured, by the part of the smaller solid that was "
+        "Mean |error| of the volume relative to the larger of found and true, %% foretold / %% measured, by "
+        "the part of the smaller solid that was "
         "found.\n\n");
-    run(sources, poses);
+    run(sources, nested, poses);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -1,5 +1,6 @@
 """Overlaps beside closed forms and sums over all pairs of spheres, and what bad poses do."""
 
+import json
 import threading
 import time
 
@@ -95,6 +96,27 @@ def test_slices_use_fewer_spheres(box):
     expected, _ = brute_force(box.spheres[:50], box.spheres[:120], np.eye(4), pose)
     got = Query().overlap(box[:50], box[:120], pose_b=pose, estimator="raw")
     assert got["volume"] == pytest.approx(expected, rel=1e-4)
+
+
+def test_expected_errors_are_those_of_the_file(tmp_path):
+    packing = innersphere.pack(innersphere.solid("lbracket"), spheres=300)
+    packing.save(tmp_path / "p.json")
+    kept = json.loads((tmp_path / "p.json").read_text())["volume_errors"]
+    by_count = {row["count"]: row for row in kept["prefixes"]}
+    volume = packing.volume * np.array(kept["depths"])
+    for part, count in ((packing, 300), (packing[:200], 128)):
+        for estimator in ("raw", "volume_true"):
+            got = innersphere.expected_error(part, packing, volume.reshape(3, 3), estimator=estimator)
+            for field in ("mean", "bound"):
+                worse = np.maximum(by_count[count][estimator][field], by_count[300][estimator][field])
+                np.testing.assert_allclose(got[field], worse.reshape(3, 3))
+    assert got.dtype == innersphere.expected_error_dtype
+    single = innersphere.expected_error(packing, packing, volume[5])
+    assert 0 < single["mean"] < single["bound"] < 1
+    assert np.isnan(innersphere.expected_error(packing, packing, [0, volume[0] / 2])["mean"]).all()
+    assert innersphere.expected_error(packing, packing, volume[5], estimator="surface")["bound"] == 0
+    with pytest.raises(TypeError):
+        innersphere.expected_error(packing, packing, "much")
 
 
 def test_want(box):

@@ -22,7 +22,7 @@ struct BoundedOverlap {
   Overlap overlap;             ///< The sums.
   std::uint32_t prefix_a = 0;  ///< The number of spheres of A that were used.
   std::uint32_t prefix_b = 0;  ///< The number of spheres of B that were used.
-  double error = 0;            ///< The expected |relative error| of the volume: ExpectedError::mean.
+  double error = 0;            ///< The expected error of the volume: ExpectedError::mean.
   double error_bound = 0;      ///< What it exceeds in 1 of 20 cases: ExpectedError::bound.
 };
 

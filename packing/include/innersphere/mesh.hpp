@@ -15,9 +15,10 @@ struct MeshOptions {
   /// The factor by which readMesh() multiplies all coordinates: 0.001 for a file in millimetres. It must be
   /// positive. makeSolid() uses it only to see whether coordinates came in single precision.
   double scale = 1;
-  /// Whether makeSolid() accepts a mesh that does not bound a volume. Its holes are then closed with flat
-  /// fans, and a point is inside where the winding number exceeds 1/2. Distances near a hole are to its fan,
-  /// so the fill is only as good as that guess.
+  /// Whether makeSolid() accepts a mesh that does not bound a volume. A rim around
+  /// one other in its plane, as at the end of a pipe, is then closed with a ring, any other with a flat fan.
+  /// A point is inside where the winding number exceeds 1/2. Distances near a hole are to what closes it, so
+  /// the fill is only as good as that guess.
   bool repair = false;
   /// Whether readMesh() lets assimp work in a forked child process of its own, which may take 1 GB of memory,
   /// and 4 s and a second more for each megabyte of the file: a file that makes assimp crash or hang is then

@@ -68,12 +68,15 @@ inline constexpr std::array<double, 9> kOverlapDepths{3e-5, 1e-4, 3e-4, 0.001, 0
 /// Holds a number for each of kOverlapDepths.
 using ByDepth = std::array<double, kOverlapDepths.size()>;
 
-/// Tells how far a volume that was found with spheres may be from the truth.
+/// Tells how far a volume that was found with spheres may be from the truth. The error is relative to the
+/// larger of both, |found - true| / max(found, true): from 0 to 1, where both have nothing in common.
+/// Relative to the truth it has no finite mean for thin walls, of which some poses find a thousand times too
+/// much. If the error is e, the truth lies between found * (1 - e) and found / (1 - e).
 struct ExpectedError {
-  /// The mean |relative error|: a prediction limit, which the mean of as many poses as it was measured in
+  /// The mean error: a prediction limit, which the mean of as many poses as it was measured in
   /// (kOverlapErrorPoses) exceeds in 1 of 20 cases.
   double mean = 0;
-  /// What the |relative error| of a single volume exceeds in 1 of 20 cases.
+  /// What the error of a single volume exceeds in 1 of 20 cases.
   double bound = 0;
 };
 
@@ -82,7 +85,8 @@ struct ExpectedError {
 /// PackOptions::overlap_errors is off. Depth is what the spheres find, not the truth, which a query does not
 /// know. For each depth those kOverlapErrorPoses count whose found volumes are nearest to it: a limit of 95 %
 /// for the mean of as many others (Student's t), and the second largest error, which one more pose exceeds
-/// with a probability of 2 / (kOverlapErrorPoses + 1), whatever the distribution.
+/// with a probability of 2 / (kOverlapErrorPoses + 1), whatever the distribution. Copies are turned at
+/// random: walls along walls and faces on faces are not among them, and have larger errors.
 struct OverlapErrors {
   /// Holds the errors by depth.
   struct Estimate {

@@ -151,7 +151,7 @@ OverlapErrors::Estimate estimateOf(const Entry& entry) {
 
 OverlapErrors overlapErrorsOf(const Entry& entry) {
   if (entry["depths"].numbers<kOverlapDepths.size()>() != kOverlapDepths) {
-    damaged("'expected_errors.depths' are not the ones that this version knows");
+    damaged("'volume_errors.depths' are not the ones that this version knows");
   }
   OverlapErrors errors;
   errors.poses = entry["poses"].index();
@@ -192,13 +192,13 @@ Packing packingOf(const json& value) {
   if (document.has("origin")) packing.origin = document["origin"].vector();
   if (document.has("order")) packing.order = orderOf(document["order"]);
   if (document.has("coverage")) packing.coverage = coverageOf(document["coverage"]);
-  if (document.has("expected_errors")) packing.overlap_errors = overlapErrorsOf(document["expected_errors"]);
+  if (document.has("volume_errors")) packing.overlap_errors = overlapErrorsOf(document["volume_errors"]);
   if (document.has("mass_weights")) packing.mass_weights = document["mass_weights"].floats(1);
   if (document.has("warnings")) {
     for (const Entry& warning : document["warnings"].items()) packing.warnings.push_back(warning.text());
   }
-  // Means of four bins, 2 to 4 times too small for shallow overlaps.
-  if (document.has("overlap_errors")) {
+  // Means of four bins, 2 to 4 times too small for shallow overlaps; and errors relative to the truth.
+  if (document.has("overlap_errors") || document.has("expected_errors")) {
     packing.warnings.push_back(
         "the file's estimates of errors are of an older kind and are left out; pack the solid again to have "
         "them");

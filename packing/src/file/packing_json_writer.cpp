@@ -116,7 +116,7 @@ Entries entriesOf(const Packing& packing, Encoding encoding) {
       {"quality",
        {{"density", q.density}, {"gap_mean", q.gap_mean}, {"gap_p95", q.gap_p95}, {"gap_max", q.gap_max}}},
       {"coverage", coverageEntry(packing.coverage)},
-      {"expected_errors", overlapErrorsEntry(packing.overlap_errors)},
+      {"volume_errors", overlapErrorsEntry(packing.overlap_errors)},
       {"warnings", packing.warnings},
       {"solid", {{"volume", m.volume}, {"centre_of_mass", m.centre_of_mass}, {"inertia", m.inertia}}},
       {"origin", packing.origin},

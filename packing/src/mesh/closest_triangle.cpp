@@ -46,7 +46,7 @@ bool visitTriangle(RTCPointQueryFunctionArguments* args) {
 
 }  // namespace
 
-ClosestTriangle::ClosestTriangle(const Mesh& mesh) : device_(rtcNewDevice(nullptr)) {
+ClosestTriangle::ClosestTriangle(const Mesh& mesh, const char* embree) : device_(rtcNewDevice(embree)) {
   Bounds box = emptyBounds();
   triangles_.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {

@@ -17,8 +17,9 @@ namespace innersphere {
 /// index wins a tie).
 class ClosestTriangle {
  public:
-  /// Builds the tree. Throws std::runtime_error if Embree cannot be started or has no memory for it.
-  explicit ClosestTriangle(const Mesh& mesh);
+  /// Builds the tree. `embree` is Embree's own configuration: a test names instructions with it that it may
+  /// use. Throws std::runtime_error if Embree cannot be started or has no memory for it.
+  explicit ClosestTriangle(const Mesh& mesh, const char* embree = nullptr);
 
   struct Nearest : ClosestPoint {
     const Triangle* triangle = nullptr;  ///< that the point lies on

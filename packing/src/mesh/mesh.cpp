@@ -4,6 +4,7 @@
 #include "innersphere/error.hpp"
 #include "mesh/mesh_clean.hpp"
 #include "mesh/mesh_cuts.hpp"
+#include "mesh/mesh_holes.hpp"
 #include "mesh/mesh_report.hpp"
 #include "mesh/mesh_shells.hpp"
 #include "mesh/mesh_solid.hpp"
@@ -42,6 +43,9 @@ void mendOpenEdges(Mesh& mesh, Topology& topology, MeshReport& report) {
   Mesh without_flat = mesh;
   const std::size_t flat = dropFlat(without_flat);
   keepIfBetter(std::move(without_flat), counted(flat, "triangle") + " without area removed");
+  Mesh split = mesh;
+  const std::size_t edges = splitAtVertices(split, topology, tolerance);
+  keepIfBetter(std::move(split), counted(edges, "edge") + " split at vertices that lie on them");
 }
 
 // A triangle that is there twice counts twice. Two with the same corners that face away from each other count
@@ -61,25 +65,6 @@ void dropDuplicates(Mesh& mesh, MeshReport& report) {
   report.duplicates += twins;
   report.notes.push_back("every triangle had a twin that faces the other way: " + counted(twins, "twin") +
                          " removed");
-}
-
-// Closes each loop of unbalanced edges with a fan around its middle, so that no sphere bulges far through a
-// hole and the winding number is an integer everywhere.
-std::size_t closeLoops(Mesh& mesh, const Topology& topology) {
-  std::vector<Vec3d> sum(topology.loops);
-  std::vector<double> count(topology.loops);
-  for (std::size_t i = 0; i < topology.unbalanced.size(); ++i) {
-    const std::uint32_t loop = topology.loop[i];
-    sum[loop] = sum[loop] + mesh.vertices[topology.unbalanced[i].from];
-    count[loop] += 1;
-  }
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (std::size_t i = 0; i < topology.loops; ++i) mesh.vertices.push_back((1 / count[i]) * sum[i]);
-  for (std::size_t i = 0; i < topology.unbalanced.size(); ++i) {
-    const HalfEdge& e = topology.unbalanced[i];
-    mesh.triangles.push_back({e.to, e.from, first + topology.loop[i]});
-  }
-  return topology.unbalanced.size();
 }
 
 void noteShells(const ShellsReport& shells, MeshReport& report) {

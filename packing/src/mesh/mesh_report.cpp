@@ -81,7 +81,7 @@ void refuse(const MeshReport& report, const std::string& name) {
   }
   throw Error(ErrorCode::not_a_solid, name + " does not bound a volume: " + why +
                                           "; close it in a mesh editor, or ask for repair (--repair): "
-                                          "holes are then closed with flat fans, inside is where the winding "
+                                          "holes are then closed flatly, inside is where the winding "
                                           "number exceeds 1/2, and near a hole the fill is a guess");
 }
 

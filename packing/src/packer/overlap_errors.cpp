@@ -74,7 +74,7 @@ class Prefix {
 /// What was found in one pose.
 struct Finding {
   double depth;  ///< found with spheres, or true
-  double error;  ///< relative to the truth
+  double error;  ///< as in ExpectedError, or of a true depth relative to it
 };
 
 /// Calls f(number of a depth, the findings nearest to it) for each of kOverlapDepths.
@@ -109,7 +109,8 @@ OverlapErrors::Estimate estimateFrom(const std::vector<Finding>& findings) {
     }
     const double mean = sum / count;
     const double variance = std::max(0.0, squares - count * mean * mean) / (count - 1);
-    estimate.mean[depth] = mean + kStudent * std::sqrt(2 * variance / count);  // the others' scatter, too
+    const double margin = kStudent * std::sqrt(2 * variance / count);  // the others' scatter, too
+    estimate.mean[depth] = std::min(mean + margin, 1.0);
     estimate.bound[depth] = largest[0];
   });
   return estimate;
@@ -142,7 +143,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
     const auto estimate = [&](double Prefix::Sums::*sum) {
       for (std::size_t i = 0; i < trials.size(); ++i) {
         const double found = sums[i].*sum / volume, exact = trials[i].truth.fraction;
-        findings[i] = {found, std::abs(found / exact - 1)};
+        findings[i] = {found, std::abs(found - exact) / std::max(found, exact)};
       }
       return estimateFrom(findings);
     };

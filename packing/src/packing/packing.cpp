@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/bounds.hpp"
+#include "common/steady_math.hpp"
 #include "innersphere/error.hpp"
 
 namespace innersphere {
@@ -22,9 +23,9 @@ ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double frac
   std::size_t next = 1;
   while (next + 1 < kOverlapDepths.size() && fraction > kOverlapDepths[next]) ++next;
   const double low = kOverlapDepths[next - 1], high = kOverlapDepths[next];
-  const double part = std::clamp(std::log(fraction / low) / std::log(high / low), 0.0, 1.0);
+  const double part = std::clamp(steady::log2(fraction / low) / steady::log2(high / low), 0.0, 1.0);
   const auto at = [&](const ByDepth& errors) {
-    return std::pow(errors[next - 1], 1 - part) * std::pow(errors[next], part);
+    return steady::pow(errors[next - 1], 1 - part) * steady::pow(errors[next], part);
   };
   return {at(estimate.mean), at(estimate.bound)};
 }

@@ -50,7 +50,7 @@ def pack(
     delta: each sphere has at least 1/(1+delta) of the largest possible radius, 0.001 to 1. Less is denser and slower.
     overlap_errors: whether to measure how far volumes of overlaps are off, which takes more than half of the time.
     threads: 0 are all cores. The result does not depend on it.
-    repair: whether a mesh with holes is packed all the same. They are closed with flat fans.
+    repair: whether a mesh with holes is packed all the same. They are closed with flat fans, the ends of pipes with rings.
     scale: factor for all coordinates: 0.001 for millimetres.
     name: of the solid, for messages and provenance; None: the path, or "mesh".
     cache: folder in which packings are kept, so that the same mesh with the same options is packed once; None: none.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "innersphere/bounded_query.hpp"
 #include "innersphere/query.hpp"
 #include "poses.hpp"
 #include "structured.hpp"
@@ -34,6 +35,7 @@ struct Types {
   PyObject* overlap = nullptr;
   PyObject* pair = nullptr;
   PyObject* contact = nullptr;
+  PyObject* error = nullptr;
 };
 Types types;
 
@@ -261,6 +263,25 @@ class Query {
   std::vector<PairQuery> queries_;
 };
 
+nb::object expectedErrors(const SharedPacking& a, const SharedPacking& b, nb::handle volume,
+                          const std::string& estimator) {
+  const nb::object given = nb::module_::import_("innersphere._arrays").attr("as_float64")(volume, "volume");
+  const nb::object row = given.attr("ravel")();
+  const auto volumes = nb::cast<nb::ndarray<const double, nb::ndim<1>, nb::c_contig>>(row);
+  PairQuery query;
+  query.a = a.model.get();
+  query.b = b.model.get();
+  query.prefix_a = a.count;
+  query.prefix_b = b.count;
+  const Estimator by = parseWord("estimator", estimator, kEstimators);
+  std::vector<ExpectedError> errors;
+  for (std::size_t i = 0; i < volumes.size(); ++i)
+    errors.push_back(expectedError(query, by, volumes.data()[i]));
+  return structuredArray(std::move(errors), types.error)
+      .attr("reshape")(given.attr("shape"))
+      .attr("__getitem__")(nb::tuple());
+}
+
 nb::object overlapType() {
   return structuredType(sizeof(Overlap), {{"volume", "<f8", offsetIn(&Overlap::volume)},
                                           {"centroid", "(3,)<f8", offsetIn(&Overlap::centroid)},
@@ -286,7 +307,11 @@ void bindOverlaps(nb::module_& module) {
                                              {"centroid", "(3,)<f4", offsetof(SphereContact, centroid)},
                                              {"area", "(3,)<f4", offsetof(SphereContact, area)}});
   module.attr("sphere_contact_dtype") = contact;
-  types = {overlap.release().ptr(), pair.release().ptr(), contact.release().ptr()};
+  nb::object error = structuredType(
+      sizeof(ExpectedError),
+      {{"mean", "<f8", offsetof(ExpectedError, mean)}, {"bound", "<f8", offsetof(ExpectedError, bound)}});
+  module.attr("expected_error_dtype") = error;
+  types = {overlap.release().ptr(), pair.release().ptr(), contact.release().ptr(), error.release().ptr()};
 
   nb::class_<Query>(module, "Query",
                     R"(Finds the volume that two packings share, and the force that drives them apart.
@@ -385,6 +410,21 @@ area        sum of the areas of their rims, along the lines from A's centres to 
       .def_prop_ro("last_backend", &Query::lastBackend,
                    nb::sig("def last_backend(self) -> typing.Literal['cpu', 'cuda']"),
                    "Where the last query ran: cpu or cuda; cpu before the first.");
+  module.def("expected_error", &expectedErrors, "a"_a, "b"_a, "volume"_a, "estimator"_a = "volume_true",
+             nb::sig("def expected_error(a: Packing, b: Packing, volume: numpy.typing.ArrayLike, estimator: "
+                     "typing.Literal['volume_true', 'raw', 'surface'] = 'volume_true') -> typing.Any"),
+             R"(How far off volumes are to be expected that Query.overlap() found for two packings.
+
+volume: one or an array [m^3]: shared["volume"].
+estimator: with which they were found.
+
+Returns two fields of the same shape, parts of the larger of the found and the true volume, from 0 to 1:
+
+mean   expected |error|
+bound  what |error| exceeds in 1 of 20 cases: else the truth lies between volume (1 - bound) and volume / (1 - bound)
+
+Of A and B the worse one counts, as each was measured with copies of itself when it was packed. nan where nothing
+overlaps or nothing so shallow was measured, and for packings without overlap_errors; 0 with "surface".)");
   module.def("cuda_device_count", &cudaDeviceCount, "The number of CUDA devices that answer.");
   module.def("cuda_available", &cudaAvailable, "Whether CUDA is built in and a device answers.");
 }

@@ -391,7 +391,8 @@ largest_missing_radius: no larger sphere fits between those that are there [m].)
       .def_prop_ro(
           "overlap_errors", &overlapErrorsOf,
           nb::sig("def overlap_errors(self) -> tuple[tuple[int, list[float], list[float]], ...]"),
-          R"(How far off volumes of overlaps are: the mean |relative error|, measured when it was packed.
+          R"(How far off volumes of overlaps are: the mean |error|, relative to the larger of the found and the true volume, measured
+when it was packed. expected_error() looks them up, with bounds.
 
 A row for each number of spheres: that number, the errors with estimator="raw", and those with "volume_true". Nine errors
 each, for overlaps of 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10 and 30 % of the solid. Empty with pack(overlap_errors=False).)")

@@ -157,7 +157,7 @@ TEST(FilePacking, EmptySurfaceAndPrefixesAreFine) {
 TEST(FilePacking, FilesWithoutTheLaterEntriesAreFine) {
   Packing packing = somePacking(3);
   nlohmann::json document = nlohmann::json::parse(toJson(packing));
-  for (const char* key : {"origin", "order", "coverage", "expected_errors", "mass_weights", "warnings"}) {
+  for (const char* key : {"origin", "order", "coverage", "volume_errors", "mass_weights", "warnings"}) {
     EXPECT_EQ(document.erase(key), 1u);
   }
   document["version"] = 1;
@@ -169,17 +169,19 @@ TEST(FilePacking, FilesWithoutTheLaterEntriesAreFine) {
   expectSame(fromJson(document.dump()), packing);
 }
 
-// Their estimates of errors were means of four bins: they are not taken for what is written today.
+// Their estimates of errors were means of four bins, then relative to the truth: they are not taken for what
+// is written today.
 TEST(FilePacking, OldEstimatesAreLeftOutWithAWord) {
   Packing packing = somePacking(3);
-  nlohmann::json document = nlohmann::json::parse(toJson(packing));
-  document.erase("expected_errors");
-  document["overlap_errors"] = {{"bins", {0.0, 0.01, 0.05, 0.15, 1.0}},
-                                {"prefixes", nlohmann::json::array()}};
-  const Packing read = fromJson(document.dump());
-  EXPECT_TRUE(read.overlap_errors.prefixes.empty());
-  ASSERT_EQ(read.warnings.size(), packing.warnings.size() + 1);
-  EXPECT_NE(read.warnings.back().find("pack the solid again"), std::string::npos);
+  for (const char* key : {"overlap_errors", "expected_errors"}) {
+    nlohmann::json document = nlohmann::json::parse(toJson(packing));
+    document[key] = document["volume_errors"];
+    document.erase("volume_errors");
+    const Packing read = fromJson(document.dump());
+    EXPECT_TRUE(read.overlap_errors.prefixes.empty());
+    ASSERT_EQ(read.warnings.size(), packing.warnings.size() + 1);
+    EXPECT_NE(read.warnings.back().find("pack the solid again"), std::string::npos);
+  }
 }
 
 TEST(FilePacking, BadMeasuresAreRefused) {
@@ -202,15 +204,15 @@ TEST(FilePacking, BadMeasuresAreRefused) {
   refused("/coverage", 1);
   refused("/coverage/0/count", -1);
   refused("/coverage/0/farthest", {1, 2});
-  refused("/expected_errors", 1);
-  refused("/expected_errors/depths", {0.0, 0.1, 0.2, 0.3, 1.0});
-  refused("/expected_errors/poses", -4);
-  refused("/expected_errors/shallowest", "deep");
-  refused("/expected_errors/sampling_error", {0.1, 0.1, 0.1, nullptr});
-  refused("/expected_errors/prefixes/0/count", 1.5);
-  refused("/expected_errors/prefixes/0/raw", {0.1});
-  refused("/expected_errors/prefixes/0/raw/mean", {0.1});
-  refused("/expected_errors/prefixes/0/raw/bound/8", nullptr);
+  refused("/volume_errors", 1);
+  refused("/volume_errors/depths", {0.0, 0.1, 0.2, 0.3, 1.0});
+  refused("/volume_errors/poses", -4);
+  refused("/volume_errors/shallowest", "deep");
+  refused("/volume_errors/sampling_error", {0.1, 0.1, 0.1, nullptr});
+  refused("/volume_errors/prefixes/0/count", 1.5);
+  refused("/volume_errors/prefixes/0/raw", {0.1});
+  refused("/volume_errors/prefixes/0/raw/mean", {0.1});
+  refused("/volume_errors/prefixes/0/raw/bound/8", nullptr);
 }
 
 TEST(FilePacking, JsonIsReadableByPeople) {

@@ -61,6 +61,58 @@ TEST(MeshJudge, RepairClosesTheHole) {
   EXPECT_NEAR(solid->closestPoint({0.3, 0.2, 0.9}).distance, 0.1, 1e-15);
 }
 
+// The ends of a pipe are rings, not one lid over another.
+TEST(MeshJudge, RepairLeavesThePipeOpen) {
+  constexpr int kOuter = 12, kInner = 7;
+  Mesh mesh;
+  const auto wall = [&](int n, double radius, bool outwards) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * i / n;
+      for (double z : {0.0, 3.0})
+        mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+    }
+    for (int i = 0; i < n; ++i) {
+      const std::uint32_t a = first + 2 * i, b = first + 2 * ((i + 1) % n);
+      for (std::array<std::uint32_t, 3> t : {std::array{a, b, b + 1}, std::array{a, b + 1, a + 1}}) {
+        if (!outwards) std::swap(t[0], t[1]);
+        mesh.triangles.push_back(t);
+      }
+    }
+    return 0.5 * n * radius * radius * std::sin(2 * std::numbers::pi / n);
+  };
+  const double ring = wall(kOuter, 1, true) - wall(kInner, 0.5, false);
+  expectRefused(mesh, "38 open edges in 4 loops");
+  MeshReport report;
+  const auto solid = repaired(mesh, &report);
+  EXPECT_NE(joined(report).find("4 holes closed with 38 triangles"), std::string::npos) << joined(report);
+  EXPECT_NEAR(solid->massProperties().volume, 3 * ring, 1e-12);
+  EXPECT_NEAR(solid->closestPoint({0, 0, 2.99}).distance, 0.5 * std::cos(std::numbers::pi / kInner), 1e-12);
+  EXPECT_NEAR(solid->closestPoint({0, 0.75, 2.9}).distance, 0.1, 1e-12);
+  EXPECT_TRUE(solid->contains({0, 0.75, 2.9}));
+  EXPECT_FALSE(solid->contains({0, 0, 2.9}));
+}
+
+// Parts of a mesh that were refined for themselves: one has vertices on the edges of the other.
+TEST(MeshJudge, AVertexOnAnEdgeIsNoHole) {
+  Mesh mesh = boxMesh({-1, -1, -1}, {1, 1, 1});
+  const auto vertex = [&](std::uint32_t a, std::uint32_t b, double part) {
+    mesh.vertices.push_back(mesh.vertices[a] + part * (mesh.vertices[b] - mesh.vertices[a]));
+    return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  };
+  for (Vec3d& v : mesh.vertices) v = {0.6 * v[0] - 0.8 * v[1], 0.8 * v[0] + 0.6 * v[1], v[2]};
+  // Two neighbours of triangle {3, 7, 5}.
+  std::erase(mesh.triangles, std::array<std::uint32_t, 3>{5, 7, 6});
+  std::erase(mesh.triangles, std::array<std::uint32_t, 3>{1, 3, 5});
+  const std::uint32_t p = vertex(5, 7, 1.0 / 3), q = vertex(3, 5, 0.1), r = vertex(3, 5, 1 / 1.1);
+  mesh.triangles.insert(mesh.triangles.end(), {{5, p, 6}, {p, 7, 6}, {1, 3, q}, {1, q, r}, {1, r, 5}});
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "thing", {}, &report);
+  EXPECT_NE(joined(report).find("2 edges split"), std::string::npos) << joined(report);
+  EXPECT_NEAR(solid->massProperties().volume, 8, 1e-12);
+  EXPECT_EQ(solid->surface().triangles.size(), 12u + 3 + 3);
+}
+
 // Three boxes that share no vertex and cut each other: after repair a point counts once however often it is
 // enclosed.
 TEST(MeshJudge, RepairCountsOverlapsOnce) {

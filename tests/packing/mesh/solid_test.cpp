@@ -62,8 +62,12 @@ TEST(MeshTriangle, DistanceMatchesLongDoubleAlsoForNeedles) {
   }
 }
 
+// With all instructions of this processor and with those that each one has.
+class MeshTreeWithInstructions : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(MeshTree, MeshTreeWithInstructions, testing::Values("", "isa=sse2"));
+
 // Far from the origin, tiny, and far-away queries: Embree's floats must never decide.
-TEST(MeshTree, EqualsBruteForceBitForBit) {
+TEST_P(MeshTreeWithInstructions, EqualsBruteForceBitForBit) {
   std::mt19937 random(2);
   for (const double scale : {1.0, 1e-3, 1e5}) {
     for (const double shift : {0.0, 1000.0}) {
@@ -72,7 +76,7 @@ TEST(MeshTree, EqualsBruteForceBitForBit) {
       for (Vec3d& v : mesh.vertices) {
         for (double& x : v) x = scale * (x + shift);
       }
-      const ClosestTriangle tree(mesh);
+      const ClosestTriangle tree(mesh, GetParam());
       std::vector<Triangle> triangles;
       for (const auto& t : mesh.triangles) {
         triangles.emplace_back(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);

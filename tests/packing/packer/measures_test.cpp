@@ -153,33 +153,43 @@ TEST(PackerMeasures, SampledOverlapOfBallsIsALens) {
   }
 }
 
-// One sphere stands for a ball, with the right radius and with one that is too small: both errors are known.
-TEST(PackerMeasures, OverlapErrorsOfABall) {
+// One sphere stands for a ball, with the right radius and with a wrong one: both errors are known.
+class OverlapErrorsOfABall : public testing::TestWithParam<double> {};
+
+TEST_P(OverlapErrorsOfABall, AreThoseOfItsSphere) {
   const TestBall solid;
   const Container container(solid);
-  const double unit = 1 / container.side(), small = 0.9;
-  const std::vector<Ball> balls{{container.fromWorld({0, 0, 0}), small * unit}};
-  const OverlapErrors errors = findOverlapErrors(container, {}, balls, {{1, {1.0f}, 0}},
-                                                 static_cast<double>(kBall) * std::pow(unit, 3));
+  const double unit = 1 / container.side(), wrong = GetParam();
+  const std::vector<Ball> balls{{container.fromWorld({0, 0, 0}), wrong * unit}};
+  // A volume-true radius is never the smaller one.
+  const OverlapErrors errors =
+      findOverlapErrors(container, {}, balls, {{1, {static_cast<float>(std::max(1.0, wrong))}, 0}},
+                        static_cast<double>(kBall) * std::pow(unit, 3));
   ASSERT_EQ(errors.prefixes.size(), 1u);
   EXPECT_GE(errors.poses, 300u);
   EXPECT_EQ(errors.shallowest, 0.002);  // it has no surface
-  // The error of the small sphere where it finds a part of the ball.
+  // The error of the wrong sphere where it finds a part of the ball.
   const auto error = [&](double part) {
     double distance = 0;
-    while (static_cast<double>(lens(small, small, distance) / kBall) > part) distance += 1e-4;
-    return static_cast<double>(1 - lens(small, small, distance) / lens(1, 1, distance));
+    while (static_cast<double>(lens(wrong, wrong, distance) / kBall) > part) distance += 1e-4;
+    const long double found = lens(wrong, wrong, distance), exact = lens(1, 1, distance);
+    return static_cast<double>(std::abs(found - exact) / std::max(found, exact));
   };
+  const double least = wrong < 1 ? 0.003 : 0.03;  // a larger sphere finds more than is there
   for (std::size_t k = 0; k < kOverlapDepths.size(); ++k) {
-    if (kOverlapDepths[k] < 0.003) continue;
+    if (kOverlapDepths[k] < least) continue;
     const OverlapErrors::Prefix& prefix = errors.prefixes[0];
     EXPECT_LT(errors.sampling_error[k], 0.02);
-    EXPECT_LT(prefix.volume_true.mean[k], 3 * errors.sampling_error[k] + 1e-3);
+    if (wrong < 1) {
+      EXPECT_LT(prefix.volume_true.mean[k], 3 * errors.sampling_error[k] + 1e-3);
+    }
     EXPECT_LE(prefix.raw.mean[k], prefix.raw.bound[k] + 1e-12);
     EXPECT_GT(prefix.raw.mean[k], error(3 * kOverlapDepths[k]));
     EXPECT_LT(prefix.raw.bound[k], error(kOverlapDepths[k] / 3));
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(PackerMeasures, OverlapErrorsOfABall, testing::Values(0.9, 1.1));
 
 TEST(PackerMeasures, OverlapErrorsAreFoundFromTheSurfaceWhereItIsClosed) {
   const Packing packing = packed(*makeNamedSolid("lbracket"), 256);
