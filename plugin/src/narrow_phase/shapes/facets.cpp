@@ -12,6 +12,11 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
+/// In diagonals: a hull whose middle is less deep in it is flat.
+constexpr btScalar kFlat = btScalar(1e-4);
+/// Cosine, 0.05 degrees: a place that is seen from further aside lies on an edge.
+constexpr btScalar kOverFace = btScalar(1 - 4e-7);
+
 class CornerCollector : public btTriangleCallback {
  public:
   explicit CornerCollector(std::vector<btVector3>& corners) : corners_(corners) {}
@@ -103,8 +108,21 @@ void Facets::setHull(const btPolyhedralConvexShape& shape) {
     shape.getVertex(static_cast<int>(i), vertices[i]);
     furthest = btMax(furthest, vertices[i].x());
   }
-  set(vertices, hullOf);
   margin_ = shape.localGetSupportingVertex(x).x() - furthest;
+  if (!set(vertices, hullOf)) return;
+  btVector3 middle(0, 0, 0);
+  for (const auto& vertex : surface_.vertices) middle += toBullet(vertex) / btScalar(surface_.vertices.size());
+  SurfaceQueries::Nearest face;
+  is_solid_ = tree_ && tree_->nearest(middle, BT_LARGE_FLOAT, face) &&
+              face.distance < -kFlat * diagonalOf(surface_);
+}
+
+bool Facets::nearest(const btVector3& place, Nearest& nearest) const {
+  SurfaceQueries::Nearest face;
+  if (!is_solid_ || !tree_->nearest(place - points_[0], BT_LARGE_FLOAT, face)) return false;
+  const bool on_edge = tree_->normals().face(face.triangle).dot(face.normal) < kOverFace;
+  nearest = {face.distance - margin_, face.normal, on_edge ? 1 / btMax(margin_, SIMD_EPSILON) : btScalar(0)};
+  return true;
 }
 
 bool Facets::place(const btTransform& world, const btVector3& relative_to, SharpEdges& solid) const {
@@ -116,12 +134,14 @@ bool Facets::place(const btTransform& world, const btVector3& relative_to, Sharp
   return true;
 }
 
-void Facets::set(const std::vector<btVector3>& points, Surface (*make)(const std::vector<btVector3>&)) {
+/// Returns whether the points are others than before.
+bool Facets::set(const std::vector<btVector3>& points, Surface (*make)(const std::vector<btVector3>&)) {
   expired_ = false;
-  if (points == points_) return;
+  if (points == points_) return false;
   points_ = points;
   surface_ = make(points_);
   tree_ = surface_.triangles.empty() ? nullptr : std::make_unique<SurfaceQueries>(surface_);
+  return true;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
