@@ -25,7 +25,8 @@ btVector3 mean(const OpposedPoints& points, btScalar face_a) {
   return (points.normal_a * weight_a + points.normal_b * (1 - weight_a)).normalized();
 }
 
-/// A surface that bends bears an edge of the other along its own normal, from wherever a sphere sees the edge.
+/// A surface that bends bears an edge of the other along its own normal, from wherever a sphere sees the
+/// edge.
 bool isOnEdge(const OpposedPoints& points) {
   const btScalar a = btFabs(points.curvature_a), b = btFabs(points.curvature_b);
   return btMin(a, b) > 0 && btMax(a, b) > kEdgeBends * btMin(a, b);

@@ -109,7 +109,7 @@ void climb(const SurfaceProbe& probe, btScalar steepest, int steps, btVector3 sh
     }
     const Hillside next = hillsideAt(points, sample.direction);
     const bool climbs = next.depth - here.depth > kClimbs * here.slope.dot(step);
-    if (!climbs && next.slope.length2() > here.slope.length2()) {
+    if (next.slope.length() > steepest || (!climbs && next.slope.length2() > here.slope.length2())) {
       if (next.slope.dot(step) < 0)
         falls.learn(step, here.slope - next.slope);  // the top is between
       else
@@ -128,9 +128,13 @@ void climb(const SurfaceProbe& probe, btScalar steepest, int steps, btVector3 sh
 /// but both points are opposed only along the normal, so a line that is askew is drawn again along that.
 void ascend(const SurfaceProbe& probe, ProbedSample& sample) {
   ProbedSample start = sample;
-  const btVector3 back = probe.toMiddleOfBend(sample);
-  if (!back.isZero() && probe.probeLine(sample.index, sample.direction, back, start.points) && isUsable(start))
+  btVector3 back = probe.toMiddleOfBend(sample);
+  if (!back.isZero() && probe.probeLine(sample.index, sample.direction, back, start.points) &&
+      isUsable(start)) {
     sample = start;
+  } else {
+    back.setZero();
+  }
   climb(probe, BT_LARGE_FLOAT, kAscentSteps, back, sample);
   const OpposedPoints& points = sample.points;
   const btVector3 normal = (points.normal_a + points.normal_b).normalized();
@@ -138,10 +142,10 @@ void ascend(const SurfaceProbe& probe, ProbedSample& sample) {
   if (!sample.is_top ||
       (apart - normal * apart.dot(normal)).length2() < kReached * kReached * apart.length2())
     return;
-  const btVector3 middle = (points.on_a + points.on_b) / 2 - probe.lineStart(sample.index);
-  const btVector3 shift = middle - normal * middle.dot(normal);
   ProbedSample again = sample;
   again.direction = normal;
+  const btVector3 middle = (points.on_a + points.on_b) / 2 - probe.lineStart(sample.index);
+  const btVector3 shift = middle - normal * middle.dot(normal) + probe.toMiddleOfBend(again);
   if (!probe.probeLine(sample.index, normal, shift, again.points)) return;
   climb(probe, BT_LARGE_FLOAT, kAscentSteps, shift, again);
   if (again.is_top) sample = again;

@@ -26,14 +26,15 @@ bool ShapeProbe::probeLine(std::size_t index, const btVector3& direction, const 
   const btScalar size = surfaceDistance(near_sphere);
   const btVector3 from = a_.centreOf(near_sphere.sphere) + near_sphere.aside + shift;
   NearSphere near_place = near_sphere;
-  const btScalar along = shift.dot(direction);
-  if (shift.length2() > 0 && ((shift - direction * along).length() > size ||
+  // What starts further back may go further aside.
+  const btScalar back = btMax(-shift.dot(direction), btScalar(0));
+  if (shift.length2() > 0 && ((shift + direction * back).length() > size + back ||
                               !nearestBeside(near_sphere, from, shift, near_place)))
     return false;
   const btVector3 towards_b = -near_place.normal;
   points.on_b = from + towards_b * near_place.distance;
   SurfacePoint on_a;
-  const bool leaves = leaveSolid(a_, from, towards_b, 2 * size + btMax(-along, btScalar(0)), points.triangle_a, on_a);
+  const bool leaves = leaveSolid(a_, from, towards_b, 2 * size + back, points.triangle_a, on_a);
   if (on_a.triangle == OpposedPoints::kNone && points.triangle_a != OpposedPoints::kNone) {
     // Deep in A: it is some other face that is near.
     const SharpEdges a(a_, {0, 0, 0});

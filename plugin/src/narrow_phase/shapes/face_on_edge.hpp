@@ -12,8 +12,8 @@ struct FaceOver {
   btVector3 normal;    ///< unit, out of the packing
   btScalar curvature;  ///< [1/m]
 };
-/// Finds the face of `body` that lies on the place where `near_sphere` is nearest to the other surface. Returns
-/// false if there is none near.
+/// Finds the face of `body` that lies on the place where `near_sphere` is nearest to the other surface.
+/// Returns false if there is none near.
 bool faceOver(const PlacedPacking& body, const NearSphere& near_sphere, FaceOver& face);
 
 /// Returns how an edge bends that is as sharp as counts [1/m].
@@ -25,7 +25,8 @@ inline btScalar sharpest(const PlacedPacking& body, const NearSphere& near_spher
 /// normal of the face. isOutermost(place, direction, tolerance) tells whether the other shape has nothing
 /// further out in a direction than a place of its surface; relative to the body's origin, axes of the world.
 /// A face that bends lies on the edge in one place only, which an ascent finds: to it the edge is a surface
-/// that bends by `edge_curvature` [1/m], up to what counts. If that is 0, the face is laid on as if it were flat.
+/// that bends by `edge_curvature` [1/m], up to what counts. If that is 0, the face is laid on as if it were
+/// flat.
 template <typename IsOutermost>
 void layFaceOn(const PlacedPacking& body, btScalar edge_curvature, NearSphere& near_sphere,
                const IsOutermost& isOutermost) {

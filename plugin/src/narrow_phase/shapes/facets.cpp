@@ -16,6 +16,8 @@ namespace {
 constexpr btScalar kFlat = btScalar(1e-4);
 /// Cosine, 0.05 degrees: a place that is seen from further aside lies on an edge.
 constexpr btScalar kOverFace = btScalar(1 - 4e-7);
+/// In lengths of the edge: a place this near to its end is at the corner.
+constexpr btScalar kAtCorner = btScalar(1e-3);
 
 class CornerCollector : public btTriangleCallback {
  public:
@@ -28,6 +30,22 @@ class CornerCollector : public btTriangleCallback {
  private:
   std::vector<btVector3>& corners_;
 };
+
+/// Direction of the edge of a triangle that a place of its rim is on; 0 at a corner.
+btVector3 edgeAt(const btVector3* corners, const btVector3& place) {
+  btVector3 along(0, 0, 0);
+  btScalar least = BT_LARGE_FLOAT;
+  for (int k = 0; k < 3; ++k) {
+    const btVector3 way = corners[(k + 1) % 3] - corners[k], to_place = place - corners[k];
+    if (to_place.length2() < kAtCorner * kAtCorner * way.length2()) return {0, 0, 0};
+    const btScalar beside = way.cross(to_place).length2() / way.length2();
+    if (beside < least) {
+      least = beside;
+      along = way.normalized();
+    }
+  }
+  return along;
+}
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -111,17 +129,22 @@ void Facets::setHull(const btPolyhedralConvexShape& shape) {
   margin_ = shape.localGetSupportingVertex(x).x() - furthest;
   if (!set(vertices, hullOf)) return;
   btVector3 middle(0, 0, 0);
-  for (const auto& vertex : surface_.vertices) middle += toBullet(vertex) / btScalar(surface_.vertices.size());
+  for (const auto& vertex : surface_.vertices)
+    middle += toBullet(vertex) / btScalar(surface_.vertices.size());
   SurfaceQueries::Nearest face;
-  is_solid_ = tree_ && tree_->nearest(middle, BT_LARGE_FLOAT, face) &&
-              face.distance < -kFlat * diagonalOf(surface_);
+  is_solid_ =
+      tree_ && tree_->nearest(middle, BT_LARGE_FLOAT, face) && face.distance < -kFlat * diagonalOf(surface_);
 }
 
 bool Facets::nearest(const btVector3& place, Nearest& nearest) const {
   SurfaceQueries::Nearest face;
   if (!is_solid_ || !tree_->nearest(place - points_[0], BT_LARGE_FLOAT, face)) return false;
   const bool on_edge = tree_->normals().face(face.triangle).dot(face.normal) < kOverFace;
-  nearest = {face.distance - margin_, face.normal, on_edge ? 1 / btMax(margin_, SIMD_EPSILON) : btScalar(0)};
+  nearest = {face.distance - margin_, face.normal, 0, {0, 0, 0}};
+  if (!on_edge) return true;
+  nearest.edge_curvature = 1 / btMax(margin_, SIMD_EPSILON);
+  nearest.along =
+      edgeAt(tree_->normals().corners(face.triangle), place - points_[0] - face.normal * face.distance);
   return true;
 }
 

@@ -29,6 +29,7 @@ class Facets {
     btScalar distance;        ///< [m], negative inside
     btVector3 normal;         ///< unit, out of the hull
     btScalar edge_curvature;  ///< of the edge or corner there [1/m]; 0 if it is inside of a face
+    btVector3 along;          ///< unit, along the edge; 0 if it is none
   };
   /// Finds the point of a hull with its margin that is nearest to a place, in the frame of the shape. Returns
   /// false if the hull has no inside.
@@ -43,8 +44,8 @@ class Facets {
   btVector3 max_{0, 0, 0};
   Surface surface_;
   std::unique_ptr<SurfaceQueries> tree_;
-  btScalar margin_ = 0;   ///< [m]
-  bool is_solid_ = false; ///< it is a hull with an inside
+  btScalar margin_ = 0;    ///< [m]
+  bool is_solid_ = false;  ///< it is a hull with an inside
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -83,6 +83,7 @@ class BoxSurface : public PrimitiveSurface<btBoxShape> {
       if (length > outside[outside.maxAxis()]) {
         nearest.edged = &shape_;
         nearest.edge_curvature = BT_LARGE_FLOAT;
+        if (!(outside[outside.minAxis()] > 0)) nearest.straight[outside.minAxis()] = 1;
       }
     } else {
       const int axis = beyond.maxAxis();
@@ -193,7 +194,8 @@ class ConeSurface : public PrimitiveSurface<btConeShape> {
   }
 };
 
-/// Any other convex shape, by Bullet's GJK outside and EPA inside. Its margin counts as part of it, as in Bullet.
+/// Any other convex shape, by Bullet's GJK outside and EPA inside. Its margin counts as part of it, as in
+/// Bullet.
 class ConvexSurface : public PrimitiveSurface<btConvexShape> {
  public:
   using PrimitiveSurface::PrimitiveSurface;
@@ -234,6 +236,7 @@ class HullSurface : public ConvexSurface {
     nearest.distance = found.distance;
     nearest.normal = found.normal;
     nearest.edge_curvature = found.edge_curvature;
+    nearest.straight = found.along;
     if (found.edge_curvature > 0) nearest.edged = &shape_;
     return true;
   }
