@@ -15,4 +15,13 @@ std::shared_ptr<PackingShape> makeNamedShape(const std::string& name, std::size_
 /// A torus about the z axis, packed with n spheres. Radii of the ring and of the tube [m].
 std::shared_ptr<PackingShape> makeTorusShape(double ring, double tube, std::size_t n);
 
+/// The same with three times as many triangles along each circle as the packer's mesh has.
+std::shared_ptr<PackingShape> makeFineTorusShape(double ring, double tube, std::size_t n);
+
+/// With 16,000 triangles.
+std::shared_ptr<PackingShape> makeFineBallShape(double radius, std::size_t n);
+
+/// About z, of this full height, with 192 sides.
+std::shared_ptr<PackingShape> makeFineCylinderShape(double radius, double height, std::size_t n);
+
 }  // namespace innersphere::test

@@ -51,6 +51,8 @@ constexpr btScalar kOpposedCosine = btScalar(0.94);
 /// Cosine, 30 degrees: where both surfaces bend, a face bears an edge if its normal is this close to the line
 /// that was probed.
 constexpr btScalar kBearingFaceCosine = btScalar(0.866);
+/// Ratio: where one of two surfaces bends this much more than the other, it is an edge.
+constexpr btScalar kEdgeBends = 10;
 /// Ratio: a face that ends this much sooner than the other one has its edge on the other.
 constexpr btScalar kEndsSooner = btScalar(0.25);
 /// [rad]: normals whose root mean square deviation is less are those of one flat face, but for rounding.
@@ -65,7 +67,7 @@ constexpr btScalar kConforming = btScalar(0.3);
 constexpr btScalar kUsableCosine = btScalar(0.5);
 /// An ascent to a top takes so many steps at most: each is one of Newton's method, whose error falls
 /// quadratically.
-constexpr int kAscentSteps = 8;
+constexpr int kAscentSteps = 16;
 /// The other samples, which only have to get nearer, take so many.
 constexpr int kAscentStepsBeside = 2;
 /// Ratio: the slope is not believed to fall more slowly than by this part of what was believed before.

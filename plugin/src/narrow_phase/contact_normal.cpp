@@ -25,6 +25,13 @@ btVector3 mean(const OpposedPoints& points, btScalar face_a) {
   return (points.normal_a * weight_a + points.normal_b * (1 - weight_a)).normalized();
 }
 
+/// A surface that bends bears an edge of the other along its own normal, from wherever a sphere sees the
+/// edge.
+bool isOnEdge(const OpposedPoints& points) {
+  const btScalar a = btFabs(points.curvature_a), b = btFabs(points.curvature_b);
+  return btMin(a, b) > 0 && btMax(a, b) > kEdgeBends * btMin(a, b);
+}
+
 /// The deepest contact of two faces that are tilted against each other; null if there is none.
 const ProbedSample* deepestTilted(const std::vector<ProbedSample>& samples) {
   const ProbedSample* deepest = nullptr;
@@ -68,7 +75,7 @@ ContactNormal::ContactNormal(const std::vector<ProbedSample>& samples, const Fac
 
 btVector3 ContactNormal::at(const ProbedSample& sample) const {
   const btVector3 &a = sample.points.normal_a, &b = sample.points.normal_b;
-  if (opposed(sample.points)) return mean(sample.points, face_a_);
+  if (opposed(sample.points) || isOnEdge(sample.points)) return mean(sample.points, face_a_);
   const bool one_is_flat = flat_a_ != flat_b_;
   if (one_is_flat && extents_ == nullptr) return flat_a_ ? a : b;
   if (const std::optional<bool> on_a = isFaceOfA(sample.points, extents_)) return *on_a ? a : b;

@@ -20,7 +20,8 @@ struct Hillside {
 Hillside hillsideAt(const OpposedPoints& points, const btVector3& direction) {
   const btScalar a = points.normal_a.dot(direction), b = points.normal_b.dot(direction);
   const btVector3 slope = points.normal_b / b - points.normal_a / a;
-  return {points.depthAlong(direction), slope};
+  // A line towards a shape is askew to the direction where its surface turns.
+  return {std::copysign(points.on_a.distance(points.on_b), points.depthAlong(direction)), slope};
 }
 
 bool isUsable(const OpposedPoints& points, const btVector3& direction) {
@@ -102,12 +103,17 @@ void climb(const SurfaceProbe& probe, btScalar steepest, int steps, btVector3 sh
     points.triangle_b = sample.points.triangle_b;
     const btVector3 step = falls.toTop(here.slope);
     if (!probe.probeLine(sample.index, sample.direction, shift + step, points) ||
-        !isUsable(points, sample.direction))
-      return;
+        !isUsable(points, sample.direction)) {
+      falls.shorten();
+      continue;
+    }
     const Hillside next = hillsideAt(points, sample.direction);
     const bool climbs = next.depth - here.depth > kClimbs * here.slope.dot(step);
-    if (!climbs && next.slope.length2() > here.slope.length2()) {
-      falls.shorten();
+    if (next.slope.length() > steepest || (!climbs && next.slope.length2() > here.slope.length2())) {
+      if (next.slope.dot(step) < 0)
+        falls.learn(step, here.slope - next.slope);  // the top is between
+      else
+        falls.shorten();
       continue;
     }
     falls.learn(step, here.slope - next.slope);
@@ -121,17 +127,25 @@ void climb(const SurfaceProbe& probe, btScalar steepest, int steps, btVector3 sh
 /// Moves a sample to the top of its hill. Normals agree all along a line over it, for lines of any direction;
 /// but both points are opposed only along the normal, so a line that is askew is drawn again along that.
 void ascend(const SurfaceProbe& probe, ProbedSample& sample) {
-  climb(probe, BT_LARGE_FLOAT, kAscentSteps, btVector3(0, 0, 0), sample);
+  ProbedSample start = sample;
+  btVector3 back = probe.toMiddleOfBend(sample);
+  if (!back.isZero() && probe.probeLine(sample.index, sample.direction, back, start.points) &&
+      isUsable(start)) {
+    sample = start;
+  } else {
+    back.setZero();
+  }
+  climb(probe, BT_LARGE_FLOAT, kAscentSteps, back, sample);
   const OpposedPoints& points = sample.points;
   const btVector3 normal = (points.normal_a + points.normal_b).normalized();
   const btVector3 apart = points.on_a - points.on_b;
   if (!sample.is_top ||
       (apart - normal * apart.dot(normal)).length2() < kReached * kReached * apart.length2())
     return;
-  const btVector3 middle = (points.on_a + points.on_b) / 2 - probe.lineStart(sample.index);
-  const btVector3 shift = middle - normal * middle.dot(normal);
   ProbedSample again = sample;
   again.direction = normal;
+  const btVector3 middle = (points.on_a + points.on_b) / 2 - probe.lineStart(sample.index);
+  const btVector3 shift = middle - normal * middle.dot(normal) + probe.toMiddleOfBend(again);
   if (!probe.probeLine(sample.index, normal, shift, again.points)) return;
   climb(probe, BT_LARGE_FLOAT, kAscentSteps, shift, again);
   if (again.is_top) sample = again;

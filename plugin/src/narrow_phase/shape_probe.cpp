@@ -20,18 +20,21 @@ bool ShapeProbe::probeAgain(const Samples::Line& line, ProbedSample& sample) con
   return probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points);
 }
 
-bool ShapeProbe::probeLine(std::size_t index, const btVector3&, const btVector3& shift,
+bool ShapeProbe::probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
                            OpposedPoints& points) const {
   const NearSphere& near_sphere = near_spheres_[index];
   const btScalar size = surfaceDistance(near_sphere);
   const btVector3 from = a_.centreOf(near_sphere.sphere) + near_sphere.aside + shift;
   NearSphere near_place = near_sphere;
-  if (shift.length2() > 0 && (shift.length() > size || !nearestBeside(near_sphere, from, near_place)))
+  // What starts further back may go further aside.
+  const btScalar back = btMax(-shift.dot(direction), btScalar(0));
+  if (shift.length2() > 0 && ((shift + direction * back).length() > size + back ||
+                              !nearestBeside(near_sphere, from, shift, near_place)))
     return false;
   const btVector3 towards_b = -near_place.normal;
   points.on_b = from + towards_b * near_place.distance;
   SurfacePoint on_a;
-  const bool leaves = leaveSolid(a_, from, towards_b, 2 * size, points.triangle_a, on_a);
+  const bool leaves = leaveSolid(a_, from, towards_b, 2 * size + back, points.triangle_a, on_a);
   if (on_a.triangle == OpposedPoints::kNone && points.triangle_a != OpposedPoints::kNone) {
     // Deep in A: it is some other face that is near.
     const SharpEdges a(a_, {0, 0, 0});
@@ -50,12 +53,20 @@ bool ShapeProbe::probeLine(std::size_t index, const btVector3&, const btVector3&
   return leaves;
 }
 
-bool ShapeProbe::nearestBeside(const NearSphere& near_sphere, const btVector3& from,
+bool ShapeProbe::nearestBeside(const NearSphere& near_sphere, const btVector3& from, const btVector3& shift,
                                NearSphere& near_place) const {
   if (near_sphere.isOnEdge()) return false;
   if (other_.nearestTo(a_, world_, from, near_place)) return true;
   // Only of a flat surface it is known what it is like beside the nearest point.
-  return near_sphere.curvature == 0 && goesOn(near_sphere, from - near_sphere.normal * near_sphere.distance);
+  near_place.distance += near_sphere.normal.dot(shift);
+  return near_sphere.curvature == 0 && goesOn(near_sphere, from - near_sphere.normal * near_place.distance);
+}
+
+/// From there the nearest place of B goes with the line: seen from close by, it stays on an edge, and jumps.
+btVector3 ShapeProbe::toMiddleOfBend(const ProbedSample& sample) const {
+  if (!(sample.points.curvature_a > 0)) return {0, 0, 0};
+  const btScalar height = (sample.points.on_a - lineStart(sample.index)).dot(sample.direction);
+  return sample.direction * btMin(height - 1 / sample.points.curvature_a, btScalar(0));
 }
 
 bool ShapeProbe::goesOn(const NearSphere& near_sphere, const btVector3& place) const {

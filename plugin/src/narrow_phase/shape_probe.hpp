@@ -37,6 +37,7 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
+  btVector3 toMiddleOfBend(const ProbedSample& sample) const override;
   bool isOnFaceOfB(const OpposedPoints& points) const override;
   std::uint64_t id(std::size_t index) const override { return near_spheres_[index].sphere; }
   Protrusion protrusion(std::size_t index, const btVector3& normal) const override;
@@ -50,7 +51,8 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
  private:
   /// Finds what a sphere at `from` would see, beside where one of ours is. Returns false if that is not
   /// known.
-  bool nearestBeside(const NearSphere& near_sphere, const btVector3& from, NearSphere& near_place) const;
+  bool nearestBeside(const NearSphere& near_sphere, const btVector3& from, const btVector3& shift,
+                     NearSphere& near_place) const;
   /// Returns how far away the solid of a sphere may end [m].
   btScalar surfaceDistance(const NearSphere& near_sphere) const {
     return a_.ownRadius(near_sphere.sphere) + a_.search_margin;

@@ -65,8 +65,8 @@ struct ProbedSample {
 class SurfaceProbe {
  public:
   virtual ~SurfaceProbe() = default;
-  /// Probes along `direction` from A to B (a shape that is no packing chooses its own), with the line moved
-  /// sideways by `shift` [m]. Returns false if the line does not pass both surfaces near there. The triangles
+  /// Probes along `direction` from A to B (a shape that is no packing chooses its own), with its start
+  /// moved by `shift` [m]. Returns false if the line does not pass both surfaces near there. The triangles
   /// that `points` comes with, or those around them, are taken if the line passes them; all are looked at
   /// only where they are kNone, or missed. Where B is no packing, `points` then holds a face of A all the
   /// same: that by which the line leaves A sideways, or one near the sphere.
@@ -74,6 +74,8 @@ class SurfaceProbe {
                          OpposedPoints& points) const = 0;
   /// Returns where lines start that are not moved sideways: the middle of the sphere [m].
   virtual btVector3 lineStart(std::size_t index) const = 0;
+  /// Returns the way back along a sample's line to where ascents do better to start; zero by default [m].
+  virtual btVector3 toMiddleOfBend(const ProbedSample&) const { return {0, 0, 0}; }
   /// Finds the direction from A to B in which the sphere is nearest to the other solid's surface. Returns
   /// false if it is too far away to tell. Leaves the triangles near the sphere in `points`.
   virtual bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const = 0;

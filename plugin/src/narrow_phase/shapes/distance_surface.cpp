@@ -45,7 +45,8 @@ bool DistanceSurface::updateNearSphere(const PlacedPacking& body, const btTransf
   near_sphere.straight = world.getBasis() * found.straight;
   near_sphere.aside.setZero();
   if (found.edged != nullptr && found.distance > 0) {
-    layFaceOn(body, near_sphere, [&](const btVector3& edge, const btVector3& out, btScalar tolerance) {
+    const btScalar bend = btMax(found.curvature, found.edge_curvature);
+    layFaceOn(body, bend, near_sphere, [&](const btVector3& edge, const btVector3& out, btScalar tolerance) {
       const btTransform from_world = world.inverse();
       const btVector3 direction = from_world.getBasis() * out;
       const btVector3 outermost = found.edged->localGetSupportingVertex(direction);
@@ -69,7 +70,8 @@ bool DistanceSurface::nearestTo(const PlacedPacking& body, const btTransform& wo
   if (!nearest(world.invXform(body.origin() + place), found)) return false;
   near_sphere.distance = found.distance;
   near_sphere.normal = world.getBasis() * found.normal;
-  near_sphere.curvature = found.curvature;
+  // Only surfaces that bend are followed beside where they were met first.
+  near_sphere.curvature = btMax(found.curvature, btMin(found.edge_curvature, sharpest(body, near_sphere)));
   near_sphere.straight = world.getBasis() * found.straight;
   near_sphere.aside.setZero();
   return true;

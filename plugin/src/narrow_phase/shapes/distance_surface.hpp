@@ -30,6 +30,7 @@ class DistanceSurface : public ShapeSurface {
     btVector3 straight{0, 0, 0};  ///< see NearSphere
     /// The shape, if it may have an edge or a corner there.
     const btConvexShape* edged = nullptr;
+    btScalar edge_curvature = 0;  ///< of that edge [1/m]; 0 if it is a face, or not known
   };
   /// Finds the nearest point, in the frame of the shape. Returns false where the distance is unknown; the
   /// point is then taken as far away.
@@ -44,13 +45,14 @@ class DistanceSurface : public ShapeSurface {
   /// Returns the distance of p from the bounding box of a shape [m].
   static btScalar boxDistance(const btCollisionShape& shape, const btVector3& p);
 
+  Facets facets_;  ///< of the polyhedron, once they were needed
+
  private:
   bool updateNearSphere(const PlacedPacking& body, const btTransform& world, const btTransform& to_shape,
                         NearSphere& near_sphere) const;
 
   btVector3 box_min_{0, 0, 0};
   btVector3 box_max_{0, 0, 0};
-  Facets facets_;
 };
 
 // One maker for each kind.

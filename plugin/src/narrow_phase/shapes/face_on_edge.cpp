@@ -4,14 +4,14 @@
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
-bool faceOver(const PlacedPacking& body, const NearSphere& near_sphere, btVector3& normal) {
+bool faceOver(const PlacedPacking& body, const NearSphere& near_sphere, FaceOver& face) {
   if (!body.shape().hasSurface()) return false;
   const btScalar sunk = kSunk * body.ownRadius(near_sphere.sphere) + body.margin;
   const btVector3 place =
       body.centreOf(near_sphere.sphere) - near_sphere.normal * (near_sphere.distance - sunk);
   SurfaceQueries::Nearest nearest;
   if (!body.nearest(place, 2 * body.searchRadius(near_sphere.sphere), nearest)) return false;
-  normal = nearest.normal;
+  face = {nearest.normal, body.shape().surfaceQueries().normals().curvature(nearest.triangle) / body.scale()};
   return nearest.distance < 0;
 }
 

@@ -12,6 +12,13 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
+/// In diagonals: a hull whose middle is less deep in it is flat.
+constexpr btScalar kFlat = btScalar(1e-4);
+/// Cosine, 0.05 degrees: a place that is seen from further aside lies on an edge.
+constexpr btScalar kOverFace = btScalar(1 - 4e-7);
+/// In lengths of the edge: a place this near to its end is at the corner.
+constexpr btScalar kAtCorner = btScalar(1e-3);
+
 class CornerCollector : public btTriangleCallback {
  public:
   explicit CornerCollector(std::vector<btVector3>& corners) : corners_(corners) {}
@@ -23,6 +30,22 @@ class CornerCollector : public btTriangleCallback {
  private:
   std::vector<btVector3>& corners_;
 };
+
+/// Direction of the edge of a triangle that a place of its rim is on; 0 at a corner.
+btVector3 edgeAt(const btVector3* corners, const btVector3& place) {
+  btVector3 along(0, 0, 0);
+  btScalar least = BT_LARGE_FLOAT;
+  for (int k = 0; k < 3; ++k) {
+    const btVector3 way = corners[(k + 1) % 3] - corners[k], to_place = place - corners[k];
+    if (to_place.length2() < kAtCorner * kAtCorner * way.length2()) return {0, 0, 0};
+    const btScalar beside = way.cross(to_place).length2() / way.length2();
+    if (beside < least) {
+      least = beside;
+      along = way.normalized();
+    }
+  }
+  return along;
+}
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -103,8 +126,26 @@ void Facets::setHull(const btPolyhedralConvexShape& shape) {
     shape.getVertex(static_cast<int>(i), vertices[i]);
     furthest = btMax(furthest, vertices[i].x());
   }
-  set(vertices, hullOf);
   margin_ = shape.localGetSupportingVertex(x).x() - furthest;
+  if (!set(vertices, hullOf)) return;
+  btVector3 middle(0, 0, 0);
+  for (const auto& vertex : surface_.vertices)
+    middle += toBullet(vertex) / btScalar(surface_.vertices.size());
+  SurfaceQueries::Nearest face;
+  is_solid_ =
+      tree_ && tree_->nearest(middle, BT_LARGE_FLOAT, face) && face.distance < -kFlat * diagonalOf(surface_);
+}
+
+bool Facets::nearest(const btVector3& place, Nearest& nearest) const {
+  SurfaceQueries::Nearest face;
+  if (!is_solid_ || !tree_->nearest(place - points_[0], BT_LARGE_FLOAT, face)) return false;
+  const bool on_edge = tree_->normals().face(face.triangle).dot(face.normal) < kOverFace;
+  nearest = {face.distance - margin_, face.normal, 0, {0, 0, 0}};
+  if (!on_edge) return true;
+  nearest.edge_curvature = 1 / btMax(margin_, SIMD_EPSILON);
+  nearest.along =
+      edgeAt(tree_->normals().corners(face.triangle), place - points_[0] - face.normal * face.distance);
+  return true;
 }
 
 bool Facets::place(const btTransform& world, const btVector3& relative_to, SharpEdges& solid) const {
@@ -116,12 +157,14 @@ bool Facets::place(const btTransform& world, const btVector3& relative_to, Sharp
   return true;
 }
 
-void Facets::set(const std::vector<btVector3>& points, Surface (*make)(const std::vector<btVector3>&)) {
+/// Returns whether the points are others than before.
+bool Facets::set(const std::vector<btVector3>& points, Surface (*make)(const std::vector<btVector3>&)) {
   expired_ = false;
-  if (points == points_) return;
+  if (points == points_) return false;
   points_ = points;
   surface_ = make(points_);
   tree_ = surface_.triangles.empty() ? nullptr : std::make_unique<SurfaceQueries>(surface_);
+  return true;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

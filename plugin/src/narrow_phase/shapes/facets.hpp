@@ -25,9 +25,18 @@ class Facets {
 
   /// Places the faces relative to a place, in axes of the world. Returns false if there are none.
   bool place(const btTransform& world, const btVector3& relative_to, SharpEdges& solid) const;
+  struct Nearest {
+    btScalar distance;        ///< [m], negative inside
+    btVector3 normal;         ///< unit, out of the hull
+    btScalar edge_curvature;  ///< of the edge or corner there [1/m]; 0 if it is inside of a face
+    btVector3 along;          ///< unit, along the edge; 0 if it is none
+  };
+  /// Finds the point of a hull with its margin that is nearest to a place, in the frame of the shape. Returns
+  /// false if the hull has no inside.
+  bool nearest(const btVector3& place, Nearest& nearest) const;
 
  private:
-  void set(const std::vector<btVector3>& points, Surface (*make)(const std::vector<btVector3>&));
+  bool set(const std::vector<btVector3>& points, Surface (*make)(const std::vector<btVector3>&));
 
   bool expired_ = true;
   std::vector<btVector3> points_;  ///< in the frame of the shape
@@ -35,7 +44,8 @@ class Facets {
   btVector3 max_{0, 0, 0};
   Surface surface_;
   std::unique_ptr<SurfaceQueries> tree_;
-  btScalar margin_ = 0;  ///< [m]
+  btScalar margin_ = 0;    ///< [m]
+  bool is_solid_ = false;  ///< it is a hull with an inside
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

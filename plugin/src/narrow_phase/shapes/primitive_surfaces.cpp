@@ -80,7 +80,11 @@ class BoxSurface : public PrimitiveSurface<btBoxShape> {
     if (length > 0) {
       nearest.distance = length;
       nearest.normal = outside / length;
-      if (length > outside[outside.maxAxis()]) nearest.edged = &shape_;
+      if (length > outside[outside.maxAxis()]) {
+        nearest.edged = &shape_;
+        nearest.edge_curvature = BT_LARGE_FLOAT;
+        if (!(outside[outside.minAxis()] > 0)) nearest.straight[outside.minAxis()] = 1;
+      }
     } else {
       const int axis = beyond.maxAxis();
       nearest.distance = beyond[axis];
@@ -190,12 +194,13 @@ class ConeSurface : public PrimitiveSurface<btConeShape> {
   }
 };
 
-/// Any convex shape, by Bullet's GJK outside and EPA inside. Its margin counts as part of it, as in Bullet.
+/// Any other convex shape, by Bullet's GJK outside and EPA inside. Its margin counts as part of it, as in
+/// Bullet.
 class ConvexSurface : public PrimitiveSurface<btConvexShape> {
  public:
   using PrimitiveSurface::PrimitiveSurface;
 
- private:
+ protected:
   bool nearest(const btVector3& p, Nearest& nearest) const override {
     btGjkEpaSolver2::sResults results;
     results.normal.setZero();
@@ -209,11 +214,36 @@ class ConvexSurface : public PrimitiveSurface<btConvexShape> {
     return true;
   }
 
+ private:
   btScalar lowerBound(const btVector3& p) const override { return boxDistance(shape_, p); }
+};
 
-  const btPolyhedralConvexShape* polyhedron() const override {
-    return dynamic_cast<const btPolyhedralConvexShape*>(&shape_);
+/// A polyhedron by its faces: in single precision GJK ends while its normal is still off by up to 3 degrees.
+class HullSurface : public ConvexSurface {
+ public:
+  explicit HullSurface(const btPolyhedralConvexShape& hull) : ConvexSurface(hull), hull_(hull) {}
+
+  void findNearSpheres(const PlacedPacking& body, const btTransform& world,
+                       std::vector<NearSphere>& near_spheres) override {
+    facets_.setHull(hull_);
+    DistanceSurface::findNearSpheres(body, world, near_spheres);
   }
+
+ private:
+  bool nearest(const btVector3& p, Nearest& nearest) const override {
+    Facets::Nearest found;
+    if (!facets_.nearest(p, found)) return ConvexSurface::nearest(p, nearest);
+    nearest.distance = found.distance;
+    nearest.normal = found.normal;
+    nearest.edge_curvature = found.edge_curvature;
+    nearest.straight = found.along;
+    if (found.edge_curvature > 0) nearest.edged = &shape_;
+    return true;
+  }
+
+  const btPolyhedralConvexShape* polyhedron() const override { return &hull_; }
+
+  const btPolyhedralConvexShape& hull_;
 };
 
 }  // namespace
@@ -239,6 +269,8 @@ std::unique_ptr<ShapeSurface> makeBoxSurface(const btCollisionShape& shape) {
 }
 
 std::unique_ptr<ShapeSurface> makeConvexSurface(const btCollisionShape& shape) {
+  const auto* const hull = dynamic_cast<const btPolyhedralConvexShape*>(&shape);
+  if (hull != nullptr) return std::make_unique<HullSurface>(*hull);
   return std::make_unique<ConvexSurface>(shape);
 }
 

@@ -220,7 +220,7 @@ class TriangleSurface : public ShapeSurface {
       const btScalar distance = c->distance * body.scale();
       NearSphere near_sphere{c->sphere, inside ? -distance : distance, inside ? -direction : direction};
       if (!c->interior && near_sphere.distance > 0) {
-        layFaceOn(body, near_sphere, [&](const btVector3&, const btVector3& out, btScalar tolerance) {
+        layFaceOn(body, 0, near_sphere, [&](const btVector3&, const btVector3& out, btScalar tolerance) {
           return isOutermost(c, first, last, same, out * body.world.getBasis(), tolerance / body.scale());
         });
         if (near_sphere.isOnEdge() && known(near_sphere.normal)) continue;

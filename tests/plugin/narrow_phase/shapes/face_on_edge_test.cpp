@@ -42,17 +42,18 @@ class FaceOnEdge : public testing::Test {
 };
 
 TEST_F(FaceOnEdge, IsTheFaceOverTheNearestPoint) {
-  btVector3 normal;
-  ASSERT_TRUE(faceOver(body_, seenFrom(0.1), normal));
-  EXPECT_NEAR(normal.distance(btVector3(0, 0, -1)), 0, kRounding);
+  FaceOver face;
+  ASSERT_TRUE(faceOver(body_, seenFrom(0.1), face));
+  EXPECT_NEAR(face.normal.distance(btVector3(0, 0, -1)), 0, kRounding);
+  EXPECT_EQ(face.curvature, 0);
   // Far beside the cube there is none.
-  EXPECT_FALSE(faceOver(body_, seenFrom(-0.6), normal));
+  EXPECT_FALSE(faceOver(body_, seenFrom(-0.6), face));
 }
 
 TEST_F(FaceOnEdge, BearsAlongItsNormal) {
   for (const double aside : {-0.05, 0.05, 0.1}) {
     NearSphere near = seenFrom(aside);
-    layFaceOn(body_, near, [](const btVector3&, const btVector3&, btScalar) { return true; });
+    layFaceOn(body_, 0, near, [](const btVector3&, const btVector3&, btScalar) { return true; });
     EXPECT_NEAR(near.normal.distance(btVector3(0, 0, 1)), 0, kRounding);
     EXPECT_NEAR(near.distance, 0.125 + kBelow, kRounding);
     EXPECT_NEAR(near.aside.distance(btVector3(btScalar(aside), 0, 0)), 0, kRounding);
@@ -60,11 +61,28 @@ TEST_F(FaceOnEdge, BearsAlongItsNormal) {
   }
 }
 
+TEST_F(FaceOnEdge, OfABallIsNotLaidOnIt) {
+  const std::shared_ptr<PackingShape> ball = makeShape(singleBall(0.5));
+  const PlacedPacking body(*ball, btTransform::getIdentity(), Estimator::raw, btScalar(0.2));
+  NearSphere seen;
+  seen.normal = btVector3(btScalar(0.6), 0, btScalar(0.8));
+  seen.distance = btScalar(0.49);
+  FaceOver face;
+  ASSERT_TRUE(faceOver(body, seen, face));
+  EXPECT_NEAR(face.curvature, 2, 0.01);
+  NearSphere near = seen;
+  layFaceOn(body, 50, near, [](const btVector3&, const btVector3&, btScalar) { return true; });
+  EXPECT_EQ(near.normal, seen.normal);
+  EXPECT_EQ(near.curvature, 50);
+  layFaceOn(body, BT_LARGE_FLOAT, near, [](const btVector3&, const btVector3&, btScalar) { return true; });
+  EXPECT_NEAR(near.curvature, 1e3 / body.searchRadius(0), 1) << "no sharper than what counts";
+}
+
 TEST_F(FaceOnEdge, DoesNotLieOnAnEdgeThatIsNotOutermost) {
   NearSphere near = seenFrom(0.1);
   const NearSphere before = near;
   btVector3 asked_at(0, 0, 0), asked_along(0, 0, 0);
-  layFaceOn(body_, near, [&](const btVector3& place, const btVector3& direction, btScalar) {
+  layFaceOn(body_, 0, near, [&](const btVector3& place, const btVector3& direction, btScalar) {
     asked_at = place;
     asked_along = direction;
     return false;
