@@ -102,11 +102,11 @@ std::vector<Case> cases() {
 
 std::string nameOf(const testing::TestParamInfo<Case>& info) {
   const Case& c = info.param;
-  const std::string posture = c.pitch > 0    ? "_falls_on_its_head"
-                              : c.pitch < 0  ? "_falls_on_its_tail"
-                              : c.tilt == 0  ? "_stands"
-                              : c.tilt > 3   ? "_upside_down"
-                                             : "_lies";
+  const std::string posture = c.pitch > 0   ? "_falls_on_its_head"
+                              : c.pitch < 0 ? "_falls_on_its_tail"
+                              : c.tilt == 0 ? "_stands"
+                              : c.tilt > 3  ? "_upside_down"
+                                            : "_lies";
   return c.solid + posture + "_on_" + c.ground + "_at_" + std::to_string(c.rate);
 }
 
