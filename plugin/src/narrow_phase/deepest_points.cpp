@@ -112,7 +112,7 @@ void climb(const SurfaceProbe& probe, btScalar steepest, int steps, bool over_ed
     }
     const Hillside next = hillsideAt(points, sample.direction);
     const bool climbs = next.depth - here.depth > kClimbs * here.slope.dot(step);
-    if (next.slope.length() > steepest || (!climbs && next.slope.length2() > here.slope.length2())) {
+    if ((over_edges && next.slope.length() > steepest) || (!climbs && next.slope.length2() > here.slope.length2())) {
       if (over_edges && next.slope.dot(step) < 0)
         falls.learn(step, here.slope - next.slope);  // the top is between
       else
@@ -234,7 +234,7 @@ void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::ve
 void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples) {
   for (std::size_t i = 0; i < count; ++i) {
     if (isUsable(samples[i]))
-      climb(probe, kSlopeBeside, kAscentStepsBeside, true, btVector3(0, 0, 0), samples[i]);
+      climb(probe, kSlopeBeside, kAscentStepsBeside, probe.hasEdges(), btVector3(0, 0, 0), samples[i]);
   }
 }
 
