@@ -1,7 +1,10 @@
 // Solids with thin parts.
 #pragma once
 
+#include <memory>
+
 #include "innersphere/geometry.hpp"
+#include "innersphere/solid.hpp"
 
 namespace innersphere::test {
 
@@ -9,5 +12,8 @@ namespace innersphere::test {
 Mesh cupMesh();
 /// A ball of 0.1 m with a horn along z, 0.2 m long, that ends in a point.
 Mesh hornMesh();
+/// A solid like a cow of 0.5 m that stands along x: a body with head, legs, ears, horns, udder and tail, of
+/// which the thinnest measures 6 mm.
+std::unique_ptr<Solid> makeCow();
 
 }  // namespace innersphere::test

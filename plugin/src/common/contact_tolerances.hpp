@@ -67,7 +67,10 @@ constexpr btScalar kConforming = btScalar(0.3);
 constexpr btScalar kUsableCosine = btScalar(0.5);
 /// An ascent to a top takes so many steps at most: each is one of Newton's method, whose error falls
 /// quadratically.
-constexpr int kAscentSteps = 16;
+constexpr int kAscentSteps = 8;
+/// Where the other surface has edges, each is one of a search in brackets: their number falls to a half or a
+/// third.
+constexpr int kAscentStepsOverEdges = 16;
 /// The other samples, which only have to get nearer, take so many.
 constexpr int kAscentStepsBeside = 2;
 /// Ratio: the slope is not believed to fall more slowly than by this part of what was believed before.

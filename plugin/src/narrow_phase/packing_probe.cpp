@@ -57,13 +57,11 @@ bool PackingProbe::probeLine(std::size_t index, const btVector3& direction, cons
   const PlacedPacking& other = of_a ? b_ : a_;
   const std::size_t sphere = contacts_[index].sphere;
   const btScalar radius = own.ownRadius(sphere);
+  if (shift.length() > surfaceDistance(index)) return false;
   const btVector3 way = of_a ? direction : -direction;
-  // What starts further back may go further aside.
-  const btScalar back = btMax(-shift.dot(way), btScalar(0));
-  if ((shift + way * back).length() > surfaceDistance(index) + back) return false;
   const btVector3 from = own.centreOf(sphere) + shift;
   const btVector3 to_other = other.origin() - own.origin();
-  const btScalar length = 2 * (radius + a_.search_margin + b_.search_margin) + back;
+  const btScalar length = 2 * (radius + a_.search_margin + b_.search_margin);
   SurfacePoint left, entered;
   if (!leaveSolid(own, from, way, length, of_a ? points.triangle_a : points.triangle_b, left) ||
       !enterSolid(other, from - to_other, way, length, of_a ? points.triangle_b : points.triangle_a,
@@ -86,15 +84,6 @@ bool PackingProbe::probeLine(std::size_t index, const btVector3& direction, cons
 btVector3 PackingProbe::lineStart(std::size_t index) const {
   const PlacedPacking& own = index < count_a_ ? a_ : b_;
   return own.origin() - a_.origin() + own.centreOf(contacts_[index].sphere);
-}
-
-btVector3 PackingProbe::toMiddleOfBend(const ProbedSample& sample) const {
-  const bool of_a = sample.index < count_a_;
-  const btScalar curvature = of_a ? sample.points.curvature_a : sample.points.curvature_b;
-  if (!(curvature > 0)) return {0, 0, 0};
-  const btVector3 way = of_a ? sample.direction : -sample.direction;
-  const btVector3& surface = of_a ? sample.points.on_a : sample.points.on_b;
-  return way * btMin((surface - lineStart(sample.index)).dot(way) - 1 / curvature, btScalar(0));
 }
 
 bool PackingProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const {

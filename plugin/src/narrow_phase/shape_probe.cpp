@@ -64,7 +64,7 @@ bool ShapeProbe::nearestBeside(const NearSphere& near_sphere, const btVector3& f
 
 /// From there the nearest place of B goes with the line: seen from close by, it stays on an edge, and jumps.
 btVector3 ShapeProbe::toMiddleOfBend(const ProbedSample& sample) const {
-  if (!(sample.points.curvature_a > 0)) return {0, 0, 0};
+  if (!hasEdges() || !(sample.points.curvature_a > 0)) return {0, 0, 0};
   const btScalar height = (sample.points.on_a - lineStart(sample.index)).dot(sample.direction);
   return sample.direction * btMin(height - 1 / sample.points.curvature_a, btScalar(0));
 }

@@ -37,6 +37,7 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
+  bool hasEdges() const override { return other_.isFaceted(); }
   btVector3 toMiddleOfBend(const ProbedSample& sample) const override;
   bool isOnFaceOfB(const OpposedPoints& points) const override;
   std::uint64_t id(std::size_t index) const override { return near_spheres_[index].sphere; }

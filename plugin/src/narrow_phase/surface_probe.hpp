@@ -74,6 +74,8 @@ class SurfaceProbe {
                          OpposedPoints& points) const = 0;
   /// Returns where lines start that are not moved sideways: the middle of the sphere [m].
   virtual btVector3 lineStart(std::size_t index) const = 0;
+  /// Returns true if B may have edges, at which the slope of the depth falls suddenly.
+  virtual bool hasEdges() const { return false; }
   /// Returns the way back along a sample's line to where ascents do better to start; zero by default [m].
   virtual btVector3 toMiddleOfBend(const ProbedSample&) const { return {0, 0, 0}; }
   /// Finds the direction from A to B in which the sphere is nearest to the other solid's surface. Returns

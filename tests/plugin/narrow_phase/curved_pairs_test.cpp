@@ -293,12 +293,13 @@ TEST_P(CurvedPairs, MeetAtTheDeepestPlace) {
     const double half_degree = 0.5 * kDegree / expected.valley,
                  allowed = std::max(0.01 * kRadius, half_degree);
     const btVector3& normal = as_deep || half_degree > 0.01 * kRadius ? there.normal : expected.normal;
-    // Of 1,000 placements on sharp hulls one may be up to a degree beside.
     const double angle = angleOf(found.normal, normal);
-    EXPECT_LT(angle, (hull ? 1 : 0.5) * kDegree) << i;
-    if (angle > 0.5 * kDegree) ++beside;
-    EXPECT_LT(found.on_b.distance((as_deep ? there : expected).on_b), allowed) << i;
+    const double away = found.on_b.distance((as_deep ? there : expected).on_b);
+    EXPECT_LT(angle, kDegree) << i;
+    EXPECT_LT(away, 2 * allowed) << i;
+    if (angle > 0.5 * kDegree || away > allowed) ++beside;
   }
+  // Of 1,000 placements one may be up to a degree beside: its ascent ended where its sphere does.
   EXPECT_LE(beside, 1);
   EXPECT_GT(tried, placements(hull) / 8);
 }

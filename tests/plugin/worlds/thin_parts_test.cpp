@@ -26,15 +26,18 @@ std::shared_ptr<PackingShape> shapeOf(const std::string& solid) {
     PackOptions options;
     options.spheres = 256;
     options.overlap_errors = false;
-    shape = makeShape(pack(*makeSolid(solid == "cup" ? cupMesh() : hornMesh(), solid), options));
+    const std::unique_ptr<Solid> packed =
+        solid == "cow" ? makeCow() : makeSolid(solid == "cup" ? cupMesh() : hornMesh(), solid);
+    shape = makeShape(pack(*packed, options));
   }
   return shape;
 }
 
 struct Case {
   std::string solid, ground;
-  double tilt;  ///< from standing, about x [rad]
-  int rate;     ///< [steps/s]
+  double tilt;       ///< from standing, about x [rad]
+  int rate;          ///< [steps/s]
+  double pitch = 0;  ///< before, about y [rad]
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
@@ -68,8 +71,9 @@ TEST_P(ThinParts, LieOnTheGround) {
     for (const btVector3& v : vertices) z = btMin(z, (body * v).z());
     return double(z);
   };
-  btTransform place =
-      btTransform(btQuaternion(btVector3(1, 0, 0), btScalar(c.tilt))) * shape->principalTransform().inverse();
+  const btQuaternion turn = btQuaternion(btVector3(1, 0, 0), btScalar(c.tilt)) *
+                            btQuaternion(btVector3(0, 1, 0), btScalar(c.pitch));
+  btTransform place = btTransform(turn) * shape->principalTransform().inverse();
   place.setOrigin(btVector3(btScalar(0.013), btScalar(0.027), 0));
   place.getOrigin().setZ(btScalar(0.01 - lowest(place)));
   btRigidBody& body = world.add(shape, 0.2, place.getOrigin(), place.getRotation());
@@ -88,6 +92,9 @@ std::vector<Case> cases() {
       // The cup on its bottom, its rim and its side; the horn on its side.
       for (const double tilt : {0.0, M_PI, M_PI / 2 + 0.1}) all.push_back({"cup", ground, tilt, rate});
       all.push_back({"horn", ground, M_PI / 2, rate});
+      // The cow on its legs, its horns, its side, its muzzle and its tail.
+      for (const double tilt : {0.0, M_PI, M_PI / 2 + 0.1}) all.push_back({"cow", ground, tilt, rate});
+      for (const double pitch : {1.2, -1.4}) all.push_back({"cow", ground, 0, rate, pitch});
     }
   }
   return all;
@@ -95,7 +102,11 @@ std::vector<Case> cases() {
 
 std::string nameOf(const testing::TestParamInfo<Case>& info) {
   const Case& c = info.param;
-  const std::string posture = c.tilt == 0 ? "_stands" : c.tilt > 3 ? "_on_its_rim" : "_lies";
+  const std::string posture = c.pitch > 0   ? "_falls_on_its_head"
+                              : c.pitch < 0 ? "_falls_on_its_tail"
+                              : c.tilt == 0 ? "_stands"
+                              : c.tilt > 3  ? "_upside_down"
+                                            : "_lies";
   return c.solid + posture + "_on_" + c.ground + "_at_" + std::to_string(c.rate);
 }
 

@@ -223,6 +223,8 @@ class HullSurface : public ConvexSurface {
  public:
   explicit HullSurface(const btPolyhedralConvexShape& hull) : ConvexSurface(hull), hull_(hull) {}
 
+  bool isFaceted() const override { return true; }
+
   void findNearSpheres(const PlacedPacking& body, const btTransform& world,
                        std::vector<NearSphere>& near_spheres) override {
     facets_.setHull(hull_);

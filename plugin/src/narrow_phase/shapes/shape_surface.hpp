@@ -40,6 +40,9 @@ class ShapeSurface {
   /// Returns true if it has flat faces, and may be hollow.
   virtual bool isMesh() const { return false; }
 
+  /// Returns true if it has many edges, as a hull that stands for a round body has.
+  virtual bool isFaceted() const { return false; }
+
   /// Returns true if the shape is as it was when it was asked last, and false if that cannot be told.
   virtual bool isAsBefore() { return false; }
   /// Renews the distances of near spheres for where the bodies are now; they may be further away by then.
