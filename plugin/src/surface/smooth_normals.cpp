@@ -12,6 +12,10 @@ namespace {
 constexpr btScalar kSmooth = btScalar(0.866);  // cos 30 degrees
 /// Normals that differ by less are those of a flat face, but for rounding [rad].
 constexpr btScalar kFlat = btScalar(1e-4);
+/// Ratio: triangles at a corner that reach further from it than others by this are of a flat face, or of a
+/// straight tube, and the others of the rounding or the bend in which it ends: no cut of one curve has such
+/// neighbours.
+constexpr btScalar kMuchFurther = 4;
 /// How far beyond an edge, in weights, a line still meets a triangle, and a point is still over it: no
 /// rounding leaves a gap between two, or takes the bulge from a point on a rim.
 constexpr btScalar kBeyond = btScalar(1e-4);
@@ -111,30 +115,46 @@ void SmoothNormals::layOnNeighbours(const Surface& surface, const Around& around
   }
 }
 
+/// Of the curved surface at a corner of a triangle, by the triangles around it that belong to that surface.
+btVector3 SmoothNormals::normalAt(const Surface& surface, const std::vector<std::uint32_t>& around,
+                                  std::uint32_t corner, const Facet& facet) const {
+  const auto forEach = [&](const auto& visit) {
+    for (const std::uint32_t other : around) {
+      if (!isSmooth(facet, facets_[other])) continue;
+      const auto& triangle = surface.triangles[other];
+      const std::size_t at = triangle[0] == corner ? 0 : triangle[1] == corner ? 1 : 2;
+      const btVector3* const corners = facets_[other].corners;
+      visit(corners[next(at)] - corners[at], corners[next(next(at))] - corners[at]);
+    }
+  };
+  btScalar furthest2 = 0;
+  forEach([&](const btVector3& e1, const btVector3& e2) {
+    furthest2 = btMax(furthest2, btMax(e1.length2(), e2.length2()));
+  });
+  btVector3 sum(0, 0, 0);
+  forEach([&](const btVector3& e1, const btVector3& e2) {
+    if (btMax(e1.length2(), e2.length2()) * (kMuchFurther * kMuchFurther) < furthest2) return;
+    // Weights of Max, "Weights for computing vertex normals from facet normals" (1999): exact on a ball,
+    // however it is cut.
+    const btScalar lengths = e1.length() * e2.length();
+    if (lengths > 0) sum += unit(e1).cross(unit(e2)) / lengths;
+  });
+  return unit(sum);
+}
+
 void SmoothNormals::setNormals(const Surface& surface, const Around& around) {
   for (std::size_t t = 0; t < facets_.size(); ++t) {
     Facet& facet = facets_[t];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = surface.triangles[t][k];
       facet.across[k] = kSeam;
-      btVector3 sum(0, 0, 0);
       for (std::uint32_t other : around[v]) {
         const auto& triangle = surface.triangles[other];
-        const btVector3* corners = facets_[other].corners;
-        const bool smooth = !(facet.face.dot(facets_[other].face) < kSmooth);
         if (other != t &&
             std::find(triangle.begin(), triangle.end(), surface.triangles[t][next(k)]) != triangle.end())
-          facet.across[k] = smooth ? other : kSharp + other;
-        if (!smooth) continue;
-        // Weights of Max, "Weights for computing vertex normals from facet normals" (1999): exact on a ball,
-        // however it is cut.
-        const std::size_t at = triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
-        const btVector3 e1 = corners[next(at)] - corners[at];
-        const btVector3 e2 = corners[next(next(at))] - corners[at];
-        const btScalar lengths = e1.length() * e2.length();
-        if (lengths > 0) sum += unit(e1).cross(unit(e2)) / lengths;
+          facet.across[k] = isSmooth(facet, facets_[other]) ? other : kSharp + other;
       }
-      facet.normals[k] = unit(sum);
+      facet.normals[k] = normalAt(surface, around[v], v, facet);
     }
     facet.curvature = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -163,6 +183,10 @@ void SmoothNormals::countToSharp() {
       }
     }
   }
+}
+
+bool SmoothNormals::isSmooth(const Facet& a, const Facet& b) {
+  return !(a.face.dot(b.face) < kSmooth);
 }
 
 /// False if the line is parallel to the triangle's plane.

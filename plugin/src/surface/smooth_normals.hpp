@@ -95,6 +95,9 @@ class SmoothNormals {
   void setCorners(const Surface& surface);
   static void setFace(const btVector3& face, Facet& facet);
   void layOnNeighbours(const Surface& surface, const Around& around);
+  static bool isSmooth(const Facet& a, const Facet& b);
+  btVector3 normalAt(const Surface& surface, const std::vector<std::uint32_t>& around, std::uint32_t corner,
+                     const Facet& facet) const;
   void setNormals(const Surface& surface, const Around& around);
   void countToSharp();
   static bool crossPlane(const Facet& facet, const btVector3& from, const btVector3& direction,

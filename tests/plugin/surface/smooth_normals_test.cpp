@@ -1,4 +1,4 @@
-// Where a surface cut into triangles is curved, and where it ends: on a cylinder both are known.
+// Where a surface cut into triangles is curved, and where it ends: on cylinders both are known.
 #include "surface/smooth_normals.hpp"
 
 #include <gtest/gtest.h>
@@ -135,6 +135,59 @@ TEST(SmoothNormals, ASeamIsNoEdge) {
   const btVector3 around(-place.y(), place.x(), 0);
   EXPECT_FALSE(normals.untilSharpEdge(triangle, place, around.normalized()).found());
   EXPECT_FALSE(normals.isPastSharpEdge(triangle, place + around * btScalar(0.1)));
+}
+
+/// A tube along z with round ends, cut into few long triangles there and many short ones here. Those of the
+/// side, two for each segment, come first.
+Surface capsule(double radius, double length, std::uint32_t segments) {
+  constexpr std::uint32_t kCap = 8;  // rings of each end, without its pole
+  Surface surface;
+  const auto ring = [&](std::uint32_t i) {  // from the lower pole up
+    const bool upper = i >= kCap;
+    const double angle = M_PI / 2 * (upper ? i - kCap : kCap - 1 - i) / kCap;
+    const double z = (upper ? 1 : -1) * (length / 2 + radius * std::sin(angle));
+    for (std::uint32_t k = 0; k < segments; ++k) {
+      const double around = 2 * M_PI * k / segments, r = radius * std::cos(angle);
+      surface.vertices.push_back({static_cast<float>(r * std::cos(around)),
+                                  static_cast<float>(r * std::sin(around)), static_cast<float>(z)});
+    }
+  };
+  for (std::uint32_t i = 0; i < 2 * kCap; ++i) ring(i);
+  const auto at = [&](std::uint32_t i, std::uint32_t k) { return i * segments + k % segments; };
+  const auto band = [&](std::uint32_t i) {
+    for (std::uint32_t k = 0; k < segments; ++k) {
+      surface.triangles.push_back({at(i, k), at(i, k + 1), at(i + 1, k)});
+      surface.triangles.push_back({at(i + 1, k), at(i, k + 1), at(i + 1, k + 1)});
+    }
+  };
+  band(kCap - 1);
+  for (std::uint32_t i = 0; i + 1 < 2 * kCap; ++i) {
+    if (i != kCap - 1) band(i);
+  }
+  const auto pole = static_cast<std::uint32_t>(surface.vertices.size());
+  for (const double side : {-1.0, 1.0})
+    surface.vertices.push_back({0, 0, static_cast<float>(side * (length / 2 + radius))});
+  for (std::uint32_t k = 0; k < segments; ++k) {
+    surface.triangles.push_back({at(0, k + 1), at(0, k), pole});
+    surface.triangles.push_back({at(2 * kCap - 1, k), at(2 * kCap - 1, k + 1), pole + 1});
+  }
+  return surface;
+}
+
+TEST(SmoothNormals, ALongSideIsStraightUpToItsRoundEnds) {
+  constexpr double kTube = 0.1, kLength = 1;
+  constexpr std::uint32_t kAround = 24;
+  const Surface surface = capsule(kTube, kLength, kAround);
+  const SmoothNormals normals(surface);
+  for (std::uint32_t t = 0; t < 2 * kAround; ++t) {
+    const btVector3 place = placeOn(surface, t);
+    const btVector3 axis(0, 0, place.z()), out = (place - axis).normalized();
+    SmoothNormals::Crossing crossing;
+    ASSERT_TRUE(normals.cross(t, axis, out, crossing));
+    const SmoothNormals::Place there = normals.at(t, crossing);
+    EXPECT_NEAR(crossing.distance + there.bulge, kTube, 1e-3 * kTube);
+    EXPECT_NEAR(there.normal.z(), 0, 1e-4);
+  }
 }
 
 /// A square in z = 0 with a wall down from its edge y = 0, on the middle of which there is a vertex, but for
