@@ -80,6 +80,7 @@ SceneWorld::SceneWorld(const ContactOptions& options, const BodyOptions& bodies,
     PackingCollisionAlgorithm::prepareWorld(world_, options);
   else
     PackingCollisionAlgorithm::registerAlgorithm(&dispatcher_, options);
+  if (solver.iterations > 0) world_.getSolverInfo().m_numIterations = solver.iterations;
   if (bodies.shape == BodyShape::gimpact) btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
 }
 
