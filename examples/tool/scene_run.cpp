@@ -94,7 +94,8 @@ void addSceneOptions(Command& command, demo::SceneOptions& options) {
       "--solver", options.solver.kind,
       {{"bullet", demo::SolverKind::bullet}, {"substep", demo::SolverKind::substep}},
       "What solves contacts and constraints: Bullet's sequential impulses, or SubstepSolver");
-  command.count("--substeps", options.solver.substeps, {0, 1000}, "Of SubstepSolver in a step; 0: it chooses");
+  command.count("--substeps", options.solver.substeps, {0, 1000},
+                "Of SubstepSolver in a step; 0: it chooses");
   command.count("--iterations", options.solver.iterations, {0, 10000},
                 "Of Bullet's solver in a step; 0: its 10");
   command.count("--seed", options.seed, kNotNegative, "Of random places and orientations");

@@ -26,8 +26,8 @@ bool isTooLarge(const Sphere& s) {
   throw Error(ErrorCode::bad_argument, what + " is beyond 1e15 m; scale the packing down");
 }
 
-/// True if all can be moved spheres of a model whose radii may go from `least` to `most`. Without branches, so that
-/// the compiler takes several at once; each comparison is false for what is not a number.
+/// True if all can be moved spheres of a model whose radii may go from `least` to `most`. Without branches,
+/// so that the compiler takes several at once; each comparison is false for what is not a number.
 bool allUsable(const Sphere* spheres, std::size_t count, float least, float most) {
   unsigned bad = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -72,7 +72,8 @@ CollisionModel::Impl::Impl(std::shared_ptr<const Packing> p) : packing(std::move
   setUsualRadii();
 }
 
-/// Volume-true radii grow with the spheres. Between half and twice what they can bear nobody need look at each.
+/// Volume-true radii grow with the spheres. Between half and twice what they can bear nobody need look at
+/// each.
 void CollisionModel::Impl::setUsualRadii() {
   double smallest = 1, largest = 1;  // a volume-true radius over that of its sphere
   for (const VolumeTrueRadii& radii : packing->volume_true) {

@@ -35,9 +35,9 @@ struct MeshReport {
   std::size_t degenerate = 0;  ///< The number of triangles with two equal corners, which were removed.
   /// The number of triangles with the corners of an earlier one, which were removed.
   std::size_t duplicates = 0;
-  std::size_t open_edges = 0;  ///< The number of edges that only one triangle uses.
-  std::size_t open_loops = 0;  ///< The number of connected chains of open edges.
-  Vec3d open_at{};             ///< A corner of the longest chain of open edges [m].
+  std::size_t open_edges = 0;          ///< The number of edges that only one triangle uses.
+  std::size_t open_loops = 0;          ///< The number of connected chains of open edges.
+  Vec3d open_at{};                     ///< A corner of the longest chain of open edges [m].
   std::size_t non_manifold_edges = 0;  ///< The number of edges that more than two triangles use.
   std::size_t flipped_edges = 0;       ///< The number of edges whose two triangles wind in opposite senses.
   std::size_t cuts = 0;                ///< The number of pairs of triangles that pass through each other.
@@ -62,9 +62,9 @@ Mesh readMesh(const std::string& path, const MeshOptions& options = {});
 /// equal positions, and those within 1e-7 of the diagonal if the mesh is open without that; it drops
 /// degenerate triangles and those that are there twice, winds triangles like their neighbours, turns shells
 /// that are inside-out, and drops shells inside solid material that face outwards. A shell inside another
-/// that faces inwards stays: a cavity. Shells may cut themselves and each other: inside is where the winding number exceeds 1/2, mass
-/// properties count each point once (by sampling 64 cells along the longest side), and distances are to the
-/// nearest triangle, so that spheres keep away from inner ones too.
+/// that faces inwards stays: a cavity. Shells may cut themselves and each other: inside is where the winding
+/// number exceeds 1/2, mass properties count each point once (by sampling 64 cells along the longest side),
+/// and distances are to the nearest triangle, so that spheres keep away from inner ones too.
 ///
 /// Throws Error: not_a_solid if the mesh does not bound a volume and repair was not asked for, with the
 /// defect, its place and the way out; empty_input, not_finite, bad_argument (a triangle names a vertex that

@@ -40,9 +40,11 @@ void mendOpenEdges(Mesh& mesh, Topology& topology, MeshReport& report) {
   keepIfBetter(std::move(welded), counted(merged, "vertex pair") + " closer than " + text(tolerance) +
                                       " m merged, because the mesh was open between them, and " +
                                       counted(collapsed, "triangle") + " that collapsed removed");
+  if (topology.unbalanced.empty()) return;
   Mesh without_flat = mesh;
   const std::size_t flat = dropFlat(without_flat);
   keepIfBetter(std::move(without_flat), counted(flat, "triangle") + " without area removed");
+  if (topology.unbalanced.empty()) return;
   Mesh split = mesh;
   const std::size_t edges = splitAtVertices(split, topology, tolerance);
   keepIfBetter(std::move(split), counted(edges, "edge") + " split at vertices that lie on them");

@@ -89,10 +89,10 @@ class Falls {
 };
 
 /// Moves a sample uphill along lines beside that from `shift` beside its sphere; not where slopes above
-/// `steepest` say that the top is far. Notes whether it got there. `over_edges`: the slope may fall suddenly,
-/// so that a step which loses the surface is taken again, shorter.
-void climb(const SurfaceProbe& probe, btScalar steepest, int steps, bool over_edges, btVector3 shift,
-           ProbedSample& sample) {
+/// `steepest` say that the top is far. Notes whether it got there. Over edges the slope may fall suddenly, so
+/// a step which loses the surface there is taken again, shorter.
+void climb(const SurfaceProbe& probe, btScalar steepest, int steps, btVector3 shift, ProbedSample& sample) {
+  const bool over_edges = probe.hasEdges();
   Hillside here = hillsideAt(sample.points, sample.direction);
   // There is no top where faces are flat, or fit together.
   if (fitTogether(sample.points.curvature_a, sample.points.curvature_b) || here.slope.length() > steepest)
@@ -112,7 +112,8 @@ void climb(const SurfaceProbe& probe, btScalar steepest, int steps, bool over_ed
     }
     const Hillside next = hillsideAt(points, sample.direction);
     const bool climbs = next.depth - here.depth > kClimbs * here.slope.dot(step);
-    if ((over_edges && next.slope.length() > steepest) || (!climbs && next.slope.length2() > here.slope.length2())) {
+    if ((over_edges && next.slope.length() > steepest) ||
+        (!climbs && next.slope.length2() > here.slope.length2())) {
       if (over_edges && next.slope.dot(step) < 0)
         falls.learn(step, here.slope - next.slope);  // the top is between
       else
@@ -138,8 +139,8 @@ void ascend(const SurfaceProbe& probe, ProbedSample& sample) {
   } else {
     back.setZero();
   }
-  const bool over_edges = probe.hasEdges();
-  climb(probe, BT_LARGE_FLOAT, over_edges ? kAscentStepsOverEdges : kAscentSteps, over_edges, back, sample);
+  const int steps = probe.hasEdges() ? kAscentStepsOverEdges : kAscentSteps;
+  climb(probe, BT_LARGE_FLOAT, steps, back, sample);
   const OpposedPoints& points = sample.points;
   const btVector3 normal = (points.normal_a + points.normal_b).normalized();
   const btVector3 apart = points.on_a - points.on_b;
@@ -151,7 +152,7 @@ void ascend(const SurfaceProbe& probe, ProbedSample& sample) {
   const btVector3 middle = (points.on_a + points.on_b) / 2 - probe.lineStart(sample.index);
   const btVector3 shift = middle - normal * middle.dot(normal) + probe.toMiddleOfBend(again);
   if (!probe.probeLine(sample.index, normal, shift, again.points)) return;
-  climb(probe, BT_LARGE_FLOAT, over_edges ? kAscentStepsOverEdges : kAscentSteps, over_edges, shift, again);
+  climb(probe, BT_LARGE_FLOAT, steps, shift, again);
   if (again.is_top) sample = again;
 }
 
@@ -233,8 +234,7 @@ void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::ve
 
 void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples) {
   for (std::size_t i = 0; i < count; ++i) {
-    if (isUsable(samples[i]))
-      climb(probe, kSlopeBeside, kAscentStepsBeside, probe.hasEdges(), btVector3(0, 0, 0), samples[i]);
+    if (isUsable(samples[i])) climb(probe, kSlopeBeside, kAscentStepsBeside, btVector3(0, 0, 0), samples[i]);
   }
 }
 
