@@ -281,7 +281,8 @@ increments of its total energy are more than {100 * _ENERGY:.0f} % of what its b
                      "the solid's size, of the gradient of the volume, of the depth. Gradients of manifold3d and trimesh are differences of "
                      "volumes. FCL, Coal and PyBullet tell depths; those of FCL and Coal are of pairs of triangles, not of solids: the largest is taken.\n\n"
                      f"{_overlaps(overlaps)}\n")
-    parts.append(f"## Motion\n\nHow far a body of each scene is from where it started [m], over time [s], at {fast}/s:\n\n"
+    parts.append(f"## Motion\n\nHow far a body of each scene is from where it started [m], over time [s], at {fast}/s. Where a scene should "
+                 "stay as it was put\n(arch, chain-heavy, mass-ratios, nut-locked, pyramid, stack, t-slot) that is its error:\n\n"
                  "![Way of a body over time](bench-motion.png)\n\n" + "".join(f"![{text}]({file})\n\n" for file, text in shown))
     if _failures(results):
         parts.append(f"## Runs without an end\n\n{_failures(results)}\n")
