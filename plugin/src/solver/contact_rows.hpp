@@ -31,7 +31,7 @@ enum class Pass {
 };
 
 /// The contacts of a group. Call begin(), find() and collect(), then addBlock() with the pairs in the order
-/// in which they are to be solved, then passes over blocks, then writeBack().
+/// in which they are to be solved, prepare() and carry(), then passes over blocks, then writeBack().
 class ContactRows {
  public:
   /// `wide`: with instructions that not every processor has.
