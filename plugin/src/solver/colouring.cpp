@@ -30,21 +30,25 @@ void Colouring::colour(const SolverBodies& bodies, const ConstraintRows& constra
   joint_colour_.clear();
   for (int i = 0; i < constraints.count(); ++i)
     joint_colour_.push_back(colourOf(constraints.bodyA(i), constraints.bodyB(i), movable));
+  // Pairs with as many points fill blocks best, too.
+  constexpr int kMostPoints = 32;
+  const int pair_count = static_cast<int>(contacts.pairs().size());
+  const std::vector<int>& by_points = point_order_.sort(pair_count, kMostPoints + 1, [&](int i) {
+    return kMostPoints - std::min(contacts.pairs()[static_cast<std::size_t>(i)].count, kMostPoints);
+  });
   pair_colour_.clear();
-  for (const TouchingPair& pair : contacts.pairs())
+  for (const int i : by_points) {
+    const TouchingPair& pair = contacts.pairs()[static_cast<std::size_t>(i)];
     pair_colour_.push_back(pair.b == movable ? kFixed : colourOf(pair.a, pair.b, movable));
+  }
 
   const auto jointColour = [&](int i) { return joint_colour_[static_cast<std::size_t>(i)]; };
+  // Of by_points[i].
   const auto pairColour = [&](int i) { return pair_colour_[static_cast<std::size_t>(i)]; };
   joints_ = &joint_order_.sort(constraints.count(), kAll, jointColour);
-  // Pairs with as many points fill blocks best.
-  constexpr int kMostPoints = 32;
-  const auto pairKey = [&](int i) {
-    const int points = contacts.pairs()[static_cast<std::size_t>(i)].count;
-    return (pairColour(i) + 1) * kMostPoints - std::min(points, kMostPoints);
-  };
-  const std::vector<int>& pairs =
-      pair_order_.sort(static_cast<int>(contacts.pairs().size()), kAll * kMostPoints, pairKey);
+  const std::vector<int>& order = pair_order_.sort(pair_count, kAll, pairColour);
+  pairs_.clear();
+  for (const int i : order) pairs_.push_back(by_points[static_cast<std::size_t>(i)]);
 
   colours_.clear();
   contacts.clearBlocks();
@@ -56,12 +60,12 @@ void Colouring::colour(const SolverBodies& bodies, const ConstraintRows& constra
     while (joint < joints_->size() && jointColour((*joints_)[joint]) == colour) ++joint;
     made.joints = static_cast<int>(joint) - made.first_joint;
     made.first_block = contacts.blocks();
-    while (pair < pairs.size() && pairColour(pairs[pair]) == colour) {
+    while (pair < order.size() && pairColour(order[pair]) == colour) {
       std::size_t end = pair + 1;
-      while (!made.alone && end < pairs.size() && end - pair < static_cast<std::size_t>(kLanes) &&
-             pairColour(pairs[end]) == colour)
+      while (!made.alone && end < order.size() && end - pair < static_cast<std::size_t>(kLanes) &&
+             pairColour(order[end]) == colour)
         ++end;
-      contacts.addBlock(&pairs[pair], static_cast<int>(end - pair));
+      contacts.addBlock(&pairs_[pair], static_cast<int>(end - pair));
       pair = end;
     }
     made.blocks = contacts.blocks() - made.first_block;

@@ -20,9 +20,10 @@ struct Colour {
   bool alone = false;  ///< one after the other, for they may share bodies
 };
 
-/// Gives each pair the first colour that neither of its bodies has yet, constraints first. Contacts with the
-/// fixed world, of which a body has one pair, come last: what stands on it is let in least. A body with more
-/// pairs than there are colours leaves some that are solved alone.
+/// Gives each pair the first colour that neither of its bodies has yet, constraints first, then pairs with
+/// most points: a colour takes as long as the most that one of its pairs has, and so only the first take
+/// long. Contacts with the fixed world, of which a body has one pair, come last: what stands on it is let in
+/// least. A body with more pairs than there are colours leaves some that are solved alone.
 class Colouring {
  public:
   /// Colours the rows of a group, and lays contacts out in blocks.
@@ -36,7 +37,8 @@ class Colouring {
 
   std::vector<std::uint64_t> taken_;  ///< of each body that can be moved, the colours it has
   std::vector<int> joint_colour_, pair_colour_;
-  CountingSort joint_order_, pair_order_;
+  std::vector<int> pairs_;  ///< in the order of their colours
+  CountingSort joint_order_, point_order_, pair_order_;
   const std::vector<int>* joints_ = nullptr;
   std::vector<Colour> colours_;
 };

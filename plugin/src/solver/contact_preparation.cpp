@@ -53,12 +53,13 @@ void ContactRows::beginStep(const btContactSolverInfo& info, int substeps) {
   bounce_threshold_ = info.m_restitutionVelocityThreshold;
   soft_ = Softness::ofPhase(kContactPhase, kContactDamping, substep_);
   soft_on_fixed_ = Softness::ofPhase(2 * kContactPhase, kContactDamping / 2, substep_);
+  bounces_ = false;
   warm_starting_ = (info.m_solverMode & SOLVER_USE_WARMSTARTING) != 0;
 }
 
 void ContactRows::prepare(int index, const SolverBodies& bodies) {
   Block& block = blocks_[static_cast<std::size_t>(index)];
-  block.bounces = block.rolls = block.bends = false;
+  block.bounces = block.rolls = block.bends = block.bouncing = false;
   block.share = Lanes{};
   for (int i = 0; i < block.count; ++i) points_[static_cast<std::size_t>(block.begin + i)] = PointLanes{};
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -78,6 +79,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       block.rolls = block.rolls || point.rolling[lane] > 0 || point.spinning[lane] > 0;
     }
   }
+  if (block.bounces) bounces_ = true;
   const LaneBodies a(block.a, bodies.states()), b(block.b, bodies.states());
   for (int i = block.begin; i < block.begin + block.count; ++i)
     fillMasses(points_[static_cast<std::size_t>(i)], a, b, block.rolls);

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "common/bullet_vectors.hpp"
+#include "solver/crew.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -33,14 +34,13 @@ void holdWithin(Lanes most, Lanes& along_1, Lanes& along_2) {
 
 void ContactRows::find(int begin, int end, btPersistentManifold** manifolds, const SolverBodies& bodies) {
   static_assert(MANIFOLD_CACHE_SIZE <= 32, "Entry::points has a bit for each");
+  int next = begin;
   for (int i = begin; i < end; ++i) {
-    Entry& entry = entries_[static_cast<std::size_t>(i)];
     btPersistentManifold& manifold = *manifolds[i];
+    if (manifold.getNumContacts() == 0) continue;
+    Entry entry{};
     entry.manifold = &manifold;
     entry.number = i;
-    entry.points = 0;
-    entry.broken = 0;
-    if (manifold.getNumContacts() == 0) continue;
     entry.a = bodies.placeOf(*manifold.getBody0());
     entry.b = bodies.placeOf(*manifold.getBody1());
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
@@ -52,7 +52,12 @@ void ContactRows::find(int begin, int end, btPersistentManifold** manifolds, con
       else
         ++entry.broken;
     }
+    entries_[static_cast<std::size_t>(next++)] = entry;
   }
+  // Most manifolds of a pile have no points: collect() need not look at them.
+  if (next == end) return;
+  entries_[static_cast<std::size_t>(next)].manifold = nullptr;
+  entries_[static_cast<std::size_t>(next)].number = end;
 }
 
 void ContactRows::collect(SolverBodies& bodies) {
@@ -70,10 +75,15 @@ void ContactRows::collect(SolverBodies& bodies) {
     return bodies.isMovable(entry.a);
   };
   std::size_t count = 0;
-  for (Entry& entry : entries_) {
+  for (std::size_t i = 0; i < entries_.size();) {
+    Entry& entry = entries_[i];
+    if (entry.manifold == nullptr) {
+      i = static_cast<std::size_t>(entry.number);
+      continue;
+    }
     if (pushes(entry)) entries_[count++] = entry;
+    ++i;
   }
-  entries_.resize(count);
   sorted_.clear();
   for (const int i : order_.sort(static_cast<int>(count), movable_,
                                  [&](int k) { return entries_[static_cast<std::size_t>(k)].a; }))
@@ -116,6 +126,25 @@ void ContactRows::addBlock(const int* pairs, int count) {
   point_count_ += block.count;
   if (points_.size() < static_cast<std::size_t>(point_count_))
     points_.resize(static_cast<std::size_t>(point_count_));
+}
+
+/// A block takes about as long as one point more than it has.
+int ContactRows::partOf(int first, int count, int part, int parts) const {
+  const auto costBefore = [&](int i) {
+    return (i < blocks() ? blocks_[static_cast<std::size_t>(i)].begin : point_count_) + i;
+  };
+  const int begin = costBefore(first), end = costBefore(first + count);
+  const int from = 2 * (begin + Crew::boundOf(end - begin, part, parts));
+  // Where its middle lies decides.
+  int low = first, high = first + count;
+  while (low < high) {
+    const int middle = (low + high) / 2;
+    if (costBefore(middle) + costBefore(middle + 1) < from)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
 }
 
 /// How the place goes over both bodies, while these move by u and turn normals by t_a and t_b: with their
@@ -166,40 +195,39 @@ void ContactRows::follow(const Block& block, PointLanes& point, const LaneBodies
   point.arm_b = point.pivot_b + point.normal_0 * point.radius_b + to_b + apart * block.share;
 }
 
-void ContactRows::warmStartBlock(int index, std::vector<BodyState>& states) {
-  Block& block = blocks_[static_cast<std::size_t>(index)];
-  block.bouncing = false;
-  LaneBodies a(block.a, states), b(block.b, states);
+void ContactRows::carryBlock(const Block& block, std::vector<BodyState>& states) {
+  Lanes3 impulse, on_a, on_b;
   for (int i = block.begin; i < block.begin + block.count; ++i) {
-    PointLanes& point = points_[static_cast<std::size_t>(i)];
-    if (block.bounces) startBounces(block, point, a, b);
-    const Lanes3 impulse =
+    const PointLanes& point = points_[static_cast<std::size_t>(i)];
+    const Lanes3 push =
         point.normal * point.impulse + point.side_1 * point.impulse_1 + point.side_2 * point.impulse_2;
-    a.pushAt(point.arm_a, impulse);
-    b.pushAt(point.arm_b, impulse * inAll(-1));
+    impulse = impulse + push;
+    on_a = on_a + cross(point.arm_a, push);
+    on_b = on_b + cross(point.arm_b, push);
     if (!block.rolls) continue;
     const Lanes3 turn = point.side_1 * point.roll_1 + point.side_2 * point.roll_2 + point.normal * point.spin;
-    a.turn(turn);
-    b.turn(turn * inAll(-1));
+    on_a = on_a + turn;
+    on_b = on_b + turn;
   }
-  a.put(block.a, movable_, states);
-  b.put(block.b, movable_, states);
+  LaneBodies::add(impulse, on_a, block.a, movable_, states);
+  LaneBodies::add(impulse * inAll(-1), on_b * inAll(-1), block.b, movable_, states);
 }
 
-/// Points that the bodies reach in this substep leave as fast as restitution says. What threw them back is no
-/// load that goes on.
-void ContactRows::startBounces(Block& block, PointLanes& point, const LaneBodies& a,
-                               const LaneBodies& b) const {
+/// Points that the bodies reach leave as fast as restitution says.
+void ContactRows::findBounces(int index, const std::vector<BodyState>& states) {
+  Block& block = blocks_[static_cast<std::size_t>(index)];
+  if (!block.bounces) return;
+  block.bouncing = false;
   const Lanes none{};
-  const auto bounced = point.bounce > none;
-  point.impulse = bounced ? none : point.impulse;
-  point.impulse_1 = bounced ? none : point.impulse_1;
-  point.impulse_2 = bounced ? none : point.impulse_2;
-  const Lanes speed = dot(a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b), point.normal);
-  const auto hits = point.gap + speed * inAll(substep_) <= none;
-  point.bounce = hits ? speed * point.restitution * inAll(-1) : none;
-  point.bounce = speed < inAll(-bounce_threshold_) ? point.bounce : none;
-  for (int lane = 0; lane < kLanes; ++lane) block.bouncing = block.bouncing || point.bounce[lane] > 0;
+  const LaneBodies a(block.a, states), b(block.b, states);
+  for (int i = block.begin; i < block.begin + block.count; ++i) {
+    PointLanes& point = points_[static_cast<std::size_t>(i)];
+    const Lanes speed = dot(a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b), point.normal);
+    const auto hits = point.gap + speed * inAll(substep_) <= none;
+    point.bounce = hits ? speed * point.restitution * inAll(-1) : none;
+    point.bounce = speed < inAll(-bounce_threshold_) ? point.bounce : none;
+    for (int lane = 0; lane < kLanes; ++lane) block.bouncing = block.bouncing || point.bounce[lane] > 0;
+  }
 }
 
 void ContactRows::solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b) {
@@ -274,26 +302,34 @@ void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& state
       solveFriction(block, *point, a, b);
     }
   }
-  for (int i = block.begin; pass == Pass::relax && i < block.begin + block.count; ++i) {
-    PointLanes& point = points_[static_cast<std::size_t>(i)];
-    point.sum += point.impulse;
-    point.sum_1 += point.impulse_1;
-    point.sum_2 += point.impulse_2;
-  }
   a.put(block.a, movable_, states);
   b.put(block.b, movable_, states);
+  if (pass == Pass::push) return;
+  for (PointLanes* point = begin; point != end; ++point) {
+    point->sum += point->impulse;
+    point->sum_1 += point->impulse_1;
+    point->sum_2 += point->impulse_2;
+    if (!block.bouncing) continue;
+    // What threw bodies back is no load that goes on.
+    const Lanes none{};
+    const auto bounced = point->bounce > none;
+    point->impulse = bounced ? none : point->impulse;
+    point->impulse_1 = bounced ? none : point->impulse_1;
+    point->impulse_2 = bounced ? none : point->impulse_2;
+  }
+  carryBlock(block, states);
 }
 
-void ContactRows::warmStartWide(int index, std::vector<BodyState>& states) {
-  warmStartBlock(index, states);
+void ContactRows::carryWide(int index, std::vector<BodyState>& states) {
+  carryBlock(blocks_[static_cast<std::size_t>(index)], states);
 }
 
 void ContactRows::solveWide(int index, Pass pass, std::vector<BodyState>& states) {
   solveBlock(index, pass, states);
 }
 
-void ContactRows::warmStart(int index, std::vector<BodyState>& states) {
-  wide_ ? warmStartWide(index, states) : warmStartBlock(index, states);
+void ContactRows::carry(int index, std::vector<BodyState>& states) {
+  wide_ ? carryWide(index, states) : carryBlock(blocks_[static_cast<std::size_t>(index)], states);
 }
 
 void ContactRows::solve(int index, Pass pass, std::vector<BodyState>& states) {
@@ -309,9 +345,8 @@ void ContactRows::writeBack(int index) {
       const PointLanes& from = points_[static_cast<std::size_t>(block.begin + i)];
       const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];
       btManifoldPoint& point = *source.point;
-      const bool bounced = from.bounce[lane] > 0;
       point.m_appliedImpulse = from.sum[lane];
-      point.m_prevRHS = bounced ? btScalar(0) : from.impulse[lane] * substeps_;
+      point.m_prevRHS = from.impulse[lane] * substeps_;
       point.m_appliedImpulseLateral1 = from.sum_1[lane];
       point.m_appliedImpulseLateral2 = from.sum_2[lane];
       if ((point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0) continue;

@@ -1,6 +1,7 @@
 // Contacts of pairs of bodies as rows that are solved several pairs at a time.
 #pragma once
 
+#include <atomic>
 #include <vector>
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
@@ -30,7 +31,7 @@ enum class Pass {
 };
 
 /// The contacts of a group. Call begin(), find() and collect(), then addBlock() with the pairs in the order
-/// in which they are to be solved, then passes over blocks, then writeBack().
+/// in which they are to be solved, prepare() and carry(), then passes over blocks, then writeBack().
 class ContactRows {
  public:
   /// `wide`: with instructions that not every processor has.
@@ -50,13 +51,19 @@ class ContactRows {
   int blocks() const { return static_cast<int>(blocks_.size()); }
   /// Returns the number of points that all blocks have room for.
   int points() const { return point_count_; }
+  /// Returns the first of `count` blocks from `first` on that is of this part of them; parts are as dear.
+  int partOf(int first, int count, int part, int parts) const;
 
   /// Takes over what holds for all rows of a step.
   void beginStep(const btContactSolverInfo& info, int substeps);
   /// Fills the rows of a block.
   void prepare(int block, const SolverBodies& bodies);
-  /// Applies the impulses of the last substep.
-  void warmStart(int block, std::vector<BodyState>& states);
+  /// Adds the impulses that points have borne to what the next substep begins with. Pass::relax does so, too.
+  void carry(int block, std::vector<BodyState>& states);
+  /// Returns true if bodies are thrown back by some points, as restitution says.
+  bool bounces() const { return bounces_; }
+  /// Finds those that they reach in this substep. Bodies are only read.
+  void findBounces(int block, const std::vector<BodyState>& states);
   void solve(int block, Pass pass, std::vector<BodyState>& states);
   /// Tells the points what they have borne.
   void writeBack(int block);
@@ -100,8 +107,8 @@ class ContactRows {
     bool bouncing;               ///< in this substep
   };
   struct Entry {
-    btPersistentManifold* manifold;
-    int number;  ///< among those that Bullet gave
+    btPersistentManifold* manifold;  ///< null: there are none up to `number`
+    int number;                      ///< among those that Bullet gave
     int a, b;
     unsigned points;  ///< those that push: a bit for each
     int broken;       ///< the number of those that are not finite
@@ -120,18 +127,17 @@ class ContactRows {
   void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                     const SolverBodies& bodies) const;
   // Position-independent code inlines what is declared so.
-  inline void warmStartBlock(int index, std::vector<BodyState>& states);
+  inline void carryBlock(const Block& block, std::vector<BodyState>& states);
   inline void solveBlock(int index, Pass pass, std::vector<BodyState>& states);
-  INNERSPHERE_WIDE void warmStartWide(int index, std::vector<BodyState>& states);
+  INNERSPHERE_WIDE void carryWide(int index, std::vector<BodyState>& states);
   INNERSPHERE_WIDE void solveWide(int index, Pass pass, std::vector<BodyState>& states);
   inline static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
   inline static void roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way,
                           Lanes3& to_a, Lanes3& to_b);
-  inline void startBounces(Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) const;
   inline static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
   inline void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
 
-  std::vector<Entry> entries_;  ///< one for each manifold, then one for each that pushes
+  std::vector<Entry> entries_;  ///< room for each manifold, then one for each that pushes
   std::vector<Entry> sorted_;
   CountingSort order_;
   std::vector<Source> sources_;
@@ -145,6 +151,7 @@ class ContactRows {
   btScalar bounce_threshold_ = 0;  ///< [m/s]
   btScalar slop_ = 0;              ///< [m]
   bool warm_starting_ = true;
+  std::atomic<bool> bounces_{false};
   bool wide_;
   int movable_ = 0;
   int broken_ = 0;

@@ -34,16 +34,16 @@ void Crew::take(int index, std::uint64_t stage) {
   Part& part = parts_[static_cast<std::size_t>(index)];
   std::uint64_t begun = part.begun.load(std::memory_order_relaxed);
   if (begun >= stage || !part.begun.compare_exchange_strong(begun, stage, std::memory_order_acq_rel)) return;
-  const auto bound = [&](int i) { return static_cast<int>(std::int64_t(stage_.count) * i / partsOf(stage)); };
-  stage_.part(stage_.job, bound(index), bound(index + 1));
+  stage_.call(stage_.job, index, partsOf(stage));
   part.finished.store(stage, std::memory_order_release);
 }
 
-void Crew::publish(const Stage& stage, int parts) {
-  stage_ = stage;
-  const std::uint64_t before = current_.load(std::memory_order_relaxed) / kStage;
+void Crew::publish(Call call, const void* job, int parts) {
+  stage_.call = call;
+  stage_.job = job;
+  const std::uint64_t before = stage_.number.load(std::memory_order_relaxed) / kStage;
   const std::uint64_t current = (before + 1) * kStage + static_cast<std::uint64_t>(parts);
-  current_.store(current, std::memory_order_release);
+  stage_.number.store(current, std::memory_order_release);
   take(0, current);
   for (int i = 1; i < parts; ++i) {
     const Part& part = parts_[static_cast<std::size_t>(i)];
@@ -57,7 +57,7 @@ void Crew::help() {
   const int thread = threads_.fetch_add(1, std::memory_order_relaxed);
   std::uint64_t seen = 0;
   for (int asked = 0; !ended_.load(std::memory_order_acquire);) {
-    const std::uint64_t current = current_.load(std::memory_order_acquire);
+    const std::uint64_t current = stage_.number.load(std::memory_order_acquire);
     if (current == seen) {
       pause(asked);
       continue;

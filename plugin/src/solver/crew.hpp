@@ -36,25 +36,43 @@ class Crew {
     });
   }
 
+  /// Calls job(part, parts) for each part of something, which may run at the same time. There are no more
+  /// than `most`, and none if that is 0.
+  template <typename Job>
+  void forEachPart(int most, const Job& job) {
+    const int parts = std::min(most, threads_.load(std::memory_order_relaxed));
+    if (parts <= 1) {
+      if (most > 0) job(0, 1);
+      return;
+    }
+    const auto call = [](const void* context, int part, int of) {
+      (*static_cast<const Job*>(context))(part, of);
+    };
+    publish(call, &job, parts);
+  }
+
   /// Calls job(begin, end) for parts of [0, count), of `grain` at least, which may run at the same time.
   template <typename Job>
   void forEach(int count, int grain, const Job& job) {
-    const int parts = std::min((count + grain - 1) / grain, threads_.load(std::memory_order_relaxed));
-    if (parts <= 1) {
-      if (count > 0) job(0, count);
-      return;
-    }
-    const auto part = [](const void* context, int begin, int end) {
-      (*static_cast<const Job*>(context))(begin, end);
-    };
-    publish({part, &job, count}, parts);
+    forEachPart((count + grain - 1) / grain, [&](int part, int parts) {
+      job(boundOf(count, part, parts), boundOf(count, part + 1, parts));
+    });
+  }
+
+  /// Returns where a part of [0, count) begins.
+  static int boundOf(int count, int part, int parts) {
+    return static_cast<int>(std::int64_t(count) * part / parts);
   }
 
  private:
-  struct Stage {
-    void (*part)(const void*, int, int) = nullptr;
+  using Call = void (*)(const void* job, int part, int parts);
+  /// In a line of the caches: who sees a new one has all of it.
+  struct alignas(64) Stage {
+    /// These are written while no part of a stage is left, and read by those who have begun one.
+    Call call = nullptr;
     const void* job = nullptr;
-    int count = 0;
+    /// The number of its parts in the lowest byte, its own above.
+    std::atomic<std::uint64_t> number{0};
   };
   /// The last stages of which this part has been begun, and finished. Each has a line of the caches.
   struct alignas(64) Part {
@@ -70,14 +88,11 @@ class Crew {
     }
   };
 
-  void publish(const Stage& stage, int parts);
+  void publish(Call call, const void* job, int parts);
   void take(int part, std::uint64_t stage);
   void help();
 
-  /// Is written while no part of a stage is left, and read by those who have begun one.
   Stage stage_;
-  /// The number of its parts in the lowest byte, its own above.
-  alignas(64) std::atomic<std::uint64_t> current_{0};
   alignas(64) std::atomic<int> threads_{1};  ///< that are there
   std::atomic<bool> ended_{false};
   std::array<Part, kMostThreads> parts_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include <LinearMath/btVector3.h>
 
@@ -41,6 +42,34 @@ inline Lanes smaller(Lanes a, Lanes b) {
 inline Lanes root(Lanes a) {
   for (int lane = 0; lane < kLanes; ++lane) a[lane] = std::sqrt(a[lane]);
   return a;
+}
+
+/// Takes numbers of two rows: the places of b follow those of a.
+#if defined(__has_builtin) && __has_builtin(__builtin_shufflevector)
+#define INNERSPHERE_PICKED(a, b, place) __builtin_shufflevector(a, b, (place)...)
+#else
+#define INNERSPHERE_PICKED(a, b, place) \
+  (Lanes{((place) < kLanes ? a[(place) % kLanes] : b[(place) % kLanes])...})
+#endif
+
+/// Exchanges numbers of two rows of a matrix whose numbers differ in this bit: those at places that have it
+/// in a, and those at places that lack it in b.
+template <int kBit, int... kPlaces>
+void exchange(Lanes& a, Lanes& b, std::integer_sequence<int, kPlaces...>) {
+  const Lanes first = INNERSPHERE_PICKED(a, b, (kPlaces & kBit) == 0 ? kPlaces : kLanes + (kPlaces ^ kBit));
+  b = INNERSPHERE_PICKED(a, b, (kPlaces & kBit) == 0 ? kPlaces ^ kBit : kLanes + kPlaces);
+  a = first;
+}
+#undef INNERSPHERE_PICKED
+
+/// Makes rows of as many numbers the columns.
+template <int kBit = kLanes / 2>
+void transpose(Lanes* rows) {
+  for (int row = 0; row < kLanes; ++row) {
+    if ((row & kBit) == 0)
+      exchange<kBit>(rows[row], rows[row + kBit], std::make_integer_sequence<int, kLanes>());
+  }
+  if constexpr (kBit > 1) transpose<kBit / 2>(rows);
 }
 
 /// A vector in each lane.

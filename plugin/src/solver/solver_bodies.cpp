@@ -162,6 +162,9 @@ void SolverBodies::accelerate(int begin, int end, btScalar substep) {
     BodyState& state = states_[static_cast<std::size_t>(i)];
     state.velocity += body.force * substep;
     if (!body.torque.isZero()) state.spin += state.inverseInertiaTimes(body.torque * substep);
+    state.push(state.impulse, state.angular_impulse);
+    state.impulse.setZero();
+    state.angular_impulse.setZero();
   }
 }
 
@@ -208,7 +211,7 @@ void SolverBodies::move(int begin, int end, btScalar substep) {
   for (int i = begin; i < end; ++i) {
     const Body& body = bodies_[static_cast<std::size_t>(i)];
     BodyState& state = states_[static_cast<std::size_t>(i)];
-    state.moved += state.velocity * substep;
+    state.moved = state.moved + state.velocity * substep;
     turn(body, state, substep);
     if (!body.followed) continue;
     body.rigid->setWorldTransform(poseOf(body, state));
@@ -223,7 +226,7 @@ void SolverBodies::moveDriven(btScalar substep) {
     BodyState& state = states_[i];
     // A static body with a velocity is a belt: its surface moves, it does not.
     if (!bodies_[i].rigid->isKinematicObject()) continue;
-    state.moved += state.velocity * substep;
+    state.moved = state.moved + state.velocity * substep;
     state.turned = (rotationOf(state.spin, substep) * state.turned).normalized();
     if (bodies_[i].followed) bodies_[i].rigid->setWorldTransform(poseOf(bodies_[i], state));
   }

@@ -11,15 +11,31 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// A vector without the fourth number that Bullet's have.
+struct PlainVector {
+  btScalar x = 0, y = 0, z = 0;
+
+  PlainVector& operator=(const btVector3& v) {
+    x = v.x();
+    y = v.y();
+    z = v.z();
+    return *this;
+  }
+  operator btVector3() const { return btVector3(x, y, z); }
+};
+
 /// What rows read and write of a body: how it moves, how far it has moved since the step began, and how it
-/// yields to impulses. What passes write has a line of the caches of its own: the others' stay with all
+/// yields to impulses. What passes write has lines of the caches of its own: the others' stay with all
 /// threads.
 struct alignas(64) BodyState {
   btVector3 velocity{0, 0, 0};  ///< [m/s]
   btVector3 spin{0, 0, 0};      ///< [rad/s]
-  btVector3 moved{0, 0, 0};     ///< [m]
+  /// What contacts have borne in the last substep, with which the next one begins.
+  btVector3 impulse{0, 0, 0};          ///< [N s]
+  btVector3 angular_impulse{0, 0, 0};  ///< [N m s]
   btQuaternion turned = btQuaternion::getIdentity();
-  btVector3 inverse_mass{0, 0, 0};  ///< along each axis of the world, as its linear factor allows [1/kg]
+  PlainVector moved;         ///< [m]
+  PlainVector inverse_mass;  ///< along each axis of the world, as its linear factor allows [1/kg]
   /// Of the inverse inertia in the world, a symmetric matrix [1/(kg m^2)].
   btScalar xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 
@@ -27,11 +43,12 @@ struct alignas(64) BodyState {
     return btVector3(xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
                      xz * v.x() + yz * v.y() + zz * v.z());
   }
-  void push(const btVector3& impulse, const btVector3& angular_impulse) {
-    velocity += impulse * inverse_mass;
-    spin += inverseInertiaTimes(angular_impulse);
+  void push(const btVector3& by, const btVector3& turning_by) {
+    velocity += by * inverse_mass;
+    spin += inverseInertiaTimes(turning_by);
   }
 };
+static_assert(sizeof(BodyState) == 32 * sizeof(btScalar), "LaneBodies takes it in rows");
 
 /// Bodies that can be moved come first; then the fixed world, and whatever else moves by itself.
 class SolverBodies {
@@ -68,7 +85,8 @@ class SolverBodies {
   /// Returns the largest acceleration that forces of the world and the user give a body [m/s^2].
   btScalar largestAcceleration() const;
 
-  /// Adds what forces and torques bring in a substep [s] to the bodies in [begin, end).
+  /// Adds what forces, torques and the impulses of the last substep bring in a substep [s] to the bodies in
+  /// [begin, end).
   void accelerate(int begin, int end, btScalar substep);
   /// Moves the bodies in [begin, end).
   void move(int begin, int end, btScalar substep);

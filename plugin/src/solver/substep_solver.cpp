@@ -20,7 +20,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// What a part for a thread has at least, and what makes a thread worth calling.
-constexpr int kBlocks = 1, kJoints = 2, kBodies = 16, kManifolds = 32, kPairsForThread = 128;
+constexpr int kJoints = 2, kBodies = 16, kManifolds = 32, kPairsForThread = 128;
 
 void checkSubsteps(const SubstepOptions& options) {
   constexpr int kMost = 1000;
@@ -52,6 +52,8 @@ class SubstepSolver::Impl {
   void pass(Pass pass);
   template <typename Joint, typename Block>
   void forEachRow(const Joint& joint, const Block& block);
+  template <typename Work>
+  void forEachBlock(const Work& work);
   void report();
 
   SolverBodies bodies_;
@@ -80,21 +82,30 @@ void SubstepSolver::Impl::endStep() {
 template <typename Joint, typename Block>
 void SubstepSolver::Impl::forEachRow(const Joint& joint, const Block& block) {
   for (const Colour& colour : colouring_.colours()) {
-    const auto joints = [&](int begin, int end) {
-      for (int i = begin; i < end; ++i)
+    const auto rows = [&](int part, int parts) {
+      const int joints = Crew::boundOf(colour.joints, part + 1, parts);
+      for (int i = Crew::boundOf(colour.joints, part, parts); i < joints; ++i)
         joint(colouring_.joints()[static_cast<std::size_t>(colour.first_joint + i)]);
+      const int blocks = contacts_.partOf(colour.first_block, colour.blocks, part + 1, parts);
+      for (int i = contacts_.partOf(colour.first_block, colour.blocks, part, parts); i < blocks; ++i)
+        block(i);
     };
-    const auto blocks = [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) block(colour.first_block + i);
-    };
-    if (colour.alone) {
-      joints(0, colour.joints);
-      blocks(0, colour.blocks);
-    } else {
-      crew_.forEach(colour.joints, kJoints, joints);
-      crew_.forEach(colour.blocks, kBlocks, blocks);
-    }
+    if (colour.alone)
+      rows(0, 1);
+    else
+      crew_.forEachPart((colour.joints + kJoints - 1) / kJoints + colour.blocks, rows);
   }
+}
+
+/// Calls for all blocks at the same time, each by the thread that has it in forEachRow().
+template <typename Work>
+void SubstepSolver::Impl::forEachBlock(const Work& work) {
+  crew_.forEachPart(Crew::kMostThreads, [&](int part, int parts) {
+    for (const Colour& colour : colouring_.colours()) {
+      const int end = contacts_.partOf(colour.first_block, colour.blocks, part + 1, parts);
+      for (int i = contacts_.partOf(colour.first_block, colour.blocks, part, parts); i < end; ++i) work(i);
+    }
+  });
 }
 
 void SubstepSolver::Impl::pass(Pass pass) {
@@ -107,8 +118,8 @@ void SubstepSolver::Impl::step(btScalar substep) {
                 [&](int begin, int end) { bodies_.accelerate(begin, end, substep); });
   // The user's classes are asked by this thread alone.
   for (int i = 0; i < constraints_.count(); ++i) constraints_.refresh(i, bodies_);
-  forEachRow([&](int joint) { constraints_.warmStart(joint, bodies_.states()); },
-             [&](int block) { contacts_.warmStart(block, bodies_.states()); });
+  for (const int joint : colouring_.joints()) constraints_.warmStart(joint, bodies_.states());
+  if (contacts_.bounces()) forEachBlock([&](int block) { contacts_.findBounces(block, bodies_.states()); });
   pass(Pass::push);
   crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.move(begin, end, substep); });
   bodies_.moveDriven(substep);
@@ -126,20 +137,16 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
   const int helpers = std::min((manifold_count + constraint_count) / kPairsForThread,
                                tbb::this_task_arena::max_concurrency() - 1);
   crew_.work(helpers, [&] {
-    const auto eachBlock = [&](const auto& job) {
-      crew_.forEach(contacts_.blocks(), kBlocks, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) job(i);
-      });
-    };
     crew_.forEach(body_count, kBodies, [&](int begin, int end) { bodies_.find(begin, end, bodies); });
     bodies_.collect();
     crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.fill(begin, end); });
     crew_.forEach(manifold_count, kManifolds,
                   [&](int begin, int end) { contacts_.find(begin, end, manifolds, bodies_); });
     const int substeps = arrange(constraints, constraint_count, info);
-    eachBlock([&](int block) { contacts_.prepare(block, bodies_); });
+    forEachBlock([&](int block) { contacts_.prepare(block, bodies_); });
+    forEachRow([](int) {}, [&](int block) { contacts_.carry(block, bodies_.states()); });
     for (int i = 0; i < substeps; ++i) step(time_step / btScalar(substeps));
-    eachBlock([&](int block) { contacts_.writeBack(block); });
+    forEachBlock([&](int block) { contacts_.writeBack(block); });
     constraints_.writeBack();
     crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.finish(begin, end); });
   });

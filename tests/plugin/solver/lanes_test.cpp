@@ -32,7 +32,9 @@ std::vector<btScalar> solved(SolverWorld& world, bool wide) {
   contacts.beginStep(info, 1);
   colouring.colour(bodies, constraints, contacts);
   for (int i = 0; i < contacts.blocks(); ++i) contacts.prepare(i, bodies);
-  for (int i = 0; i < contacts.blocks(); ++i) contacts.warmStart(i, bodies.states());
+  for (int i = 0; i < contacts.blocks(); ++i) contacts.carry(i, bodies.states());
+  bodies.accelerate(0, bodies.movable(), info.m_timeStep);
+  for (int i = 0; i < contacts.blocks(); ++i) contacts.findBounces(i, bodies.states());
   for (const Pass pass : {Pass::push, Pass::relax}) {
     for (int i = 0; i < contacts.blocks(); ++i) contacts.solve(i, pass, bodies.states());
     bodies.move(0, bodies.movable(), info.m_timeStep);
