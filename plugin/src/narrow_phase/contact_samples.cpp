@@ -157,6 +157,13 @@ class PatchContactPoints {
     if (!sample.points.areFlat() || !addCrossing(sample.points, crossing)) addPeaks(sample, true);
   }
 
+  /// For the same, where A is through a mesh.
+  void addTips(const ShapeProbe& probe, const ProbedSample& sample) {
+    scratch_.corners.clear();
+    probe.tips(sample.points, scratch_.vertices, scratch_.corners);
+    for (const EdgeContact& tip : scratch_.corners) addCorner(tip, true);
+  }
+
   bool addCrossing(const OpposedPoints& points, EdgeContact& crossing) {
     return probe_.crossing(points, patch_.normal, crossing) &&
            (isFound(crossing.id) ||
@@ -287,7 +294,10 @@ void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separati
   const ContactNormal normals(scratch.probed, nullptr);
   PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
   for (const ProbedSample& sample : scratch.probed) points.addSample(sample, normals.at(sample));
-  for (const ProbedSample& sample : scratch.sideways) points.addBeside(sample);
+  for (const ProbedSample& sample : scratch.sideways) {
+    points.addBeside(sample);
+    points.addTips(probe, sample);
+  }
   points.shareOutArea();
 }
 

@@ -141,6 +141,24 @@ void ShapeProbe::corners(std::size_t index, const OpposedPoints& points, const b
   }
 }
 
+void ShapeProbe::tips(const OpposedPoints& points, std::vector<std::uint32_t>& vertices,
+                      std::vector<EdgeContact>& tips) const {
+  const btVector3& into_b = points.normal_b;
+  if (!other_.isMesh() ||
+      !cornersUphill(a_, points.triangle_a, into_b, points.on_a, BT_LARGE_FLOAT, vertices))
+    return;
+  for (const std::uint32_t vertex : vertices) {
+    const btVector3 at = cornerAt(a_, vertex, into_b);
+    // As deep if the mesh is flat; it may as well rise.
+    btScalar depth = (at - points.on_b).dot(into_b);
+    if (!(depth > 0) || !other_.depthOf(a_, world_, at, -into_b, 2 * depth, depth)) continue;
+    EdgeContact tip{points, kCornerId + 2 * std::uint64_t(vertex)};
+    tip.points.on_a = at;
+    tip.points.on_b = at - into_b * depth;
+    tips.push_back(tip);
+  }
+}
+
 bool ShapeProbe::crossing(const OpposedPoints& points, const btVector3& direction,
                           EdgeContact& crossing) const {
   SharpEdges b;

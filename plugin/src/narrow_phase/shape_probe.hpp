@@ -35,6 +35,10 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   Bends bends(const OpposedPoints& points, const Across& axes) const override;
   void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
+  /// Appends the corners in which what sticks through a mesh ends, however far from it. `points` are those of
+  /// a line that leaves A by the side of that part. `vertices` is room to work in.
+  void tips(const OpposedPoints& points, std::vector<std::uint32_t>& vertices,
+            std::vector<EdgeContact>& tips) const;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
   bool hasEdges() const override { return other_.isFaceted(); }

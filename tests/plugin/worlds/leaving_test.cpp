@@ -65,9 +65,12 @@ TEST_P(Leaving, TakesLessThanASecond) {
   btTriangleMesh triangles;
   if (c.ground == "plane") world.addFloor();
   if (c.ground == "box") world.add(std::make_shared<btBoxShape>(btVector3(3, 3, 1)), 0, btVector3(0, 0, -1));
-  if (c.ground == "sheet") {
+  if (c.ground.find("sheet") != std::string::npos) {
+    // Wound one way or the other.
+    const btScalar t = c.ground == "sheet" ? btScalar(3) : btScalar(-3);
     for (const btScalar s : {btScalar(3), btScalar(-3)})
-      triangles.addTriangle(btVector3(-s, -s, 0), btVector3(s, -s, 0), btVector3(s, s, 0));
+      triangles.addTriangle(btVector3(-s, -t * s / 3, 0), btVector3(s, -t * s / 3, 0),
+                            btVector3(s, t * s / 3, 0));
     world.add(std::make_shared<btBvhTriangleMeshShape>(&triangles, true), 0, btVector3(0, 0, 0));
   }
   const std::shared_ptr<PackingShape> shape = shapeOf(c.body);
@@ -111,13 +114,18 @@ std::vector<Case> cases() {
       for (const char* ground : {"box", "plane", "sheet"}) {
         const bool sheet = std::string(ground) == "sheet";
         for (const char* body : {"gear", "torus", "lbracket", "horn"}) {
-          if (sheet && std::string(body) == "horn") continue;  // a limit: it is only felt where it crosses
           for (const double sunk : {0.3, 1.0}) {
             if (sheet && sunk == 1) continue;  // it is on the other side
             all.push_back({body, ground, sunk, 0, response, rate});
           }
           if (!sheet) all.push_back({body, ground, 0, 20, response, rate});
         }
+      }
+      // What is thin, through a sheet up to where the greater part of the body begins.
+      for (const char* ground : {"sheet", "turned_sheet"}) {
+        for (const double sunk : {0.05, 0.15, 0.5, 0.65})
+          all.push_back({"horn", ground, sunk, 0, response, rate});
+        all.push_back({"blade", ground, 0.2, 0, response, rate});
       }
     }
   }
@@ -126,7 +134,8 @@ std::vector<Case> cases() {
 
 std::string nameOf(const testing::TestParamInfo<Case>& info) {
   const Case& c = info.param;
-  const std::string how = c.speed > 0 ? "_thrown_at_" : c.sunk == 1 ? "_deep_in_" : "_in_";
+  const std::string part = std::to_string(std::lround(100 * c.sunk));
+  const std::string how = c.speed > 0 ? "_thrown_at_" : c.sunk == 1 ? "_deep_in_" : "_by_" + part + "_in_";
   return c.body + how + c.ground + (c.response == Response::rigid ? "_rigid_at_" : "_compliant_at_") +
          std::to_string(c.rate);
 }

@@ -57,6 +57,13 @@ class ShapeSurface {
     return false;
   }
 
+  /// Finds how deep a place behind a mesh is, relative to body.origin(): how far along `out` (unit) it is to
+  /// the first triangle [m]. Returns false if none is met within `most` [m], or only from its front.
+  virtual bool depthOf(const PlacedPacking&, const btTransform&, const btVector3& /*place*/,
+                       const btVector3& /*out*/, btScalar /*most*/, btScalar& /*depth*/) {
+    return false;
+  }
+
   /// Finds the nearest point of the shape to a place, relative to body.origin(), as a sphere there would see
   /// it. Returns false if that is not known.
   virtual bool nearestTo(const PlacedPacking&, const btTransform&, const btVector3&, NearSphere&) {

@@ -3,8 +3,8 @@
 // A sphere can touch several triangles at once (floor and wall), so every local minimum of the distance
 // counts: a nearest point in the interior of a triangle, or on an edge that two triangles agree on; other
 // edge points belong to a triangle whose neighbour is nearer. Meshes are two-sided, as everywhere in Bullet:
-// which side is outside is decided by where the body's spheres are when they first touch, and kept while the
-// pair lives, so that small spheres which have gone through are pushed back the right way.
+// which side is outside is decided by where the middle of the body is when it first touches, and kept while
+// the pair lives, so that parts which have gone through are pushed back the right way.
 #include <algorithm>
 #include <array>
 #include <mutex>
@@ -12,6 +12,7 @@
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 #include <LinearMath/btAabbUtil2.h>
 
@@ -93,6 +94,17 @@ class Collector : public btTriangleCallback {
   btVoronoiSimplexSolver solver_;
 };
 
+/// The first triangle on a way, in the mesh's frame.
+struct FirstTriangle : btTriangleRaycastCallback {
+  FirstTriangle(const btVector3& from, const btVector3& to)
+      : btTriangleRaycastCallback(from, to, kF_KeepUnflippedNormal) {}
+  btScalar reportHit(const btVector3& winding, btScalar fraction, int, int) override {
+    normal = winding;
+    return fraction;
+  }
+  btVector3 normal{0, 0, 0};  ///< by the winding; 0 if none is met
+};
+
 /// Whether several threads may ask for triangles at once: a GImpact mesh notes who reads it, and what a
 /// user's own shape does is not known.
 bool isSharable(const btConcaveShape& mesh) {
@@ -123,13 +135,9 @@ class TriangleSurface : public ShapeSurface {
     });
     if (side_ == 0) side_ = sideOf(body, points);
     setNear(body, world, points);
-
-    for (auto first = points.begin(); first != points.end();) {
-      auto last = std::find_if(first, points.end(),
-                               [&](const TrianglePoint& c) { return c.sphere != first->sphere; });
-      resolve(body, &*first, &*first + (last - first), near_spheres);
-      first = last;
-    }
+    forEachSphere(points, [&](const TrianglePoint* first, const TrianglePoint* last) {
+      resolve(body, first, last, near_spheres);
+    });
   }
 
   bool isMesh() const override { return true; }
@@ -138,6 +146,21 @@ class TriangleSurface : public ShapeSurface {
                   btScalar& distance) override {
     SharpEdges faces;
     return facets(body, world, faces) && faces.distanceOf(place, distance);
+  }
+
+  bool depthOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
+               const btVector3& out, btScalar most, btScalar& depth) override {
+    const btVector3 from = world.invXform(body.origin() + place), way = out * world.getBasis() * most;
+    FirstTriangle first(from, from + way);
+    btVector3 min = from, max = from;
+    min.setMin(from + way);
+    max.setMax(from + way);
+    {
+      const std::unique_lock<std::mutex> lock = turnToRead();
+      mesh_.processAllTriangles(&first, min, max);
+    }
+    depth = first.m_hitFraction * most;
+    return first.normal.dot(way) * btScalar(side_) > 0;
   }
 
   bool facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) override {
@@ -187,16 +210,40 @@ class TriangleSurface : public ShapeSurface {
     near_min_[3] = near_max_[3] = 0;  // == compares it
   }
 
-  /// +1 if the body is on the side that the triangles' winding calls outside, -1 on the other. Large spheres
-  /// decide.
-  static int sideOf(const PlacedPacking& body, const std::vector<TrianglePoint>& points) {
-    double sum = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (i > 0 && points[i].sphere == points[i - 1].sphere) continue;  // nearest triangle only
-      const double r = body.ownRadius(points[i].sphere);
-      sum += (points[i].height >= 0 ? 1 : -1) * r * r * r;
+  /// visit(first, last) gets the points of one sphere, nearest first.
+  template <typename Visit>
+  static void forEachSphere(const std::vector<TrianglePoint>& points, const Visit& visit) {
+    for (auto first = points.begin(); first != points.end();) {
+      const auto last = std::find_if(first, points.end(),
+                                     [&](const TrianglePoint& c) { return c.sphere != first->sphere; });
+      visit(&*first, &*first + (last - first));
+      first = last;
     }
-    return sum >= 0 ? 1 : -1;
+  }
+
+  /// Nearest points of triangles that are closer are the same: those of large triangles are rounded.
+  static btScalar samePlace(const PlacedPacking& body, const TrianglePoint& point) {
+    btScalar furthest2 = 0;
+    for (const btVector3& corner : point.corners) furthest2 = btMax(furthest2, corner.length2());
+    return btMax(kSamePlace * body.prefix->median_radius, 4 * SIMD_EPSILON * btSqrt(furthest2));
+  }
+
+  /// +1 if the body is on the side that the triangles' winding calls outside, -1 on the other, 0 if no more
+  /// than the rim of the mesh is near. Where the mesh goes through the body, its centre of mass decides: it
+  /// is on the side of the sphere that is nearest to it.
+  static int sideOf(const PlacedPacking& body, const std::vector<TrianglePoint>& points) {
+    const Vec3d& middle = body.shape().packing().solid.centre_of_mass;
+    const btVector3 centre_of_mass(btScalar(middle.x), btScalar(middle.y), btScalar(middle.z));
+    btScalar least = BT_LARGE_FLOAT;
+    int side = 0;
+    forEachSphere(points, [&](const TrianglePoint* first, const TrianglePoint* last) {
+      const Corner corner = cornerAt(first, first, last, samePlace(body, *first));
+      const btScalar distance2 = centre(body.sphere(first->sphere)).distance2(centre_of_mass);
+      if ((!first->interior && corner.triangles == 1) || !(distance2 < least)) return;
+      least = distance2;
+      side = corner.height >= 0 ? 1 : -1;
+    });
+    return side;
   }
 
   /// Samples of one sphere, nearest first, to its contacts.
@@ -208,7 +255,7 @@ class TriangleSurface : public ShapeSurface {
           near_spheres.begin() + static_cast<std::ptrdiff_t>(start), near_spheres.end(),
           [&](const NearSphere& t) { return btFabs(t.normal.dot(normal)) > kSameDirectionCosine; });
     };
-    const btScalar same = kSamePlace * body.prefix->median_radius;
+    const btScalar same = samePlace(body, *first);
     for (const TrianglePoint* c = first; c != last; ++c) {
       const btVector3 direction = body.world.getBasis() * c->direction;
       if (known(direction) || (!c->interior && isNearerBeside(c, first, same))) continue;

@@ -135,9 +135,11 @@ TEST_F(MeshDistance, BesideTheRimIsOutside) {
 }
 
 TEST_F(MeshDistance, TheSideOfFirstContactIsKept) {
-  // One large ball in front of the floor, one small one behind it: the large one decides.
+  // One large ball in front of the floor, one small one behind it: the centre of mass, in the large one,
+  // decides.
   Packing packing;
   packing.spheres = {{0, 0, 0.5f, 0.65f}, {0, 0, -0.15f, 0.05f}};
+  packing.solid.centre_of_mass = {0, 0, 0.4997};
   const auto shape = makeShape(packing);
   const btTransform frame = shape->principalTransform().inverse();
   const std::unique_ptr<ShapeSurface> surface = makeShapeSurface(*shape_);
