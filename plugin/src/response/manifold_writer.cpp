@@ -89,8 +89,8 @@ void letGo(const btCollisionObject& a, const btCollisionObject& b, btManifoldPoi
 }
 
 /// Bullet takes points for one that are nearer to each other than the distance at which it drops contacts.
-/// Where contact is foretold that may be further than bodies are large: a new point gets a place to be put in.
-/// The first of a manifold needs none. Returns its index, or -1.
+/// Where contact is foretold that may be further than bodies are large: a new point gets an empty one to be
+/// put in, but for the first of a manifold. Returns its index, or -1.
 int makePlace(btPersistentManifold& manifold) {
   if (manifold.getNumContacts() == 0) return -1;
   btManifoldPoint place;
