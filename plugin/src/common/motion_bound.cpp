@@ -29,7 +29,7 @@ bool isSwept(const Motion& a, const Motion& b, btScalar time_step) {
 
 btScalar speculativeDistance(const Motion& a, const Motion& b, btScalar time_step) {
   const btScalar way = speedBetween(a, b) * time_step;
-  return isSwept(a, b, time_step) ? way : btMin(way, btMin(a.size, b.size) / 2);
+  return isSwept(a, b, time_step) ? way : btMin(way, btMin(a.size, b.size));
 }
 
 btScalar travelBetween(const btTransform& before, const btTransform& now, btScalar size) {

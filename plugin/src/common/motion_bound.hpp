@@ -27,9 +27,9 @@ struct Motion {
 bool isSwept(const Motion& a, const Motion& b, btScalar time_step);
 
 /// Returns an upper bound for how much nearer two points of the bodies can come in `time_step` at the present
-/// velocities [m], at most half the size of the smaller body unless they are swept. Contacts that far apart
-/// are handed to the solver already, which lets them close but not pass, so that a fast body does not go deep
-/// into another before its first contact.
+/// velocities [m], at most the size of the smaller body unless they are swept: what is further away is met in
+/// another pose. Contacts that far apart are handed to the solver already, which lets them close but not
+/// pass, so that a fast body does not go deep into another before its first contact.
 btScalar speculativeDistance(const Motion& a, const Motion& b, btScalar time_step);
 
 /// Returns an upper bound for how far any point of a body of this size has moved [m].

@@ -89,12 +89,20 @@ void letGo(const btCollisionObject& a, const btCollisionObject& b, btManifoldPoi
 }
 
 /// Bullet takes points for one that are nearer to each other than the distance at which it drops contacts.
-/// For bodies that are swept that is further than they are large: a new point gets a place to be put in.
-void keepApart(const btVector3& local_a, btPersistentManifold& manifold) {
-  if (manifold.getNumContacts() == 0) return;
+/// Where contact is foretold that may be further than bodies are large: a new point gets an empty one to be
+/// put in, but for the first of a manifold. Returns its index, or -1.
+int makePlace(btPersistentManifold& manifold) {
+  if (manifold.getNumContacts() == 0) return -1;
   btManifoldPoint place;
-  place.m_localPointA = local_a;
-  manifold.addManifoldPoint(place);
+  place.m_distance1 = BT_LARGE_FLOAT;
+  constexpr bool kAnyDistance = true;
+  return manifold.addManifoldPoint(place, kAnyDistance);
+}
+
+/// Far from the origin, places may be rounded to that of another point, which has been replaced then.
+void removeIfEmpty(int place, btPersistentManifold& manifold) {
+  if (place >= 0 && manifold.getContactPoint(place).m_distance1 == BT_LARGE_FLOAT)
+    manifold.removeContactPoint(place);
 }
 
 /// Stiffness, damping and the depth they act on, and the slip that friction is to undo, unless the user has
@@ -226,16 +234,19 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     // Where Bullet, which has moved kinematic bodies, will say that it is.
     const btVector3 local_a =
         motion.a().has_arrived ? a.getWorldTransform().invXform(start.a * point.local_a) : point.local_a;
-    // Bullet keeps impulses and lifetime of the cached point nearest to the new one: move the match there
-    // first.
-    if (match[i] >= 0) {
-      btManifoldPoint& cached = manifold.getContactPoint(match[i]);
-      if (!solver.substeps) point.slip = slipOf(cached, start, point.normal, largest_slip, farthest_slip);
+    // Bullet keeps impulses and lifetime of the cached point nearest to the new one: move that which is to
+    // become it there first.
+    const bool known = match[i] >= 0;
+    const int place = known ? match[i] : makePlace(manifold);
+    if (place >= 0) {
+      btManifoldPoint& cached = manifold.getContactPoint(place);
+      if (known && !solver.substeps)
+        point.slip = slipOf(cached, start, point.normal, largest_slip, farthest_slip);
       cached.m_localPointA = local_a;
       letGo(a, b, cached);
     }
-    if (motion.isSwept() && match[i] < 0) keepApart(local_a, manifold);
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
+    if (!known) removeIfEmpty(place, manifold);
     if (btManifoldPoint* added = pointAt(manifold, point.on_b)) setLaw(*added, point, a, motion, solver);
   }
   result->refreshContactPoints();

@@ -115,6 +115,23 @@ TEST(FastBodies, WithoutTheThresholdSomeAreThrough) {
   EXPECT_GT(through, 0) << "else the tests here show nothing";
 }
 
+// A beam flat over a floor, without the threshold. Contact is foretold further than its lower corners are
+// apart across it.
+TEST(FastBodies, LandOnAllCorners) {
+  const double half = 0.1, length = 1;
+  for (const double gap : {0.15, 0.4}) {
+    TestWorld world;
+    world.addFloor();
+    btRigidBody& beam = world.add(makeShape(latticeBox({length, 2 * half, 2 * half}, 4)), 1,
+                                  btVector3(0, 0, btScalar(half + gap)));
+    beam.setLinearVelocity(btVector3(0, 0, btScalar(-1.2 * gap / kStep)));
+    world.run(kStep, kStep);
+    EXPECT_EQ(world.contactCount(), 4) << gap;
+    EXPECT_NEAR(beam.getWorldTransform().getOrigin().z(), half, 0.01) << gap;
+    EXPECT_LT(beam.getAngularVelocity().length(), 0.1) << gap;
+  }
+}
+
 TEST(FastBodies, BelowTheThresholdNothingIsDifferent) {
   for (const char* wall : {"box", "packing"}) {
     Throw plain(wall, 5, 20, 1), flagged(wall, 5, 20, 1);
