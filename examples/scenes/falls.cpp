@@ -35,7 +35,7 @@ void addGears(SceneWorld& world, const SceneOptions& options) {
                   btTransform(tilt, vec(kApart * (i - kGears / 2), 0, kHeight + (b.max[2] - b.min[2]) / 2)),
                   paletteColour(static_cast<std::size_t>(i)));
   }
-  expectNoneInFloor(world, 0, 3);
+  expectNoneInFloor(world, 3);
   world.film.viewpoint = {0.2, 0.5, 0.45};
 }
 
@@ -75,7 +75,7 @@ void buildDrops(SceneWorld& world, const SceneOptions& options) {
         .setRollingFriction(kRollingFriction);
   }
   // The last one falls for sqrt(2 (3 + 1.58) / g) = 0.97 s.
-  expectNoneInFloor(world, 0, 2);
+  expectNoneInFloor(world, 2);
   world.film.viewpoint = {0.3, 0.5, 0.45};
 }
 

@@ -21,26 +21,32 @@ struct Faller {
   btTransform to_body;  // from the frame of the mesh
 };
 
-double lowestOf(const Faller& faller, const BodyState& state) {
+using Height = std::function<double(double x, double y)>;
+
+// How far the deepest corner is in the floor [m].
+double depthOf(const Faller& faller, const Height& height, const BodyState& state) {
   const auto& [x, y, z, w] = state.rotation;
-  const btVector3 down = vec(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y));  // row of z
-  double lowest = 1e30;
+  const btTransform body(btQuaternion(btScalar(x), btScalar(y), btScalar(z), btScalar(w)),
+                         vec(state.position[0], state.position[1], state.position[2]));
+  const btTransform world = body * faller.to_body;
+  double deepest = -1e30;
   for (const auto& v : faller.packing->surface.vertices) {
-    lowest = std::min(lowest, double(down.dot(faller.to_body * vec(v[0], v[1], v[2]))));
+    const btVector3 corner = world * vec(v[0], v[1], v[2]);
+    deepest = std::max(deepest, height(corner.x(), corner.y()) - corner.z());
   }
-  return state.position[2] + lowest;
+  return deepest;
 }
 
-std::vector<double> depthsOf(const std::vector<Faller>& fallers, double height, const Recording& r) {
+std::vector<double> depthsOf(const std::vector<Faller>& fallers, const Height& height, const Recording& r) {
   std::vector<double> depths;
   for (const Faller& faller : fallers)
-    depths.push_back((height - lowestOf(faller, r.last(faller.body))) / faller.size);
+    depths.push_back(depthOf(faller, height, r.last(faller.body)) / faller.size);
   return depths;
 }
 
 }  // namespace
 
-void expectNoneInFloor(SceneWorld& world, double height, double seconds) {
+void expectNoneInFloor(SceneWorld& world, const Height& height, double seconds) {
   std::vector<Faller> fallers;
   for (std::size_t i = 0; i < world.bodies().size(); ++i) {
     const SceneSolid* solid = world.solidOf(i);
@@ -62,6 +68,10 @@ void expectNoneInFloor(SceneWorld& world, double height, double seconds) {
                   return *std::max_element(depths.begin(), depths.end());
                 },
                 seconds});
+}
+
+void expectNoneInFloor(SceneWorld& world, double seconds) {
+  expectNoneInFloor(world, [](double, double) { return 0.0; }, seconds);
 }
 
 }  // namespace innersphere::demo

@@ -4,10 +4,13 @@
 #include <cmath>
 
 #include "scenes/centre_line.hpp"
+#include "scenes/floor.hpp"
 #include "scenes/pendulum.hpp"
 #include "scenes/recording.hpp"
 #include "scenes/ring_distance.hpp"
+#include "scenes/scene_solids.hpp"
 #include "scenes/truth.hpp"
+#include "scenes/world.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -92,6 +95,23 @@ TEST(Recording, FreeFlightGainsNoEnergy) {
     }
     EXPECT_NEAR(recording.energyGained(), 0, 1e-10) << substeps;
   }
+}
+
+TEST(Floor, IsAsHighAsItIsUnderEachBody) {
+  demo::SceneOptions options;
+  options.spheres = 64;
+  demo::SceneWorld world({});
+  const double size = 0.5, lower = 0.06;
+  const std::size_t torus = addSolids(world, options, {"torus"}, size)[0];
+  world.addBody(torus, 1, btTransform::getIdentity(), {});
+  expectNoneInFloor(world, [&](double x, double) { return x < 1 ? 0 : -lower; }, 0);
+  const auto depthAt = [&](double x, double z) {
+    demo::Recording recording = recordingOf(1);
+    for (demo::BodyState& state : recording.states) state.position = {x, 0, z};
+    return world.truths[1].measure(recording) * size;
+  };
+  EXPECT_NEAR(depthAt(0, 0) - depthAt(0, 0.1), 0.1, 1e-6);
+  EXPECT_NEAR(depthAt(0, 0) - depthAt(2, 0), lower, 1e-6);
 }
 
 TEST(RingDistance, OfRingsInKnownPlaces) {
