@@ -71,7 +71,8 @@ void expectNoneInFloor(SceneWorld& world, const Height& height, double seconds) 
 }
 
 void expectNoneInFloor(SceneWorld& world, double seconds) {
-  expectNoneInFloor(world, [](double, double) { return 0.0; }, seconds);
+  expectNoneInFloor(
+      world, [](double, double) { return 0.0; }, seconds);
 }
 
 }  // namespace innersphere::demo

@@ -104,7 +104,8 @@ TEST(Floor, IsAsHighAsItIsUnderEachBody) {
   const double size = 0.5, lower = 0.06;
   const std::size_t torus = addSolids(world, options, {"torus"}, size)[0];
   world.addBody(torus, 1, btTransform::getIdentity(), {});
-  expectNoneInFloor(world, [&](double x, double) { return x < 1 ? 0 : -lower; }, 0);
+  expectNoneInFloor(
+      world, [&](double x, double) { return x < 1 ? 0 : -lower; }, 0);
   const auto depthAt = [&](double x, double z) {
     demo::Recording recording = recordingOf(1);
     for (demo::BodyState& state : recording.states) state.position = {x, 0, z};

@@ -6,6 +6,7 @@
 
 #include "narrow_phase/contact_patches.hpp"
 #include "narrow_phase/contact_settings.hpp"
+#include "narrow_phase/one_way_out.hpp"
 #include "narrow_phase/sweep.hpp"
 
 namespace innersphere {
@@ -91,6 +92,7 @@ void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, 
   if (measure.on_surfaces) a.addFeelers();
   near_spheres_.clear();
   surface_->findNearSpheres(a, now.b, near_spheres_);
+  if (measure.on_surfaces) seeOneSide(a, now.b, measure);
   if (measure.on_surfaces) dropFeelersThrough(a);
   releaseIfEmpty(near_spheres_);
   on_surfaces = measure.on_surfaces;
@@ -111,6 +113,13 @@ void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, 
   memory.noteSearch(now);
   memory.noteDepths(now, measure.separation);
   settings = measure;
+}
+
+void PackingVsShape::seeOneSide(const PlacedPacking& a, const btTransform& b,
+                                const ContactSettings& measure) {
+  if (!other_.isConvex()) return;
+  const auto& plate = static_cast<const btConvexShape&>(other_);
+  leaveByOneSide(a, plate, b, memory.patches, measure.inset_a, near_spheres_);
 }
 
 void PackingVsShape::dropFeelersThrough(const PlacedPacking& a) {
@@ -160,6 +169,7 @@ bool PackingVsShape::refine(const Placed& now, const StepAhead& step) {
   if (settings->on_surfaces) a.addFeelers();
   if (!surface_->updateNearSpheres(a, now.b, near_spheres_)) return false;
   memory.turnTo(now);
+  if (settings->on_surfaces) seeOneSide(a, now.b, *settings);
   const ShapeProbe probe(a, *surface_, now.b, near_spheres_);
   const bool near = refinePatches(memory.samples, probe, *settings, step, memory.patches);
   const auto cuts = [&](const NearSphere& near_sphere) {

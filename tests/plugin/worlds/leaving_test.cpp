@@ -54,6 +54,8 @@ std::vector<btVector3> cornersOf(const PackingShape& shape) {
   return corners;
 }
 
+constexpr double kPlate = 0.03;  ///< thickness of a thin box [m]
+
 class Leaving : public testing::TestWithParam<Case> {};
 
 TEST_P(Leaving, TakesLessThanASecond) {
@@ -65,6 +67,10 @@ TEST_P(Leaving, TakesLessThanASecond) {
   btTriangleMesh triangles;
   if (c.ground == "plane") world.addFloor();
   if (c.ground == "box") world.add(std::make_shared<btBoxShape>(btVector3(3, 3, 1)), 0, btVector3(0, 0, -1));
+  if (c.ground == "plate") {
+    world.add(std::make_shared<btBoxShape>(btVector3(3, 3, btScalar(kPlate / 2))), 0,
+              btVector3(0, 0, btScalar(-kPlate / 2)));
+  }
   if (c.ground.find("sheet") != std::string::npos) {
     // Wound one way or the other.
     const btScalar t = c.ground == "sheet" ? btScalar(3) : btScalar(-3);
@@ -84,7 +90,8 @@ TEST_P(Leaving, TakesLessThanASecond) {
     }
     return z;
   };
-  const btTransform upside = btTransform(btQuaternion(btVector3(1, 0, 0), c.body == "horn" ? SIMD_PI : 0));
+  const double turned = c.body == "horn" ? M_PI : c.body == "bowl" ? 2 : 0;  // tip or rim first
+  const btTransform upside = btTransform(btQuaternion(btVector3(1, 0, 0), btScalar(turned)));
   btTransform place = upside * shape->principalTransform().inverse();
   place.setOrigin(btVector3(0, 0, 0));
   const auto [low, high] = range(place);
@@ -126,6 +133,10 @@ std::vector<Case> cases() {
         for (const double sunk : {0.05, 0.15, 0.5, 0.65})
           all.push_back({"horn", ground, sunk, 0, response, rate});
         all.push_back({"blade", ground, 0.2, 0, response, rate});
+      }
+      // And through a thin box, up to its middle, to its other side, and beyond.
+      for (const char* body : {"horn", "bowl"}) {
+        for (const double sunk : {0.05, 0.1, 0.2}) all.push_back({body, "plate", sunk, 0, response, rate});
       }
     }
   }

@@ -1,0 +1,23 @@
+// Lets what is through a thin convex shape leave it by one side.
+#pragma once
+
+#include <vector>
+
+#include "narrow_phase/contact_point.hpp"
+#include "narrow_phase/shapes/shape_surface.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+
+/// Near spheres beyond the middle of a plate see its far face, and those before it its near one: both would
+/// push, against each other, and hold what is through it. Where a sphere reaches the middle, it and those
+/// that hang together with it see one face: that which `before`, the patches of the last step, were on;
+/// without them, or where they were on both, the one that the centre of mass of `body` is on. `gap` [m] is
+/// how far apart the surfaces of spheres may be that hang together. The shape `plate`, placed at `world`, is
+/// convex.
+void leaveByOneSide(const PlacedPacking& body, const btConvexShape& plate, const btTransform& world,
+                    const std::vector<ContactPatch>& before, btScalar gap,
+                    std::vector<NearSphere>& near_spheres);
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere
