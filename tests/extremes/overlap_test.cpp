@@ -23,6 +23,7 @@ std::shared_ptr<PackingShape> makeBody(const std::string& name) {
   if (name == "ball") return makeShape(singleBall(0.5));
   PackOptions options;
   options.spheres = 200;
+  options.overlap_errors = false;
   return makeShape(pack(*makeTorus(0.35, 0.15), options));
 }
 

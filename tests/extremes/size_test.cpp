@@ -34,6 +34,7 @@ std::shared_ptr<PackingShape> makeBody(const std::string& name, double size) {
   if (name == "torus") {
     PackOptions options;
     options.spheres = 150;
+    options.overlap_errors = false;
     return makeShape(pack(*makeTorus(0.375 * size, 0.125 * size), options));
   }
   return makeShape(latticeBox({size, size, 0.5 * size}, 6));

@@ -23,6 +23,7 @@ std::shared_ptr<PackingShape> box() {
   static const std::shared_ptr<PackingShape> shape = [] {
     PackOptions options;
     options.spheres = 500;
+    options.overlap_errors = false;
     return makeShape(pack(*makeBox({1, 1, 1}), options));
   }();
   return shape;

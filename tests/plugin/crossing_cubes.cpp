@@ -27,6 +27,7 @@ std::shared_ptr<PackingShape> makeCube(const std::string& kind) {
   if (packing.spheres.empty()) {
     PackOptions options;
     options.spheres = std::stoul(kind);
+    options.overlap_errors = false;
     packing = pack(*makeBox({1, 1, 1}), options);
   }
   return makeShape(packing);

@@ -13,6 +13,7 @@ namespace innersphere::test {
 std::shared_ptr<PackingShape> makeNamedShape(const std::string& name, std::size_t n, double bounding_radius) {
   PackOptions options;
   options.spheres = n;
+  options.overlap_errors = false;
   auto shape = makeShape(pack(*makeNamedSolid(name), options));
   btVector3 centre;
   btScalar radius;
@@ -25,6 +26,7 @@ std::shared_ptr<PackingShape> makeNamedShape(const std::string& name, std::size_
 std::shared_ptr<PackingShape> makeTorusShape(double ring, double tube, std::size_t n) {
   PackOptions options;
   options.spheres = n;
+  options.overlap_errors = false;
   return makeShape(pack(*makeTorus(ring, tube), options));
 }
 

@@ -9,6 +9,7 @@ namespace {
 std::shared_ptr<const CollisionModel> modelOf(const Solid& solid) {
   PackOptions options;
   options.spheres = 256;
+  options.overlap_errors = false;
   return std::make_shared<CollisionModel>(std::make_shared<Packing>(pack(solid, options)));
 }
 

@@ -18,6 +18,7 @@ constexpr double kBall = 4.0 / 3.0 * std::numbers::pi;
 Packing packed(const Solid& solid, std::size_t spheres) {
   PackOptions options;
   options.spheres = spheres;
+  options.overlap_errors = false;
   return pack(solid, options);
 }
 

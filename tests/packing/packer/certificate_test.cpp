@@ -18,6 +18,7 @@ TYPED_TEST(PackerCertificate, NothingLargerFits) {
   for (double delta : {0.01, 0.1, 0.5}) {
     PackOptions options;
     options.spheres = 400;
+    options.overlap_errors = false;
     options.delta = delta;
     const Packing packing = pack(solid, options);
     EXPECT_LE(packing.certificate.delta, delta);
@@ -31,6 +32,7 @@ TYPED_TEST(PackerCertificate, EveryPrefixIsGreedy) {
   const TypeParam solid;
   PackOptions options;
   options.spheres = 200;
+  options.overlap_errors = false;
   const Packing packing = pack(solid, options);
   for (std::size_t count : {1, 2, 5, 20, 70, 199}) {
     EXPECT_LE(largestRoom(solid, packing, count, 40000),
@@ -44,6 +46,7 @@ TEST(PackerCertificate, TheFirstSpheresOfACube) {
   const Cube cube;
   PackOptions options;
   options.spheres = 9;
+  options.overlap_errors = false;
   const Packing packing = pack(cube, options);
   EXPECT_NEAR(largestRoom(cube, packing, 0, 40000), 0.5, 1e-3);
   EXPECT_NEAR(packing.spheres[0].radius, 0.5, 1e-6);

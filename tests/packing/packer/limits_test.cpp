@@ -16,6 +16,13 @@ namespace {
 PackOptions nothing() {
   PackOptions options;
   options.spheres = 0;
+  options.overlap_errors = false;
+  return options;
+}
+
+PackOptions spheres(std::size_t count) {
+  PackOptions options = nothing();
+  options.spheres = count;
   return options;
 }
 
@@ -39,9 +46,7 @@ ErrorCode codeOf(const PackOptions& options, const Progress& progress = {}) {
 
 TEST(PackerLimits, ExactNumberOfSpheres) {
   for (std::size_t count : {1u, 2u, 9u, 63u, 64u, 65u, 311u}) {
-    PackOptions options;
-    options.spheres = count;
-    EXPECT_EQ(pack(Cube(), options).spheres.size(), count);
+    EXPECT_EQ(pack(Cube(), spheres(count)).spheres.size(), count);
   }
 }
 
@@ -83,8 +88,7 @@ TEST(PackerLimits, Gap) {
 }
 
 TEST(PackerLimits, WhicheverComesFirst) {
-  PackOptions options;
-  options.spheres = 50;
+  PackOptions options = spheres(50);
   options.density = 0.9;
   EXPECT_EQ(pack(Cube(), options).spheres.size(), 50u);
   options.density = 0.6;
@@ -137,8 +141,7 @@ TEST(PackerProgress, RisesAndComesFromTheCallingThread) {
 }
 
 TEST(PackerProgress, CancelsInEveryStage) {
-  PackOptions options;
-  options.spheres = 100;
+  PackOptions options = spheres(100);
   for (const std::string stage : {"packing", "quality", "cell volumes"}) {
     int calls = 0;
     EXPECT_EQ(codeOf(options,
@@ -152,8 +155,7 @@ TEST(PackerProgress, CancelsInEveryStage) {
 }
 
 TEST(PackerReport, Provenance) {
-  PackOptions options;
-  options.spheres = 5;
+  PackOptions options = spheres(5);
   options.delta = 0.25;
   const Packing packing = pack(Cube(), options);
   EXPECT_EQ(packing.provenance.source, "test cube");
@@ -166,9 +168,7 @@ TEST(PackerReport, Provenance) {
 // One sphere in a cube: the gap at a face's centre is 0 and at a corner sqrt(3)/2 - 1/2; its mean over a face
 // is an integral that is easily summed.
 TEST(PackerReport, GapsOfOneSphereInACube) {
-  PackOptions options;
-  options.spheres = 1;
-  const Packing packing = pack(Cube(), options);
+  const Packing packing = pack(Cube(), spheres(1));
   double mean = 0;
   const int n = 400;
   for (int i = 0; i < n; ++i) {

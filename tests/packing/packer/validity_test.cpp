@@ -16,6 +16,7 @@ namespace {
 Packing packed(const Solid& solid, std::size_t spheres) {
   PackOptions options;
   options.spheres = spheres;
+  options.overlap_errors = false;
   return pack(solid, options);
 }
 

@@ -57,6 +57,7 @@ std::shared_ptr<PackingShape> makeDisc(std::size_t spheres) {
   if (packings.count(spheres) == 0) {
     PackOptions options;
     options.spheres = spheres;
+    options.overlap_errors = false;
     packings[spheres] = pack(*makeCylinder(kRadius, kHeight), options);
   }
   return makeShape(packings[spheres]);

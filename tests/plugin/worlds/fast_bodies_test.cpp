@@ -41,6 +41,7 @@ std::shared_ptr<btCollisionShape> makeWall(const std::string& name) {
     static const std::shared_ptr<PackingShape> wall = [] {
       PackOptions options;
       options.spheres = 4000;
+      options.overlap_errors = false;
       return makeShape(pack(*makeBox({3, 3, kThickness}), options));
     }();
     return wall;

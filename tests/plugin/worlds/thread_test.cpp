@@ -35,6 +35,7 @@ struct Found : btCollisionWorld::ContactResultCallback {
 std::shared_ptr<PackingShape> named(const char* name) {
   PackOptions options;
   options.spheres = 1000;
+  options.overlap_errors = false;
   return makeShape(pack(*makeNamedSolid(name), options));
 }
 
