@@ -54,7 +54,7 @@ void leaveByOneSide(const PlacedPacking& body, const btConvexShape& plate, const
                                         [&](const NearSphere& a, const NearSphere& b) {
                                           return radius(a) - a.distance < radius(b) - b.distance;
                                         });
-  if (deepest == near_spheres.end() || !(deepest->distance < 0)) return;
+  if (deepest == near_spheres.end() || !(deepest->distance < 0)) return;  // it may hold the plate
   const btVector3 axis = deepest->normal;
   const auto isOpposed = [&](const NearSphere& n) { return isOnAxis(n, axis) && n.normal.dot(axis) < 0; };
   if (std::none_of(near_spheres.begin(), near_spheres.end(), isOpposed)) return;
@@ -65,8 +65,9 @@ void leaveByOneSide(const PlacedPacking& body, const btConvexShape& plate, const
     if (!body.isFeeler(n.sphere)) of_spheres[n.sphere] = &n;
   }
   const auto reachesMiddle = [&](const NearSphere& n) {
+    if (!(n.distance < 0)) return false;
     if (btFabs(n.distance + thickness.size / 2) < radius(n)) return true;
-    if (!body.isFeeler(n.sphere) || !(n.distance < 0)) return false;
+    if (!body.isFeeler(n.sphere)) return false;
     const NearSphere* const beside = of_spheres[body.sphereBeside(n.sphere)];
     return beside != nullptr && isOnAxis(*beside, axis) && beside->normal.dot(n.normal) < 0;
   };

@@ -10,11 +10,11 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Near spheres beyond the middle of a plate see its far face, and those before it its near one: both would
-/// push, against each other, and hold what is through it. Where a sphere reaches the middle, it and those
-/// that hang together with it see one face: that which `before`, the patches of the last step, were on;
-/// without them, or where they were on both, the one that the centre of mass of `body` is on. `gap` [m] is
-/// how far apart the surfaces of spheres may be that hang together. The shape `plate`, placed at `world`, is
-/// convex.
+/// push, against each other, and hold what is through it. Where a sphere with its centre in the plate reaches
+/// the middle, or a feeler beside it is beyond, all that hang together with it see one face: that which
+/// `before`, the patches of the last step, were on; without them, or where they were on both, the one that
+/// the centre of mass of `body` is on. `gap` [m] is how far apart the surfaces of spheres may be that hang
+/// together. The shape `plate`, placed at `world`, is convex.
 void leaveByOneSide(const PlacedPacking& body, const btConvexShape& plate, const btTransform& world,
                     const std::vector<ContactPatch>& before, btScalar gap,
                     std::vector<NearSphere>& near_spheres);
