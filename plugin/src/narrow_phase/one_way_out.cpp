@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <BulletCollision/CollisionShapes/btConvexShape.h>
-
 #include "common/bullet_vectors.hpp"
 #include "common/contact_tolerances.hpp"
 
@@ -15,17 +13,29 @@ bool isOnAxis(const NearSphere& near_sphere, const btVector3& axis) {
   return !near_sphere.isOnEdge() && btFabs(near_sphere.normal.dot(axis)) > kSameFaceCosine;
 }
 
-/// What a convex shape measures along an axis of the world.
-struct Thickness {
-  Thickness(const btConvexShape& shape, const btTransform& world, const btVector3& axis) {
-    const btVector3 along = axis * world.getBasis();
-    const btScalar high = shape.localGetSupportingVertex(along).dot(along);
-    const btScalar low = shape.localGetSupportingVertex(-along).dot(along);
-    size = high - low;
-    middle = world.getOrigin().dot(axis) + (high + low) / 2;
+/// A plate, as spheres in it see it.
+class Plate {
+ public:
+  Plate(const PlacedPacking& body, ShapeSurface& surface, const btTransform& world)
+      : body_(body), surface_(surface), world_(world) {}
+
+  btVector3 faceBefore(const NearSphere& n) const { return body_.centreOf(n.sphere) - n.normal * n.distance; }
+  /// Finds how thick it is behind the face that a sphere sees [m]. Returns false if that is more than `most`,
+  /// or not known.
+  bool thickness(const NearSphere& n, btScalar most, btScalar& size) const {
+    const btScalar behind = kBehindFace * most;
+    if (!surface_.depthOf(body_, world_, faceBefore(n) - n.normal * behind, -n.normal, most, size))
+      return false;
+    size += behind;
+    return true;
   }
-  btScalar size;    ///< [m]
-  btScalar middle;  ///< [m]
+
+ private:
+  /// Rays start off the face.
+  static constexpr btScalar kBehindFace = btScalar(1e-3);
+  const PlacedPacking& body_;
+  ShapeSurface& surface_;
+  const btTransform& world_;
 };
 
 /// The side of the plate, +1 or -1 along the axis, by which the body leaves.
@@ -41,12 +51,12 @@ btScalar sideOf(const PlacedPacking& body, const btVector3& axis, btScalar middl
   const Vec3d& c = body.shape().packing().solid.centre_of_mass;
   const btVector3 centre_of_mass =
       body.world * (btVector3(btScalar(c.x), btScalar(c.y), btScalar(c.z)) * body.scale());
-  return centre_of_mass.dot(axis) < middle ? btScalar(-1) : btScalar(1);
+  return (centre_of_mass - body.origin()).dot(axis) < middle ? btScalar(-1) : btScalar(1);
 }
 
 }  // namespace
 
-void leaveByOneSide(const PlacedPacking& body, const btConvexShape& plate, const btTransform& world,
+void leaveByOneSide(const PlacedPacking& body, ShapeSurface& surface, const btTransform& world,
                     const std::vector<ContactPatch>& before, btScalar gap,
                     std::vector<NearSphere>& near_spheres) {
   const auto radius = [&](const NearSphere& n) { return body.ownRadius(n.sphere) + body.margin; };
@@ -58,7 +68,12 @@ void leaveByOneSide(const PlacedPacking& body, const btConvexShape& plate, const
   const btVector3 axis = deepest->normal;
   const auto isOpposed = [&](const NearSphere& n) { return isOnAxis(n, axis) && n.normal.dot(axis) < 0; };
   if (std::none_of(near_spheres.begin(), near_spheres.end(), isOpposed)) return;
-  const Thickness thickness(plate, world, axis);
+  const Plate plate(body, surface, world);
+  // What reaches the middle is no further from it than this.
+  const btScalar most = 2 * (radius(*deepest) - deepest->distance + gap);
+  btScalar thickness = 0;
+  if (!plate.thickness(*deepest, most, thickness)) return;
+  const btScalar middle = plate.faceBefore(*deepest).dot(axis) - thickness / 2;
   static thread_local std::vector<const NearSphere*> of_spheres;
   of_spheres.assign(body.count(), nullptr);
   for (const NearSphere& n : near_spheres) {
@@ -66,7 +81,7 @@ void leaveByOneSide(const PlacedPacking& body, const btConvexShape& plate, const
   }
   const auto reachesMiddle = [&](const NearSphere& n) {
     if (!(n.distance < 0)) return false;
-    if (btFabs(n.distance + thickness.size / 2) < radius(n)) return true;
+    if (btFabs(n.distance + thickness / 2) < radius(n)) return true;
     if (!body.isFeeler(n.sphere)) return false;
     const NearSphere* const beside = of_spheres[body.sphereBeside(n.sphere)];
     return beside != nullptr && isOnAxis(*beside, axis) && beside->normal.dot(n.normal) < 0;
@@ -89,10 +104,10 @@ void leaveByOneSide(const PlacedPacking& body, const btConvexShape& plate, const
     others.erase(rest, others.end());
   }
   if (together.empty()) return;
-  const btVector3 out = axis * sideOf(body, axis, thickness.middle, before);
+  const btVector3 out = axis * sideOf(body, axis, middle, before);
   for (NearSphere* n : together) {
-    if (n->normal.dot(out) > 0) continue;
-    n->distance = -thickness.size - n->distance;
+    if (n->normal.dot(out) > 0 || !plate.thickness(*n, 2 * most, thickness)) continue;
+    n->distance = -thickness - n->distance;
     n->normal = -n->normal;
     n->curvature = 0;
   }

@@ -1,4 +1,4 @@
-// Lets what is through a thin convex shape leave it by one side.
+// Lets what is through a thin shape leave it by one side.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// the middle, or a feeler beside it is beyond, all that hang together with it see one face: that which
 /// `before`, the patches of the last step, were on; without them, or where they were on both, the one that
 /// the centre of mass of `body` is on. `gap` [m] is how far apart the surfaces of spheres may be that hang
-/// together. The shape `plate`, placed at `world`, is convex.
-void leaveByOneSide(const PlacedPacking& body, const btConvexShape& plate, const btTransform& world,
+/// together. `plate` is placed at `world`; a shape that does not know depthOf() is left as it is.
+void leaveByOneSide(const PlacedPacking& body, ShapeSurface& plate, const btTransform& world,
                     const std::vector<ContactPatch>& before, btScalar gap,
                     std::vector<NearSphere>& near_spheres);
 

@@ -92,8 +92,10 @@ void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, 
   if (measure.on_surfaces) a.addFeelers();
   near_spheres_.clear();
   surface_->findNearSpheres(a, now.b, near_spheres_);
-  if (measure.on_surfaces) seeOneSide(a, now.b, measure);
-  if (measure.on_surfaces) dropFeelersThrough(a);
+  if (measure.on_surfaces) {
+    leaveByOneSide(a, *surface_, now.b, memory.patches, measure.inset_a, near_spheres_);
+    dropFeelersThrough(a);
+  }
   releaseIfEmpty(near_spheres_);
   on_surfaces = measure.on_surfaces;
   if (measure.on_surfaces) {
@@ -113,13 +115,6 @@ void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, 
   memory.noteSearch(now);
   memory.noteDepths(now, measure.separation);
   settings = measure;
-}
-
-void PackingVsShape::seeOneSide(const PlacedPacking& a, const btTransform& b,
-                                const ContactSettings& measure) {
-  if (!other_.isConvex()) return;
-  const auto& plate = static_cast<const btConvexShape&>(other_);
-  leaveByOneSide(a, plate, b, memory.patches, measure.inset_a, near_spheres_);
 }
 
 void PackingVsShape::dropFeelersThrough(const PlacedPacking& a) {
@@ -169,7 +164,8 @@ bool PackingVsShape::refine(const Placed& now, const StepAhead& step) {
   if (settings->on_surfaces) a.addFeelers();
   if (!surface_->updateNearSpheres(a, now.b, near_spheres_)) return false;
   memory.turnTo(now);
-  if (settings->on_surfaces) seeOneSide(a, now.b, *settings);
+  if (settings->on_surfaces)
+    leaveByOneSide(a, *surface_, now.b, memory.patches, settings->inset_a, near_spheres_);
   const ShapeProbe probe(a, *surface_, now.b, near_spheres_);
   const bool near = refinePatches(memory.samples, probe, *settings, step, memory.patches);
   const auto cuts = [&](const NearSphere& near_sphere) {

@@ -33,8 +33,6 @@ class PackingVsShape : public FoundContact {
  private:
   /// Searches where the bodies are at `now`, or will be then.
   void searchAt(const Placed& now, const ContactOptions& options, const StepAhead& step);
-  /// Lets what is through a thin shape see one side of it.
-  void seeOneSide(const PlacedPacking& a, const btTransform& b, const ContactSettings& measure);
   /// Drops feelers that are through the middle of something thin: they see its other side, and the sphere
   /// next to them knows the way out.
   void dropFeelersThrough(const PlacedPacking& a);

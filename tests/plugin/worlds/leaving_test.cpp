@@ -12,6 +12,7 @@
 #include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
 #include "named_packings.hpp"
+#include "packing/mesh_shapes.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 #include "turned_meshes.hpp"
@@ -54,7 +55,29 @@ std::vector<btVector3> cornersOf(const PackingShape& shape) {
   return corners;
 }
 
-constexpr double kPlate = 0.03;  ///< thickness of a thin box [m]
+constexpr double kPlate = 0.03;  ///< its thickness [m]
+
+/// A box, as a box, as a hull, or as a closed mesh.
+std::shared_ptr<btCollisionShape> makePlate(const std::string& kind, const btVector3& half,
+                                            btTriangleMesh& triangles) {
+  if (kind == "plate") return std::make_shared<btBoxShape>(half);
+  const Vec3d high{half.x(), half.y(), half.z()};
+  const Mesh mesh = boxMesh({-high[0], -high[1], -high[2]}, high);
+  if (kind == "hull_plate") {
+    auto hull = std::make_shared<btConvexHullShape>();
+    for (const Vec3d& v : mesh.vertices) hull->addPoint({btScalar(v[0]), btScalar(v[1]), btScalar(v[2])});
+    hull->setMargin(0);
+    return hull;
+  }
+  for (const auto& t : mesh.triangles) {
+    const auto corner = [&](int i) {
+      const Vec3d& v = mesh.vertices[t[i]];
+      return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
+    };
+    triangles.addTriangle(corner(0), corner(1), corner(2));
+  }
+  return std::make_shared<btBvhTriangleMeshShape>(&triangles, true);
+}
 
 class Leaving : public testing::TestWithParam<Case> {};
 
@@ -67,9 +90,9 @@ TEST_P(Leaving, TakesLessThanASecond) {
   btTriangleMesh triangles;
   if (c.ground == "plane") world.addFloor();
   if (c.ground == "box") world.add(std::make_shared<btBoxShape>(btVector3(3, 3, 1)), 0, btVector3(0, 0, -1));
-  if (c.ground == "plate") {
-    world.add(std::make_shared<btBoxShape>(btVector3(3, 3, btScalar(kPlate / 2))), 0,
-              btVector3(0, 0, btScalar(-kPlate / 2)));
+  if (c.ground.find("plate") != std::string::npos) {
+    const btVector3 half(3, 3, btScalar(kPlate / 2));
+    world.add(makePlate(c.ground, half, triangles), 0, btVector3(0, 0, -half.z()));
   }
   if (c.ground.find("sheet") != std::string::npos) {
     // Wound one way or the other.
@@ -134,9 +157,11 @@ std::vector<Case> cases() {
           all.push_back({"horn", ground, sunk, 0, response, rate});
         all.push_back({"blade", ground, 0.2, 0, response, rate});
       }
-      // And through a thin box, up to its middle, to its other side, and beyond.
-      for (const char* body : {"horn", "bowl"}) {
-        for (const double sunk : {0.05, 0.1, 0.2}) all.push_back({body, "plate", sunk, 0, response, rate});
+      // And through a plate, up to its middle, to its other side, and beyond.
+      for (const char* ground : {"plate", "hull_plate", "mesh_plate"}) {
+        for (const char* body : {"horn", "bowl"}) {
+          for (const double sunk : {0.05, 0.1, 0.2}) all.push_back({body, ground, sunk, 0, response, rate});
+        }
       }
     }
   }

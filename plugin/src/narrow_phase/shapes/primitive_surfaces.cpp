@@ -22,6 +22,15 @@ class PrimitiveSurface : public DistanceSurface {
 
   bool isAsBefore() override { return boxIsAsBefore(shape_); }
 
+  /// As if its face were flat there.
+  bool depthOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
+               const btVector3& out, btScalar most, btScalar& depth) override {
+    const btVector3 along = out * world.getBasis();
+    const btVector3 outermost = shape_.localGetSupportingVertex(along);
+    depth = (outermost - world.invXform(body.origin() + place)).dot(along);
+    return depth > 0 && depth < most;
+  }
+
  protected:
   const Shape& shape_;
 };

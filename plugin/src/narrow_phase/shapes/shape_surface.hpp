@@ -57,8 +57,9 @@ class ShapeSurface {
     return false;
   }
 
-  /// Finds how deep a place behind a mesh is, relative to body.origin(): how far along `out` (unit) it is to
-  /// the first triangle [m]. Returns false if none is met within `most` [m], or only from its front.
+  /// Finds how deep a place in the shape is, relative to body.origin(): how far along `out` (unit) it is to
+  /// the surface [m]. Returns false if none is met within `most` [m], or only from its front, or if that is
+  /// not known.
   virtual bool depthOf(const PlacedPacking&, const btTransform&, const btVector3& /*place*/,
                        const btVector3& /*out*/, btScalar /*most*/, btScalar& /*depth*/) {
     return false;
