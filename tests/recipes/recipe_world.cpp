@@ -6,10 +6,10 @@
 namespace innersphere::recipes {
 namespace {
 
-std::shared_ptr<const CollisionModel> modelOf(const Solid& solid) {
+std::shared_ptr<const CollisionModel> modelOf(const Solid& solid, bool overlap_errors = false) {
   PackOptions options;
   options.spheres = 256;
-  options.overlap_errors = false;
+  options.overlap_errors = overlap_errors;
   return std::make_shared<CollisionModel>(std::make_shared<Packing>(pack(solid, options)));
 }
 
@@ -26,7 +26,8 @@ std::shared_ptr<const CollisionModel> bracketModel() {
 }
 
 std::shared_ptr<const CollisionModel> boxModel(const Vec3d& size) {
-  return modelOf(*makeBox(size));
+  constexpr bool kOverlapErrors = true;  // which a recipe asks for
+  return modelOf(*makeBox(size), kOverlapErrors);
 }
 
 }  // namespace innersphere::recipes
