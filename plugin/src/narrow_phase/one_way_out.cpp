@@ -56,6 +56,16 @@ btScalar sideOf(const PlacedPacking& body, const btVector3& axis, btScalar middl
 
 }  // namespace
 
+void findNearestOfEach(const PlacedPacking& body, const std::vector<NearSphere>& near_spheres,
+                       std::vector<const NearSphere*>& nearest) {
+  nearest.assign(body.count(), nullptr);
+  for (const NearSphere& n : near_spheres) {
+    if (body.isFeeler(n.sphere)) continue;
+    const NearSphere*& of_sphere = nearest[n.sphere];
+    if (of_sphere == nullptr || n.distance < of_sphere->distance) of_sphere = &n;
+  }
+}
+
 void leaveByOneSide(const PlacedPacking& body, ShapeSurface& surface, const btTransform& world,
                     const std::vector<ContactPatch>& before, btScalar gap,
                     std::vector<NearSphere>& near_spheres) {
@@ -74,16 +84,13 @@ void leaveByOneSide(const PlacedPacking& body, ShapeSurface& surface, const btTr
   btScalar thickness = 0;
   if (!plate.thickness(*deepest, most, thickness)) return;
   const btScalar middle = plate.faceBefore(*deepest).dot(axis) - thickness / 2;
-  static thread_local std::vector<const NearSphere*> of_spheres;
-  of_spheres.assign(body.count(), nullptr);
-  for (const NearSphere& n : near_spheres) {
-    if (!body.isFeeler(n.sphere)) of_spheres[n.sphere] = &n;
-  }
+  static thread_local std::vector<const NearSphere*> nearest;
+  findNearestOfEach(body, near_spheres, nearest);
   const auto reachesMiddle = [&](const NearSphere& n) {
     if (!(n.distance < 0)) return false;
     if (btFabs(n.distance + thickness / 2) < radius(n)) return true;
     if (!body.isFeeler(n.sphere)) return false;
-    const NearSphere* const beside = of_spheres[body.sphereBeside(n.sphere)];
+    const NearSphere* const beside = nearest[body.sphereBeside(n.sphere)];
     return beside != nullptr && isOnAxis(*beside, axis) && beside->normal.dot(n.normal) < 0;
   };
   static thread_local std::vector<NearSphere*> together, others;

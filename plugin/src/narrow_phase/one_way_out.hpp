@@ -9,6 +9,10 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Lists for each sphere of `body` that of its near spheres which is nearest to the other surface, or null.
+void findNearestOfEach(const PlacedPacking& body, const std::vector<NearSphere>& near_spheres,
+                       std::vector<const NearSphere*>& nearest);
+
 /// Near spheres beyond the middle of a plate see its far face, and those before it its near one: both would
 /// push, against each other, and hold what is through it. Where a sphere with its centre in the plate reaches
 /// the middle, or a feeler beside it is beyond, all that hang together with it see one face: that which

@@ -121,12 +121,7 @@ void PackingVsShape::dropFeelersThrough(const PlacedPacking& a) {
   static thread_local std::vector<const NearSphere*> nearest;
   const auto isInside = [&](const NearSphere& n) { return a.isFeeler(n.sphere) && n.distance < 0; };
   if (std::none_of(near_spheres_.begin(), near_spheres_.end(), isInside)) return;
-  nearest.assign(a.count(), nullptr);
-  for (const NearSphere& n : near_spheres_) {
-    if (a.isFeeler(n.sphere)) continue;
-    const NearSphere*& of_sphere = nearest[n.sphere];
-    if (of_sphere == nullptr || n.distance < of_sphere->distance) of_sphere = &n;
-  }
+  findNearestOfEach(a, near_spheres_, nearest);
   std::vector<NearSphere> kept;
   kept.reserve(near_spheres_.size());
   for (const NearSphere& n : near_spheres_) {
