@@ -111,7 +111,8 @@ TEST(Recipes, AWorldIsSavedAsCompounds) {
 }
 
 TEST(Recipes, AVolumeComesWithItsError) {
-  const std::shared_ptr<const CollisionModel> model = boxModel({1, 1, 1});
+  constexpr bool kOverlapErrors = true;
+  const std::shared_ptr<const CollisionModel> model = boxModel({1, 1, 1}, kOverlapErrors);
   // [snippet overlap]
   innersphere::QueryContext context;
   innersphere::BoundedQuery query(context);

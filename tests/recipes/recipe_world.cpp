@@ -25,9 +25,8 @@ std::shared_ptr<const CollisionModel> bracketModel() {
   return model;
 }
 
-std::shared_ptr<const CollisionModel> boxModel(const Vec3d& size) {
-  constexpr bool kOverlapErrors = true;  // which a recipe asks for
-  return modelOf(*makeBox(size), kOverlapErrors);
+std::shared_ptr<const CollisionModel> boxModel(const Vec3d& size, bool overlap_errors) {
+  return modelOf(*makeBox(size), overlap_errors);
 }
 
 }  // namespace innersphere::recipes

@@ -59,7 +59,7 @@ std::shared_ptr<const CollisionModel> torusModel();
 /// Of an L, whose own frame is not the principal one.
 std::shared_ptr<const CollisionModel> bracketModel();
 
-/// Of a box with these edges.
-std::shared_ptr<const CollisionModel> boxModel(const Vec3d& size);
+/// Of a box with these edges. Its overlap errors take most of the time of packing it.
+std::shared_ptr<const CollisionModel> boxModel(const Vec3d& size, bool overlap_errors = false);
 
 }  // namespace innersphere::recipes

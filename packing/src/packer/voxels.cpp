@@ -95,17 +95,23 @@ double Voxels::outsideBy(const Point& x) const {
 }
 
 Voxels::Shared Voxels::shared(const Pose& pose, std::size_t stride) const {
-  // Into the lattice of the original; in single precision, which is far finer than the cells.
-  const Eigen::Matrix3f rotation = (pose.rotation / spacing_).cast<float>();
-  const Eigen::Vector3f shift = ((pose.shift - origin_) / spacing_).cast<float>();
+  // Into the lattice of the original; in single precision, which is far finer than the cells. Plain numbers: with
+  // sanitizers Eigen's products would take most of the packer's time.
+  Eigen::Matrix<float, 4, 3> to;
+  to << (pose.rotation / spacing_).transpose().cast<float>(),
+      ((pose.shift - origin_) / spacing_).transpose().cast<float>();
+  const float* const rows = to.data();
   const Point extent = Point(size_[0], size_[1], size_[2]) * spacing_;
   const auto hit = [&](const Eigen::Vector3f& point) {
-    const Eigen::Vector3f at = rotation * point + shift;
+    const float* const x = point.data();
+    Index at;
     for (int k = 0; k < 3; ++k) {
-      if (!(at[k] >= 0 && at[k] < static_cast<float>(size_[k]))) return false;
+      const float* const row = rows + 4 * k;
+      const float along = row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3];
+      if (!(along >= 0 && along < static_cast<float>(size_[k]))) return false;
+      at[k] = static_cast<std::uint32_t>(along);
     }
-    return isInside(bit({static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]),
-                         static_cast<std::uint32_t>(at[2])}));
+    return isInside(bit(at));
   };
   std::size_t hits[2] = {}, looked[2] = {};
   for (const Block& block : blocks_) {

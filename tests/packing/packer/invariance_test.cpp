@@ -23,7 +23,7 @@ PackOptions optionsOf(std::size_t spheres, int threads) {
 }
 
 Packing packed(const Solid& solid, int threads = 0) {
-  return pack(solid, optionsOf(600, threads));
+  return pack(solid, optionsOf(300, threads));
 }
 
 /// With its overlap errors, which take most of the time.
