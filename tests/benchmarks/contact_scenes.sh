@@ -6,17 +6,12 @@
 # prints a Markdown table: every truth, and what each arrangement shows of it. A run may take LIMIT (60) seconds of processor time, so that
 # a busy machine changes nothing but the times. Takes about half an hour on two cores.
 set -euo pipefail
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-tool=${TOOL:-$here/../../build-benchmarks/bin/innersphere}
-[ -n "${TOOL:-}" ] || "$here/run.sh" innersphere --version >/dev/null  # builds it
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+. "$(dirname "${BASH_SOURCE[0]}")/scene_table.sh"
 scenes=${*:-arch arch-thin dominoes ring-peg ring-cylinder half-pipe half-pipe-mesh t-slot gripper gripper-motor carabiner chain-rest
   mass-ratios gear-box gear-plane gear-mesh drops mixed-pile scan-bin}
 declare -A arguments=() modes=([240]="--dt 0.00416666667" [60]="--dt 0.0166666667" [plain]="--plain")
 mode_names="240 60 plain"
 shapes="packing gimpact convex"
-limit=${LIMIT:-60}
 
 columns=
 for shape in $shapes; do
@@ -25,7 +20,6 @@ for shape in $shapes; do
     arguments[${shape}_$mode]="--shape $shape ${modes[$mode]}"
   done
 done
-. "$here/scene_table.sh"
 run_scenes
 
 cat <<EOF

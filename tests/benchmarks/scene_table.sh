@@ -1,5 +1,11 @@
-# Runs scenes in several ways and prints what each truth comes to: a Markdown table. To be sourced, with $tool, $work, $scenes,
-# $limit [s of processor time for a run], $columns, and ${arguments[COLUMN]} of the tool.
+# Runs scenes in several ways and prints what each truth comes to: a Markdown table. To be sourced; takes $scenes, $columns, and
+# ${arguments[COLUMN]} of the tool. A run may take LIMIT (60) seconds of processor time; TOOL is another tool than that built here.
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+tool=${TOOL:-$here/../../build-benchmarks/bin/innersphere}
+[ -n "${TOOL:-}" ] || "$here/run.sh" innersphere --version >/dev/null  # builds it
+limit=${LIMIT:-60}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
 run_scenes() {
   # Each line: a file, and the arguments of the tool whose output goes there. A run that fails or is stopped leaves an empty file

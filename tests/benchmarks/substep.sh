@@ -5,11 +5,7 @@
 #
 # prints a Markdown table: every truth, and what each solver shows of it at each step. Takes about half an hour on two cores.
 set -euo pipefail
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-tool=${TOOL:-$here/../../build-benchmarks/bin/innersphere}
-[ -n "${TOOL:-}" ] || "$here/run.sh" innersphere --version >/dev/null  # builds it
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+. "$(dirname "${BASH_SOURCE[0]}")/scene_table.sh"
 scenes=${*:-stack mass-ratios card-house chain-hang chain-swing chain-heavy rest drop bounce slide roll flip torsion cradle collisions
   tumble bowls soft nut nut-held gears peg maze chazelle pile arch arch-thin dominoes ring-peg half-pipe t-slot gripper gripper-motor
   gear-box chain-rest ring-cylinder carabiner half-pipe-mesh gear-plane gear-mesh drops mixed-pile scan-bin large-pile}
@@ -21,8 +17,6 @@ for rate in 60 120 240; do
     arguments[${solver}_$rate]="--dt $(awk "BEGIN { printf \"%.9f\", 1 / $rate }") --solver $solver"
   done
 done
-limit=${LIMIT:-60}
-. "$here/scene_table.sh"
 run_scenes
 
 cat <<EOF
