@@ -14,7 +14,7 @@ namespace {
 constexpr float kPadding = 4e-6F;
 /// In heights of a triangle: how far beyond its edges a line is still looked at. SmoothNormals lets it meet
 /// the triangle up to half as far.
-constexpr float kBeyond = 2e-4F;
+constexpr float kLookedBeyond = 2e-4F;
 
 /// Largest coordinate: what rounding follows.
 float sizeOf(const Surface& surface) {
@@ -55,7 +55,7 @@ void setTriangle(const Surface& surface, std::uint32_t triangle, std::size_t lan
     setPlane(inwards, corners[k], lane, leaf.edges[k]);
     highest = std::max(highest, dot(inwards, corners[(k + 2) % 3] - corners[k]));
   }
-  leaf.lowest[lane] = -kBeyond * static_cast<float>(highest);
+  leaf.lowest[lane] = -kLookedBeyond * static_cast<float>(highest);
   leaf.triangles[lane] = triangle;
 }
 
