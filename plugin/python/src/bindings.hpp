@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "innersphere/collision_model.hpp"
 #include "innersphere/error.hpp"
+#include "innersphere/query.hpp"
 
 namespace innersphere::python {
 
@@ -36,6 +38,10 @@ T parseWord(const char* argument, const std::string& word, const std::pair<const
   throw Error(ErrorCode::bad_argument,
               std::string(argument) + " is '" + word + "'; it must be one of " + known);
 }
+
+/// Python's words for backends.
+inline constexpr std::pair<const char*, Backend> kBackends[] = {
+    {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
 
 void bindErrors();
 void bindPacking(nb::module_& module);

@@ -23,8 +23,6 @@ namespace {
 
 using namespace nb::literals;
 
-constexpr std::pair<const char*, Backend> kBackends[] = {
-    {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
 constexpr std::pair<const char*, Estimator> kEstimators[] = {
     {"volume_true", Estimator::volume_true}, {"raw", Estimator::raw}, {"surface", Estimator::surface}};
 constexpr std::pair<const char*, Want> kWants[] = {

@@ -39,8 +39,6 @@ using Pose = std::pair<Position, Quaternion>;  ///< as PyBullet has them: x y z,
 
 constexpr std::pair<const char*, Response> kResponses[] = {
     {"compliant", Response::compliant}, {"rigid", Response::rigid}, {"penalty", Response::penalty}};
-constexpr std::pair<const char*, Backend> kBackends[] = {
-    {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
 constexpr std::pair<const char*, Solver> kSolvers[] = {{"bullet", Solver::bullet},
                                                        {"substep", Solver::substep}};
 
