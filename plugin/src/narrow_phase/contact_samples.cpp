@@ -97,6 +97,11 @@ void keepSideways(const PatchSamples& of, SampleScratch& scratch) {
   }
 }
 
+/// The same for a sample that gave points: a corner may be near where the line is not.
+void keepBearing(const SampleScratch& scratch, std::size_t i, Samples& samples) {
+  if (i < scratch.places.size()) samples.lines[scratch.places[i]] = lineOf(scratch.probed[i]);
+}
+
 /// From there the ascents start again.
 void keepAscents(const SampleScratch& scratch, Samples& samples) {
   for (std::size_t i = 0; i < scratch.places.size(); ++i) {
@@ -275,8 +280,11 @@ void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separa
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, &probe);
   PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
-  for (const ProbedSample& sample : scratch.probed) {
+  for (std::size_t i = 0; i < scratch.probed.size(); ++i) {
+    const ProbedSample& sample = scratch.probed[i];
+    const std::size_t before = found.size();
     if (!sample.isFarFromBend(separation)) points.addSample(sample, normals.at(sample));
+    if (found.size() > before) keepBearing(scratch, i, samples);
   }
   points.shareOutArea();
 }
@@ -293,7 +301,11 @@ void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separati
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, nullptr);
   PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
-  for (const ProbedSample& sample : scratch.probed) points.addSample(sample, normals.at(sample));
+  for (std::size_t i = 0; i < scratch.probed.size(); ++i) {
+    const std::size_t before = found.size();
+    points.addSample(scratch.probed[i], normals.at(scratch.probed[i]));
+    if (found.size() > before) keepBearing(scratch, i, samples);
+  }
   for (const ProbedSample& sample : scratch.sideways) {
     points.addBeside(sample);
     points.addTips(probe, sample);

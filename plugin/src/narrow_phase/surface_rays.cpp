@@ -29,13 +29,13 @@ SurfacePoint pointOf(const PlacedPacking& body, const SurfaceQueries::Hit& hit, 
   return point;
 }
 
-/// Whether a face with this normal is at a place.
-bool isFaceAt(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar size) {
-  // A little inside, where the direction to the face is well defined.
-  const btVector3 place = at - normal * (kSunk * size + body.margin);
+/// Whether a place in the solid is nearer to another face than to those with this normal.
+bool isNearerToOther(const PlacedPacking& body, const btVector3& place, const btVector3& normal,
+                     btScalar size) {
   SurfaceQueries::Nearest nearest;
-  return body.nearest(place, size, nearest) && nearest.distance < 0 &&
-         nearest.normal.dot(normal) > kSameBentFaceCosine;
+  if (!body.nearest(place, size, nearest)) return false;
+  const btVector3& face = body.shape().surfaceQueries().normals().face(nearest.triangle);
+  return (body.world.getBasis() * face).dot(normal) < kSameBentFaceCosine;
 }
 
 }  // namespace
@@ -89,10 +89,15 @@ bool enterSolid(const PlacedPacking& body, const btVector3& from, const btVector
 
 bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar depth,
                btScalar size, SurfacePoint& point) {
+  const btScalar sunk = kSunk * size, inside = btMax(sunk, depth) + body.margin;
   // In a groove there is a face above, but nothing solid up to it.
-  const btScalar inside = btMax(kSunk * size, depth) + body.margin;
-  return isFaceAt(body, at, normal, size) &&
-         leaveSolid(body, at - normal * inside, normal, size + inside, OpposedPoints::kNone, point);
+  if (!leaveSolid(body, at - normal * inside, normal, size + inside, OpposedPoints::kNone, point))
+    return false;
+  const btScalar higher = (point.at - at).dot(normal);
+  if (btFabs(higher) > sunk || point.normal.dot(normal) < kSameBentFaceCosine) return false;
+  // Where the face ends, the way out by the side is the shorter one, but not from a place that is less deep.
+  const btScalar below = btMin(depth + higher, sunk);
+  return below < 0 || !isNearerToOther(body, point.at - normal * (below + body.margin), point.normal, size);
 }
 
 bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,

@@ -75,5 +75,27 @@ INSTANTIATE_TEST_SUITE_P(On, EdgeContact,
                            return std::get<0>(info.param) + "_tilted_" + std::to_string(tilt) + "_mrad";
                          });
 
+/// Its corner is above a face, however near to where that ends.
+TEST(EdgeContactOnABlock, OfACubeOnACornerCloseToTheRim) {
+  const btQuaternion turn =
+      btQuaternion(btVector3(1, 0, 0), btScalar(0.2)) * btQuaternion(btVector3(0, 1, 0), btScalar(0.1));
+  const btMatrix3x3 axes(turn);
+  btVector3 corner;
+  for (int k = 0; k < 3; ++k) corner[k] = btScalar(axes[2][k] > 0 ? -0.5 : 0.5);
+  const btVector3 lowest = axes * corner;
+  for (const double to_rim : {0.003, 0.006, 0.012, 0.025, 0.05}) {
+    TestWorld world;
+    world.add(makeShape(latticeBox({3, 3, 1}, 12)), 0, btVector3(0, 0, btScalar(-0.5)));
+    const btVector3 place(btScalar(1.5 - to_rim), btScalar(0.2), btScalar(-0.002));
+    world.add(makeShape(latticeBox({1, 1, 1}, 8)), 1, place - lowest, turn);
+    world.world.performDiscreteCollisionDetection();
+    const auto points = world.contactsOfLast();
+    ASSERT_GE(points.size(), 1u) << to_rim;
+    EXPECT_NEAR(points[0].getPositionWorldOnB().distance(place), 0, 3e-3) << to_rim;
+    EXPECT_NEAR(points[0].getDistance(), -0.002, 1e-5) << to_rim;
+    EXPECT_GT(std::fabs(points[0].m_normalWorldOnB.z()), 0.99999) << to_rim;
+  }
+}
+
 }  // namespace
 }  // namespace innersphere::test

@@ -198,6 +198,21 @@ TEST(SurfaceRays, FindTheFaceUnderAPlaceOnlyAsDeepAsTheSolidIs) {
   EXPECT_FALSE(faceUnder(body, place, x, btScalar(2 * kHalf[0] + 0.01), btScalar(0.5), point));
 }
 
+/// A corner of another solid that is less deep than it is away from where the face ends leaves by the face.
+TEST(SurfaceRays, FindTheFaceUnderACornerCloseToWhereItEnds) {
+  TurnedBox box;
+  const PlacedPacking body = box.placed();
+  const btMatrix3x3& axes = body.world.getBasis();
+  constexpr double kToEnd = 0.01;
+  const btVector3 place = axes * btVector3(btScalar(kHalf[0]), btScalar(kHalf[1] - kToEnd), btScalar(0.2));
+  SurfacePoint point;
+  for (const double depth : {-0.03, -1e-4, 0.0, 1e-4, 0.9 * kToEnd}) {
+    ASSERT_TRUE(faceUnder(body, place, axes.getColumn(0), btScalar(depth), btScalar(0.5), point)) << depth;
+    EXPECT_NEAR(point.at.distance(place), 0, kRounding);
+  }
+  EXPECT_FALSE(faceUnder(body, place, axes.getColumn(0), btScalar(1.1 * kToEnd), btScalar(0.5), point));
+}
+
 TEST(SurfaceRays, FindTheCornerUphill) {
   TurnedBox box;
   box.shape->setMargin(btScalar(0.05));
