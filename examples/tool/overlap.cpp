@@ -225,7 +225,7 @@ void run(Arguments& arguments) {
           from_contacts ? gradientWrench(result, i, reference) : volumeWrench(overlap, place, reference);
       if (overlap.pair_count > 0) overlap.centroid = plus(overlap.centroid, a->packing().origin);
       appendRow(table, poses[first + i].name, overlap, wrench,
-                expectedError(queries[i], arguments.query.estimator, overlap.volume));
+                expectedError(queries[i], arguments.query.estimator, overlap));
     }
     if (!progress("querying",
                   static_cast<double>(first + queries.size()) / static_cast<double>(poses.size()))) {

@@ -1,6 +1,7 @@
 #include "packing_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -24,11 +25,15 @@ double diagonalOf(const Surface& surface) {
 // The last six prefixes: shorter ones are for programs.
 constexpr std::size_t kPrefixesShown = 6;
 
-std::string percentages(const ByDepth& fractions) {
+// For which depths errors are shown, relative to the cube root of the volume.
+constexpr std::array kDepthsShown{0.003, 0.006, 0.01, 0.02, 0.03, 0.06, 0.1, 0.2, 0.3};
+
+template <typename NumberAt>
+std::string percentages(const NumberAt& numberAt) {
   std::string text;
-  for (double f : fractions) {
+  for (double depth : kDepthsShown) {
     char cell[32];
-    std::snprintf(cell, sizeof cell, "%9.3g", 100 * f);
+    std::snprintf(cell, sizeof cell, "%9.3g", 100 * numberAt(depth));
     text += cell;
   }
   return text + " %";
@@ -36,21 +41,22 @@ std::string percentages(const ByDepth& fractions) {
 
 void addOverlapErrors(const OverlapErrors& errors, Report& report) {
   if (errors.prefixes.empty()) return;
-  report.addLine("error of overlaps of", percentages(kOverlapDepths) + " of the solid");
+  report.addLine("error of overlaps, deep by",
+                 percentages([](double depth) { return depth; }) + " of the cube root of the volume");
   const std::size_t all = errors.prefixes.size();
   for (std::size_t i = all - std::min(all, kPrefixesShown); i < all; ++i) {
     const OverlapErrors::Prefix& prefix = errors.prefixes[i];
     const std::string count = "  " + std::to_string(prefix.count);
-    report.addLine(count + ", plain", percentages(prefix.raw.mean));
-    report.addLine(count + ", volume-true", percentages(prefix.volume_true.mean));
-    report.addLine("    95 % of them below", percentages(prefix.volume_true.bound));
+    report.addLine(count + ", plain",
+                   percentages([&](double depth) { return expectedError(prefix.raw, depth).mean; }));
+    report.addLine(count + ", volume-true",
+                   percentages([&](double depth) { return expectedError(prefix.volume_true, depth).mean; }));
+    report.addLine("    95 % of them below",
+                   percentages([&](double depth) { return expectedError(prefix.volume_true, depth).bound; }));
   }
-  if (errors.shallowest > kOverlapDepths[0]) {
-    char text[80];
-    std::snprintf(text, sizeof text, "nothing below %g %%: the surface is not closed",
-                  100 * errors.shallowest);
-    report.addLine("  measured", text);
-  }
+  char text[80];
+  std::snprintf(text, sizeof text, "from %g %% of the volume on", 100 * errors.shallowest);
+  report.addLine("  measured", text);
 }
 
 void addCoverage(const Packing& packing, double diagonal, Report& report) {
@@ -128,7 +134,8 @@ Report describe(const Packing& packing) {
   addOverlapErrors(packing.overlap_errors, report);
   // Programs get these as the file has them.
   const auto file = nlohmann::ordered_json::from_cbor(encodePacking(packing));
-  for (const char* measured : {"coverage", "volume_errors"}) report.add(measured, "", file.at(measured), "");
+  for (const char* measured : {"coverage", "errors_by_depth"})
+    report.add(measured, "", file.at(measured), "");
   addMassWeights(packing.mass_weights, report);
   report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
   Vec3d centre = solid.centre_of_mass;

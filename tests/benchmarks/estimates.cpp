@@ -70,9 +70,9 @@ class Poses {
   double found(std::uint32_t count, ExpectedError& expected) {
     PairQuery query = query_;
     query.prefix_a = query.prefix_b = count;
-    const double volume = context_.overlap(query, {Want::volume, Estimator::volume_true}).volume;
-    expected = expectedError(query, Estimator::volume_true, volume);
-    return volume;
+    const Overlap overlap = context_.overlap(query, {Want::wrench, Estimator::volume_true});
+    expected = expectedError(query, Estimator::volume_true, overlap);
+    return overlap.volume;
   }
 
  private:

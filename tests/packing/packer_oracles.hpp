@@ -1,6 +1,7 @@
 // What the packer's results are compared with, written without its code.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -82,6 +83,14 @@ inline Real lens(Real r1, Real r2, Real d) {
   return pi * s * s * (d * d + 2 * d * (r1 + r2) - 3 * (r1 - r2) * (r1 - r2)) / (12 * d);
 }
 
+inline bool sameEstimate(const OverlapErrors::Estimate& a, const OverlapErrors::Estimate& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const OverlapErrors::AtDepth& one, const OverlapErrors::AtDepth& other) {
+                      return one.depth == other.depth && one.error.mean == other.error.mean &&
+                             one.error.bound == other.error.bound;
+                    });
+}
+
 inline bool sameBytes(const Packing& a, const Packing& b) {
   if (a.spheres.size() != b.spheres.size() || a.volume_true.size() != b.volume_true.size()) return false;
   for (std::size_t i = 0; i < a.spheres.size(); ++i) {
@@ -99,8 +108,7 @@ inline bool sameBytes(const Packing& a, const Packing& b) {
   }
   for (std::size_t i = 0; i < a.overlap_errors.prefixes.size(); ++i) {
     const OverlapErrors::Prefix &p = a.overlap_errors.prefixes[i], &q = b.overlap_errors.prefixes[i];
-    if (p.raw.mean != q.raw.mean || p.raw.bound != q.raw.bound) return false;
-    if (p.volume_true.mean != q.volume_true.mean || p.volume_true.bound != q.volume_true.bound) return false;
+    if (!sameEstimate(p.raw, q.raw) || !sameEstimate(p.volume_true, q.volume_true)) return false;
   }
   return a.certificate.delta == b.certificate.delta &&
          a.certificate.largest_missing_radius == b.certificate.largest_missing_radius &&

@@ -101,22 +101,37 @@ def test_slices_use_fewer_spheres(box):
 def test_expected_errors_are_those_of_the_file(tmp_path):
     packing = innersphere.pack(innersphere.solid("lbracket"), spheres=300)
     packing.save(tmp_path / "p.json")
-    kept = json.loads((tmp_path / "p.json").read_text())["volume_errors"]
+    kept = json.loads((tmp_path / "p.json").read_text())["errors_by_depth"]
     by_count = {row["count"]: row for row in kept["prefixes"]}
-    volume = packing.volume * np.array(kept["depths"])
+    size = packing.volume ** (1 / 3)
     for part, count in ((packing, 300), (packing[:200], 128)):
         for estimator in ("raw", "volume_true"):
-            got = innersphere.expected_error(part, packing, volume.reshape(3, 3), estimator=estimator)
+            rows = by_count[300][estimator]
+            depth, volume = np.array([row["depth"] for row in rows]), packing.volume * 0.1
+            area = np.zeros((len(rows), 3))  # of a layer that is so deep
+            area[:, 1] = np.sqrt(np.maximum((volume / (depth * size)) ** 2 - volume ** (4 / 3), 1e-12))
+            got = innersphere.expected_error(part, packing, {"volume": np.full(len(rows), volume), "area": area}, estimator=estimator)
+            layers = depth < 0.1 ** (1 / 3)  # others are deeper than this volume can be
+            assert layers.sum() > 5
             for field in ("mean", "bound"):
-                worse = np.maximum(by_count[count][estimator][field], by_count[300][estimator][field])
-                np.testing.assert_allclose(got[field], worse.reshape(3, 3))
+                one, all_of = (
+                    np.exp(np.interp(np.log(depth), np.log([r["depth"] for r in of]), np.log([r[field] for r in of])))
+                    for of in (by_count[count][estimator], rows)
+                )
+                np.testing.assert_allclose(got[field][layers], np.maximum(one, all_of)[layers])
     assert got.dtype == innersphere.expected_error_dtype
-    single = innersphere.expected_error(packing, packing, volume[5])
-    assert 0 < single["mean"] < single["bound"] < 1
-    assert np.isnan(innersphere.expected_error(packing, packing, [0, volume[0] / 2])["mean"]).all()
-    assert innersphere.expected_error(packing, packing, volume[5], estimator="surface")["bound"] == 0
+    query = Query()
+    shared = query.overlap(packing, packing, pose_b=np.stack([moved(0.3, 0.2), moved(50, 0)]).reshape(2, 1, 4, 4))
+    single = innersphere.expected_error(packing, packing, shared)
+    assert single.shape == (2, 1) and np.isnan(single["mean"][1, 0])
+    assert 0 < single["mean"][0, 0] < single["bound"][0, 0] < 1
+    assert innersphere.expected_error(packing, packing, shared, estimator="surface")["bound"][0, 0] == 0
+    without_area = query.overlap(packing, packing, pose_b=moved(0.3, 0.2), want="volume")
+    assert np.isnan(innersphere.expected_error(packing, packing, without_area)["mean"])
     with pytest.raises(TypeError):
         innersphere.expected_error(packing, packing, "much")
+    with pytest.raises(innersphere.InvalidArgumentError):
+        innersphere.expected_error(packing, packing, {"volume": [1, 2], "area": [[1, 0, 0]]})
 
 
 def test_want(box):

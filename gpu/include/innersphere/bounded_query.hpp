@@ -22,15 +22,16 @@ struct BoundedOverlap {
   Overlap overlap;             ///< The sums.
   std::uint32_t prefix_a = 0;  ///< The number of spheres of A that were used.
   std::uint32_t prefix_b = 0;  ///< The number of spheres of B that were used.
-  double error = 0;            ///< The expected error of the volume: ExpectedError::mean.
-  double error_bound = 0;      ///< What it exceeds in 1 of 20 cases: ExpectedError::bound.
+  double error = 0;        ///< The expected error of the volume: ExpectedError::mean. See expectedError().
+  double error_bound = 0;  ///< What it exceeds in 1 of 20 cases: ExpectedError::bound.
 };
 
-/// Returns how far off a volume is to be expected that a query has found [m^3], from what was measured for
+/// Returns how far off the volume is to be expected that a query has found, from what was measured for
 /// overlaps of this depth when the packings were made (see Packing::overlap_errors); of A and B the worse
-/// one. NaN if nothing overlaps, nothing was measured, or nothing so shallow; 0 with Estimator::surface.
-/// Margins and CollisionModel::update() are not considered. Throws Error bad_argument for a null model.
-ExpectedError expectedError(const PairQuery& query, Estimator estimator, double volume);
+/// one. The depth takes the area: NaN without one, as Want::volume gives none. NaN also if nothing overlaps,
+/// nothing was measured, or nothing so shallow; 0 with Estimator::surface. Margins and
+/// CollisionModel::update() are not considered. Throws Error bad_argument for a null model.
+ExpectedError expectedError(const PairQuery& query, Estimator estimator, const Overlap& found);
 
 /// Runs single queries with the longest prefixes that a budget allows. Both bodies use 64, 128, 256, ...
 /// spheres, up to all they have. The time of such a step is predicted from the slowest of the last few

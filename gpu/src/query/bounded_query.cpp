@@ -41,8 +41,9 @@ std::size_t stepsOf(const PairQuery& query) {
   return steps;
 }
 
-/// The errors that a packing gives for overlaps of this volume; NaN if it gives none.
-ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator, double volume) {
+/// The errors that a packing gives for an overlap of this volume and depth; NaN if it gives none.
+ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator, double volume,
+                      double depth) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const OverlapErrors& errors = packing.overlap_errors;
   const OverlapErrors::Prefix* best = nullptr;
@@ -51,7 +52,8 @@ ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, Estimator es
   }
   const double fraction = volume / packing.solid.volume;
   if (!best || !(fraction > 0) || fraction < errors.shallowest) return {kUnknown, kUnknown};
-  return expectedError(estimator == Estimator::raw ? best->raw : best->volume_true, fraction);
+  return expectedError(estimator == Estimator::raw ? best->raw : best->volume_true,
+                       depth / std::cbrt(packing.solid.volume));
 }
 
 double worse(double a, double b) {
@@ -60,12 +62,15 @@ double worse(double a, double b) {
 
 }  // namespace
 
-ExpectedError expectedError(const PairQuery& query, Estimator estimator, double volume) {
+ExpectedError expectedError(const PairQuery& query, Estimator estimator, const Overlap& found) {
   const std::uint32_t prefix_a = limitOf(query.a, query.prefix_a),
                       prefix_b = limitOf(query.b, query.prefix_b);
   if (estimator == Estimator::surface) return {0, 0};
+  const bool has_area = found.area != Vec3d{};
+  const double depth = has_area ? overlapDepth(found.volume, found.area) : 0,
+               volume = has_area ? found.volume : 0;
   const auto of = [&](const CollisionModel& model, std::uint32_t prefix, double scale) {
-    return errorOf(model.packing(), prefix, estimator, volume / (scale * scale * scale));
+    return errorOf(model.packing(), prefix, estimator, volume / (scale * scale * scale), depth / scale);
   };
   const ExpectedError a = of(*query.a, prefix_a, query.placement_a.scale),
                       b = of(*query.b, prefix_b, query.placement_b.scale);
@@ -89,7 +94,7 @@ BoundedOverlap BoundedQuery::overlap(const PairQuery& query, const QueryBudget& 
   result.overlap = timedRun(query, options, step);
   result.prefix_a = bounded.prefix_a;
   result.prefix_b = bounded.prefix_b;
-  const ExpectedError error = expectedError(bounded, options.estimator, result.overlap.volume);
+  const ExpectedError error = expectedError(bounded, options.estimator, result.overlap);
   result.error = error.mean;
   result.error_bound = error.bound;
   return result;

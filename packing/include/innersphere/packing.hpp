@@ -62,12 +62,6 @@ struct Coverage {
 /// surface counts as not covered.
 inline constexpr double kCoverageDistance = 0.01;
 
-/// These are depths of overlaps, as volumes relative to the solid's, for which errors are given.
-inline constexpr std::array<double, 9> kOverlapDepths{3e-5, 1e-4, 3e-4, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3};
-
-/// Holds a number for each of kOverlapDepths.
-using ByDepth = std::array<double, kOverlapDepths.size()>;
-
 /// Tells how far a volume that was found with spheres may be from the truth. The error is relative to the
 /// larger of both, |found - true| / max(found, true): from 0 to 1, where both have nothing in common.
 /// Relative to the truth it has no finite mean for thin walls, of which some poses find a thousand times too
@@ -80,19 +74,26 @@ struct ExpectedError {
   double bound = 0;
 };
 
+/// Returns how deep an overlap is [m]: its volume over its area, which is how thick a layer it would be. At
+/// most the cube root of the volume: opposite walls have areas that cancel, but are not deep for that.
+double overlapDepth(double volume, const Vec3d& area);
+
 /// Tells how far overlap volumes found with the spheres are from the truth. The packer measures this with the
-/// solid and copies of it at different places, down to 0.001 % of its volume, unless
-/// PackOptions::overlap_errors is off. Depth is what the spheres find, not the truth, which a query does not
-/// know. For each depth those kOverlapErrorPoses count whose found volumes are nearest to it: a limit of 95 %
-/// for the mean of as many others (Student's t), and the second largest error, which one more pose exceeds
-/// with a probability of 2 / (kOverlapErrorPoses + 1), whatever the distribution. Copies are turned at
-/// random: walls along walls and faces on faces are not among them, and have larger errors.
+/// solid and copies of it, unless PackOptions::overlap_errors is off. Of the copies one third is turned at
+/// random, one third lies upon the solid and one third has a face on a face of it, but for some degrees, so
+/// that walls lie along walls. They share 0.001 to 45 % of the volume. Spheres err at surfaces, so errors
+/// depend on how deep an overlap is, whatever its volume: a layer is as far off as a corner that is as deep.
+/// Depth is what the spheres find, not the truth, which a query does not know.
 struct OverlapErrors {
-  /// Holds the errors by depth.
-  struct Estimate {
-    ByDepth mean{};   ///< See ExpectedError::mean.
-    ByDepth bound{};  ///< See ExpectedError::bound.
+  /// Holds the errors of kOverlapErrorPoses poses, next to each other in depth: a limit of 95 % for the mean
+  /// of as many others (Student's t), and the largest one, which one more pose exceeds with a probability of
+  /// 1 / (kOverlapErrorPoses + 1), whatever the distribution.
+  struct AtDepth {
+    double depth = 0;     ///< See overlapDepth(), relative to the cube root of the solid's volume.
+    ExpectedError error;  ///< The errors there.
   };
+  /// Holds the errors by rising depth. Empty if the spheres find next to nothing.
+  using Estimate = std::vector<AtDepth>;
   /// Holds the errors of one prefix.
   struct Prefix {
     std::uint32_t count = 0;  ///< The length of the prefix, one that has volume-true radii.
@@ -100,16 +101,17 @@ struct OverlapErrors {
     Estimate volume_true;     ///< The errors with volume-true radii.
   };
   std::uint32_t poses = 0;  ///< The number of copies. 0: nothing was measured.
-  /// The least depth that was measured. It is greater than the first of kOverlapDepths if the solid has no
-  /// closed surface: true volumes are then sampled.
+  /// The least part of the solid's volume that was measured. It is larger if the solid has no closed surface:
+  /// true volumes are then sampled.
   double shallowest = 0;
-  /// The relative standard error of true volumes, by depth. 0 where they come from the surface.
-  ByDepth sampling_error{};
+  /// The relative standard error of true volumes: the root of the mean square. 0 where they come from the
+  /// surface.
+  double sampling_error = 0;
   std::vector<Prefix> prefixes;  ///< The errors by rising count. May be empty.
 };
 
 /// The number of poses from which the errors at one depth are found.
-inline constexpr std::size_t kOverlapErrorPoses = 39;
+inline constexpr std::size_t kOverlapErrorPoses = 19;
 
 /// Tells where a packing comes from, so that a file can be traced and made again.
 struct Provenance {
@@ -152,9 +154,9 @@ struct Packing {
 /// there is none.
 const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count);
 
-/// Returns the errors to expect where the spheres share `fraction` of the solid's volume with another one's.
-/// Between two of kOverlapDepths the logarithms are linear; deeper than the last, its errors hold.
-ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double fraction);
+/// Returns the errors to expect at a depth that is relative to the cube root of the solid's volume. Between
+/// two depths of the estimate the logarithms are linear; beyond the first and the last their errors hold.
+ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth);
 
 /// Returns the coverage of the longest measured prefix that is not longer than `count`, or null if there is
 /// none.

@@ -77,15 +77,17 @@ json coverageEntry(const std::vector<Coverage>& prefixes) {
 
 json overlapErrorsEntry(const OverlapErrors& errors) {
   const auto entry = [](const OverlapErrors::Estimate& estimate) {
-    return json{{"mean", estimate.mean}, {"bound", estimate.bound}};
+    json rows = json::array();
+    for (const OverlapErrors::AtDepth& at : estimate)
+      rows.push_back({{"depth", at.depth}, {"mean", at.error.mean}, {"bound", at.error.bound}});
+    return rows;
   };
   json prefixes = json::array();
   for (const OverlapErrors::Prefix& prefix : errors.prefixes) {
     prefixes.push_back(
         {{"count", prefix.count}, {"raw", entry(prefix.raw)}, {"volume_true", entry(prefix.volume_true)}});
   }
-  return {{"depths", kOverlapDepths},
-          {"poses", errors.poses},
+  return {{"poses", errors.poses},
           {"shallowest", errors.shallowest},
           {"sampling_error", errors.sampling_error},
           {"prefixes", std::move(prefixes)}};
@@ -116,7 +118,7 @@ Entries entriesOf(const Packing& packing, Encoding encoding) {
       {"quality",
        {{"density", q.density}, {"gap_mean", q.gap_mean}, {"gap_p95", q.gap_p95}, {"gap_max", q.gap_max}}},
       {"coverage", coverageEntry(packing.coverage)},
-      {"volume_errors", overlapErrorsEntry(packing.overlap_errors)},
+      {"errors_by_depth", overlapErrorsEntry(packing.overlap_errors)},
       {"warnings", packing.warnings},
       {"solid", {{"volume", m.volume}, {"centre_of_mass", m.centre_of_mass}, {"inertia", m.inertia}}},
       {"origin", packing.origin},

@@ -3,10 +3,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "common/steady_math.hpp"
 #include "packer/overlap_trials.hpp"
 #include "packer/sphere_grid.hpp"
 
@@ -15,12 +16,12 @@ namespace {
 
 constexpr double kVoxels = 1 << 20;
 
-// About as many for each depth as errors are found from.
-constexpr std::size_t kTrials = kOverlapErrorPoses * (kOverlapDepths.size() + 1);
+// Enough for 15 depths.
+constexpr std::size_t kTrials = 15 * kOverlapErrorPoses;
 
 // Student's t of 95 %, one-sided, with kOverlapErrorPoses - 1 degrees of freedom.
-constexpr double kStudent = 1.686;
-static_assert(kOverlapErrorPoses == 39);
+constexpr double kStudent = 1.734;
+static_assert(kOverlapErrorPoses == 19);
 
 /// What two balls share, by the closed form of the lens.
 double lens(double r1, double r2, double d) {
@@ -29,6 +30,20 @@ double lens(double r1, double r2, double d) {
   if (d <= std::abs(r1 - r2)) return Ball{Point::Zero(), std::min(r1, r2)}.volume();
   return std::numbers::pi * s * s * (d * d + 2 * d * (r1 + r2) - 3 * (r1 - r2) * (r1 - r2)) / (12 * d);
 }
+
+/// What two balls share, summed over all pairs.
+struct Found {
+  double volume = 0;
+  Point area = Point::Zero();  // as of Overlap
+
+  /// Adds two balls whose centres are `way` apart, which is d long.
+  void add(double r1, double r2, const Point& way, double d) {
+    volume += lens(r1, r2, d);
+    if (d <= std::abs(r1 - r2) || d >= r1 + r2) return;
+    const double along = (d * d + r1 * r1 - r2 * r2) / (2 * d);
+    area += std::numbers::pi * (r1 * r1 - along * along) / d * way;
+  }
+};
 
 /// The first spheres of a packing, with their own and with volume-true radii.
 class Prefix {
@@ -44,7 +59,7 @@ class Prefix {
   }
 
   struct Sums {
-    double raw = 0, volume_true = 0;
+    Found raw, volume_true;
   };
 
   Sums overlap(const Pose& pose, const Voxels& voxels) const {
@@ -55,11 +70,12 @@ class Prefix {
       if ((x.array() < -large - overshoot_).any() || (x.array() > 1 + large + overshoot_).any()) continue;
       if (voxels.outsideBy(x) > large + overshoot_) continue;
       grid_.visitNear(x, x, large, [&](std::uint32_t j) {
-        const double d = (x - balls_[j].centre).norm();
+        const Point way = x - balls_[j].centre;
+        const double d = way.norm();
         const double other = grid_.balls()[j].radius;
         if (d >= large + other) return;
-        sums.volume_true += lens(large, other, d);
-        sums.raw += lens(balls_[i].radius, balls_[j].radius, d);
+        sums.volume_true.add(large, other, way, d);
+        sums.raw.add(balls_[i].radius, balls_[j].radius, way, d);
       });
     }
     return sums;
@@ -72,80 +88,75 @@ class Prefix {
 };
 
 /// What was found in one pose.
-struct Finding {
-  double depth;  ///< found with spheres, or true
-  double error;  ///< as in ExpectedError, or of a true depth relative to it
-};
-
-/// Calls f(number of a depth, the findings nearest to it) for each of kOverlapDepths.
-template <typename F>
-void forEachDepth(std::vector<Finding> findings, const F& f) {
-  std::erase_if(findings, [](const Finding& one) { return !(one.depth > 0); });
-  std::sort(findings.begin(), findings.end(),
-            [](const Finding& a, const Finding& b) { return a.depth < b.depth; });
-  const std::size_t size = std::min(kOverlapErrorPoses, findings.size());
-  for (std::size_t k = 0; k < kOverlapDepths.size(); ++k) {
-    const double depth = kOverlapDepths[k];
-    std::size_t first = 0;  // the window moves up while the next finding is nearer than its first, as a ratio
-    while (first + size < findings.size() &&
-           findings[first].depth * findings[first + size].depth < depth * depth)
-      ++first;
-    f(k, std::span(findings).subspan(first, size));
-  }
+OverlapErrors::AtDepth findingOf(const Found& found, double truth, double volume) {
+  const double error = std::abs(found.volume - truth) / std::max(found.volume, truth);
+  const double depth =
+      found.volume > 0 ? overlapDepth(found.volume, {found.area[0], found.area[1], found.area[2]}) : 0;
+  return {depth / steady::pow(volume, 1.0 / 3), {error, error}};
 }
 
-OverlapErrors::Estimate estimateFrom(const std::vector<Finding>& findings) {
+/// Summarises findings that are next to each other in depth.
+OverlapErrors::AtDepth summaryOf(std::span<const OverlapErrors::AtDepth> findings) {
+  const auto count = static_cast<double>(findings.size());
+  double sum = 0, squares = 0, largest = 0, logarithms = 0;
+  for (const OverlapErrors::AtDepth& one : findings) {
+    const double error = one.error.mean;
+    sum += error;
+    squares += error * error;
+    largest = std::max(largest, error);
+    logarithms += steady::log2(one.depth);
+  }
+  const double mean = sum / count;
+  const double variance = std::max(0.0, squares - count * mean * mean) / (count - 1);
+  const double margin = kStudent * std::sqrt(2 * variance / count);  // the others' scatter, too
+  return {steady::pow(2, logarithms / count), {std::min(mean + margin, 1.0), largest}};
+}
+
+/// Cuts findings into runs of kOverlapErrorPoses by depth, as evenly spread as they are.
+OverlapErrors::Estimate estimateFrom(std::vector<OverlapErrors::AtDepth> findings) {
+  std::erase_if(findings, [](const OverlapErrors::AtDepth& one) { return !(one.depth > 0); });
+  std::sort(findings.begin(), findings.end(),
+            [](const OverlapErrors::AtDepth& a, const OverlapErrors::AtDepth& b) {
+              return a.depth != b.depth ? a.depth < b.depth : a.error.mean < b.error.mean;
+            });
+  const std::size_t runs = findings.size() / kOverlapErrorPoses;
   OverlapErrors::Estimate estimate;
-  forEachDepth(findings, [&](std::size_t depth, std::span<const Finding> near) {
-    estimate.mean[depth] = estimate.bound[depth] = 1;
-    if (near.size() < kOverlapErrorPoses) return;  // the spheres find next to nothing
-    const auto count = static_cast<double>(near.size());
-    double sum = 0, squares = 0;
-    std::array<double, 2> largest{};  // the second one first
-    for (const Finding& one : near) {
-      sum += one.error;
-      squares += one.error * one.error;
-      largest = {std::max(largest[0], std::min(largest[1], one.error)), std::max(largest[1], one.error)};
-    }
-    const double mean = sum / count;
-    const double variance = std::max(0.0, squares - count * mean * mean) / (count - 1);
-    const double margin = kStudent * std::sqrt(2 * variance / count);  // the others' scatter, too
-    estimate.mean[depth] = std::min(mean + margin, 1.0);
-    estimate.bound[depth] = largest[0];
-  });
+  for (std::size_t i = 0; i < runs; ++i) {
+    const auto run = std::span(findings).subspan(i * findings.size() / runs, kOverlapErrorPoses);
+    const OverlapErrors::AtDepth summary = summaryOf(run);
+    // All may be equally deep, as where one sphere is inside another.
+    if (estimate.empty() || summary.depth > estimate.back().depth) estimate.push_back(summary);
+  }
   return estimate;
 }
 
 }  // namespace
 
 OverlapErrors findOverlapErrors(const Container& container, const Surface& surface,
-                                std::span<const Ball> balls, const std::vector<VolumeTrueRadii>& radii,
-                                double volume) {
+                                const SurfaceSamples& samples, std::span<const Ball> balls,
+                                const std::vector<VolumeTrueRadii>& radii, double volume) {
   const Voxels voxels(container, volume, kVoxels);
-  const auto [trials, shallowest] = makeOverlapTrials(container, surface, voxels, volume, kTrials);
+  const auto [trials, shallowest] = makeOverlapTrials(container, surface, samples, voxels, volume, kTrials);
   if (trials.size() < kOverlapErrorPoses) return {};
   OverlapErrors errors;
   errors.poses = static_cast<std::uint32_t>(trials.size());
   errors.shallowest = shallowest;
-  std::vector<Finding> findings;
-  for (const OverlapTrial& trial : trials)
-    findings.push_back({trial.truth.fraction, trial.truth.error / trial.truth.fraction});
-  forEachDepth(findings, [&](std::size_t depth, std::span<const Finding> near) {
-    double squares = 0;
-    for (const Finding& one : near) squares += one.error * one.error;
-    errors.sampling_error[depth] = std::sqrt(squares / static_cast<double>(near.size()));
-  });
+  double squares = 0;
+  for (const OverlapTrial& trial : trials) {
+    const double relative = trial.truth.error / trial.truth.fraction;
+    squares += relative * relative;
+  }
+  errors.sampling_error = std::sqrt(squares / static_cast<double>(trials.size()));
   for (const VolumeTrueRadii& prefix : radii) {
     const Prefix spheres(balls, prefix, container.side());
     std::vector<Prefix::Sums> sums(trials.size());
     tbb::parallel_for(std::size_t{0}, trials.size(),
                       [&](std::size_t i) { sums[i] = spheres.overlap(trials[i].pose, voxels); });
-    const auto estimate = [&](double Prefix::Sums::*sum) {
-      for (std::size_t i = 0; i < trials.size(); ++i) {
-        const double found = sums[i].*sum / volume, exact = trials[i].truth.fraction;
-        findings[i] = {found, std::abs(found - exact) / std::max(found, exact)};
-      }
-      return estimateFrom(findings);
+    const auto estimate = [&](Found Prefix::Sums::*sum) {
+      std::vector<OverlapErrors::AtDepth> findings;
+      for (std::size_t i = 0; i < trials.size(); ++i)
+        findings.push_back(findingOf(sums[i].*sum, trials[i].truth.fraction * volume, volume));
+      return estimateFrom(std::move(findings));
     };
     errors.prefixes.push_back(
         {prefix.count, estimate(&Prefix::Sums::raw), estimate(&Prefix::Sums::volume_true)});

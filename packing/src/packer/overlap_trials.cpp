@@ -28,6 +28,15 @@ constexpr int kMostSteps = 24;
 // Overlaps, as fractions of the solid, that are looked for.
 constexpr double kLeastByTriangles = 1e-5, kLeastBySamples = 0.002, kMostShared = 0.45;
 
+// From here on their errors are told: enough are shallower.
+constexpr double kShallowest = 3e-5;
+
+// Walls that lie along walls are turned by 1 to 20 degrees: their logarithms are evenly spread.
+constexpr double kLeastTurned = std::numbers::pi / 180, kMostTurned = 20 * kLeastTurned;
+
+// A face that touches is pushed in by this, and then so many times as far each time, in units of the cube.
+constexpr double kFirstPush = 1e-3, kPushes = 2, kLastPush = 0.3;
+
 /// Three numbers in [0, 1) that look random.
 Point random(std::size_t trial, std::uint32_t purpose) {
   const std::array<std::uint32_t, 3> at{static_cast<std::uint32_t>(trial), purpose, 0};
@@ -91,19 +100,68 @@ class TrueOverlap {
   Point shift_;  // of the packing's frame
 };
 
-/// Turns the copy, puts a point of it on a point of the solid, and moves it away until both share about the
-/// fraction `target`, or leaves it there if they share less: thin solids do.
-OverlapTrial findTrial(const TrueOverlap& overlap, const Voxels& voxels, std::size_t number, double target) {
-  const Point way = direction(random(number, 0)), places = random(number, 1);
+/// Says how a copy is turned, where it starts and which way it moves out.
+struct Start {
+  Eigen::Matrix3d turn;
+  Point shift, way;
+  bool touches = false;  ///< no more than that: it is pushed in first
+};
+
+/// The copy is turned at random, and a random point of it lies on one of the solid.
+Start anyStart(const Voxels& voxels, std::size_t number) {
+  const Point places = random(number, 1);
   const Eigen::Matrix3d turn = rotation(random(number, 2)).toRotationMatrix();
-  const Point start = voxels.point(places[0]) - turn * voxels.point(places[1]);
-  const auto at = [&](double distance) { return Pose{turn, start + distance * way}; };
+  return {turn, voxels.point(places[0]) - turn * voxels.point(places[1]), direction(random(number, 0))};
+}
+
+/// A turn by some degrees about any axis.
+Eigen::Quaterniond slightTurn(double part, const Point& axis) {
+  const double angle = kLeastTurned * steady::pow(kMostTurned / kLeastTurned, part);
+  const Point v = steady::sin(angle / 2) * direction(axis);
+  return {steady::cos(angle / 2), v[0], v[1], v[2]};
+}
+
+/// The copy lies upon the solid, but for some degrees about a random point.
+Start nestedStart(const Voxels& voxels, std::size_t number) {
+  const Point places = random(number, 1), middle = voxels.point(places[0]);
+  const Eigen::Matrix3d turn = slightTurn(places[1], random(number, 2)).toRotationMatrix();
+  return {turn, middle - turn * middle, direction(random(number, 0))};
+}
+
+/// A face of the copy touches a face of the solid, but for some degrees.
+Start facingStart(const SurfaceSamples& samples, std::size_t number) {
+  const Point places = random(number, 1);
+  const auto sample = [&](double part) {
+    return static_cast<std::size_t>(part * static_cast<double>(samples.points().size()));
+  };
+  const std::size_t at = sample(places[0]), of = sample(places[1]);
+  const Point outwards = -samples.inwards()[at];
+  const Eigen::Quaterniond any = rotation(random(number, 2));
+  // The shortest turn that takes the copy's normal to the other one; half a turn has no shortest.
+  const Point normal = any * -samples.inwards()[of], axis = normal.cross(-outwards);
+  const double w = 1 - normal.dot(outwards);
+  const Eigen::Quaterniond facing = w > 1e-6 ? Eigen::Quaterniond(w, axis[0], axis[1], axis[2]).normalized()
+                                             : Eigen::Quaterniond::Identity();
+  const Eigen::Matrix3d turn = (slightTurn(places[2], random(number, 3)) * facing * any).toRotationMatrix();
+  return {turn, samples.points()[at] - turn * samples.points()[of], outwards, true};
+}
+
+/// Moves the copy away until both share about the fraction `target`, or leaves it there if they share less:
+/// thin solids do.
+OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double target) {
+  const Point& way = start.way;
+  const auto at = [&](double distance) { return Pose{start.turn, start.shift + distance * way}; };
 
   struct Step {
     double distance, share;
   };
-  Step near{0, overlap.coarsely(at(0), way, 1)}, before = near;  // the last two that are too deep
+  Step near{0, overlap.coarsely(at(0), way, 1)};
   double far = std::numbers::sqrt3;
+  for (double push = kFirstPush; start.touches && near.share < target && push < kLastPush; push *= kPushes) {
+    far = near.distance;
+    near = {-push, overlap.coarsely(at(-push), way, 1)};
+  }
+  Step before = near;  // the last two that are too deep
   for (int i = 0; i < kMostSteps && near.share > kAbout * target; ++i) {
     double distance = (near.distance + far) / 2;
     // Overlaps grow about as the square of their depth.
@@ -126,14 +184,19 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Voxels& voxels, std::si
 
 }  // namespace
 
-OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface, const Voxels& voxels,
-                                double volume, std::size_t count) {
+OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface,
+                                const SurfaceSamples& samples, const Voxels& voxels, double volume,
+                                std::size_t count) {
   const TrueOverlap overlap(container, surface, voxels, volume);
   const double least = overlap.knowsSurface() ? kLeastByTriangles : kLeastBySamples;
-  OverlapTrials result{std::vector<OverlapTrial>(count), overlap.knowsSurface() ? kOverlapDepths[0] : least};
+  OverlapTrials result{std::vector<OverlapTrial>(count), overlap.knowsSurface() ? kShallowest : least};
+  const auto start = [&](std::size_t i) {
+    if (i % 3 == 0) return anyStart(voxels, i);
+    return i % 3 == 1 || samples.empty() ? nestedStart(voxels, i) : facingStart(samples, i);
+  };
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    result.trials[i] = findTrial(overlap, voxels, i, least * steady::pow(kMostShared / least, part));
+    result.trials[i] = findTrial(overlap, start(i), least * steady::pow(kMostShared / least, part));
   });
   std::erase_if(result.trials, [](const OverlapTrial& trial) { return !(trial.truth.fraction > 0); });
   return result;

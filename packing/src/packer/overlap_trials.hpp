@@ -6,6 +6,7 @@
 
 #include "innersphere/packing.hpp"
 #include "packer/container.hpp"
+#include "packer/surface_samples.hpp"
 #include "packer/voxels.hpp"
 
 namespace innersphere {
@@ -22,11 +23,14 @@ struct OverlapTrials {
   double shallowest = 0;  ///< See OverlapErrors::shallowest.
 };
 
-/// Turns `count` copies at random, puts a random point of each on one of the solid, and moves it in a random
-/// direction until it is as deep as wanted: the logarithms of depths are evenly spread. Overlaps of less than
-/// 1 % of the solid are found from `surface`, in the packing's frame, if it is closed, others from sample
-/// points. `volume` is the solid's, in units of the unit cube. Runs in the current TBB arena.
-OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface, const Voxels& voxels,
-                                double volume, std::size_t count);
+/// Places `count` copies. Of each three one is turned at random, with a random point of it on one of the
+/// solid, one lies upon the solid and one has a face on a face, but for some degrees. Each moves until it is
+/// as deep as wanted: the logarithms of volumes are evenly spread. Overlaps of less than 1 % of the solid are
+/// found from `surface`, in the packing's frame, if it is closed, others from sample points. `samples` are
+/// points of the surface; without any no face lies on a face. `volume` is the solid's, in units of the unit
+/// cube. Runs in the current TBB arena.
+OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface,
+                                const SurfaceSamples& samples, const Voxels& voxels, double volume,
+                                std::size_t count);
 
 }  // namespace innersphere

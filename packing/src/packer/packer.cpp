@@ -298,8 +298,8 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   report("measuring", 0);
   if (options.overlap_errors) {
     arena.execute([&] {
-      packing.overlap_errors = findOverlapErrors(problem.container, packing.surface, chosen.balls,
-                                                 packing.volume_true, problem.volume);
+      packing.overlap_errors = findOverlapErrors(problem.container, packing.surface, problem.samples,
+                                                 chosen.balls, packing.volume_true, problem.volume);
     });
   }
   packing.solid.centre_of_mass = packing.solid.centre_of_mass - packing.origin;

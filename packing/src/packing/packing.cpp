@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <string>
 
@@ -19,15 +20,21 @@ const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count
   return best;
 }
 
-ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double fraction) {
-  std::size_t next = 1;
-  while (next + 1 < kOverlapDepths.size() && fraction > kOverlapDepths[next]) ++next;
-  const double low = kOverlapDepths[next - 1], high = kOverlapDepths[next];
-  const double part = std::clamp(steady::log2(fraction / low) / steady::log2(high / low), 0.0, 1.0);
-  const auto at = [&](const ByDepth& errors) {
-    return steady::pow(errors[next - 1], 1 - part) * steady::pow(errors[next], part);
-  };
-  return {at(estimate.mean), at(estimate.bound)};
+double overlapDepth(double volume, const Vec3d& area) {
+  const double face = steady::pow(volume, 2.0 / 3);  // of a cube
+  return volume / std::sqrt(dot(area, area) + face * face);
+}
+
+ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth) {
+  if (estimate.empty()) return {1, 1};
+  const auto next = std::find_if(estimate.begin(), estimate.end(),
+                                 [depth](const OverlapErrors::AtDepth& at) { return at.depth > depth; });
+  if (next == estimate.begin()) return next->error;
+  const OverlapErrors::AtDepth& low = *std::prev(next);
+  if (next == estimate.end()) return low.error;
+  const double part = steady::log2(depth / low.depth) / steady::log2(next->depth / low.depth);
+  const auto between = [part](double a, double b) { return steady::pow(a, 1 - part) * steady::pow(b, part); };
+  return {between(low.error.mean, next->error.mean), between(low.error.bound, next->error.bound)};
 }
 
 const Coverage* coverageOf(const Packing& packing, std::size_t count) {
@@ -88,6 +95,17 @@ void validateRadii(const std::vector<VolumeTrueRadii>& prefixes, std::size_t sph
   }
 }
 
+void validateEstimate(const OverlapErrors::Estimate& estimate) {
+  double before = 0;
+  for (const OverlapErrors::AtDepth& at : estimate) {
+    if (!std::isfinite(at.depth) || !std::isfinite(at.error.mean) || !std::isfinite(at.error.bound))
+      notFinite("a number of the overlap errors");
+    if (!(at.depth > before))
+      throw Error(ErrorCode::bad_argument, "the depths of the overlap errors do not rise");
+    before = at.depth;
+  }
+}
+
 void validateMeasures(const Packing& packing) {
   if (!packing.mass_weights.empty() && packing.mass_weights.size() != packing.spheres.size()) {
     throw Error(ErrorCode::bad_argument, "there are " + std::to_string(packing.mass_weights.size()) +
@@ -99,22 +117,16 @@ void validateMeasures(const Packing& packing) {
       throw Error(ErrorCode::bad_argument, "the mass weights are not all positive and finite");
     }
   }
-  const auto requireFinite = [](const ByDepth& errors) {
-    for (double x : errors) {
-      if (!std::isfinite(x)) notFinite("a number of the overlap errors");
-    }
-  };
   for (const Coverage& c : packing.coverage) {
     for (double x : {c.mean, c.p95, c.max, c.farthest[0], c.farthest[1], c.farthest[2], c.uncovered}) {
       if (!std::isfinite(x)) notFinite("a number of the coverage");
     }
   }
-  requireFinite(packing.overlap_errors.sampling_error);
+  if (!std::isfinite(packing.overlap_errors.sampling_error))
+    notFinite("the sampling error of the overlap errors");
   for (const OverlapErrors::Prefix& prefix : packing.overlap_errors.prefixes) {
-    for (const OverlapErrors::Estimate* estimate : {&prefix.raw, &prefix.volume_true}) {
-      requireFinite(estimate->mean);
-      requireFinite(estimate->bound);
-    }
+    validateEstimate(prefix.raw);
+    validateEstimate(prefix.volume_true);
   }
 }
 

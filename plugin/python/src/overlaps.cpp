@@ -261,11 +261,16 @@ class Query {
   std::vector<PairQuery> queries_;
 };
 
-nb::object expectedErrors(const SharedPacking& a, const SharedPacking& b, nb::handle volume,
+nb::object expectedErrors(const SharedPacking& a, const SharedPacking& b, nb::handle shared,
                           const std::string& estimator) {
-  const nb::object given = nb::module_::import_("innersphere._arrays").attr("as_float64")(volume, "volume");
-  const nb::object row = given.attr("ravel")();
-  const auto volumes = nb::cast<nb::ndarray<const double, nb::ndim<1>, nb::c_contig>>(row);
+  const nb::object as_float64 = nb::module_::import_("innersphere._arrays").attr("as_float64");
+  const nb::object given = as_float64(shared["volume"], "volume");
+  using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig>;
+  const auto volumes = nb::cast<Numbers>(given.attr("ravel")());
+  const auto areas = nb::cast<Numbers>(as_float64(shared["area"], "area").attr("ravel")());
+  if (areas.size() != 3 * volumes.size())
+    throw Error(ErrorCode::bad_argument,
+                "there must be a volume and an area, of three numbers, of each overlap");
   PairQuery query;
   query.a = a.model.get();
   query.b = b.model.get();
@@ -273,8 +278,13 @@ nb::object expectedErrors(const SharedPacking& a, const SharedPacking& b, nb::ha
   query.prefix_b = b.count;
   const Estimator by = parseWord("estimator", estimator, kEstimators);
   std::vector<ExpectedError> errors;
-  for (std::size_t i = 0; i < volumes.size(); ++i)
-    errors.push_back(expectedError(query, by, volumes.data()[i]));
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    const double* area = areas.data() + 3 * i;
+    Overlap found;
+    found.volume = volumes.data()[i];
+    found.area = {area[0], area[1], area[2]};
+    errors.push_back(expectedError(query, by, found));
+  }
   return structuredArray(std::move(errors), types.error)
       .attr("reshape")(given.attr("shape"))
       .attr("__getitem__")(nb::tuple());
@@ -408,12 +418,12 @@ area        sum of the areas of their rims, along the lines from A's centres to 
       .def_prop_ro("last_backend", &Query::lastBackend,
                    nb::sig("def last_backend(self) -> typing.Literal['cpu', 'cuda']"),
                    "Where the last query ran: cpu or cuda; cpu before the first.");
-  module.def("expected_error", &expectedErrors, "a"_a, "b"_a, "volume"_a, "estimator"_a = "volume_true",
-             nb::sig("def expected_error(a: Packing, b: Packing, volume: numpy.typing.ArrayLike, estimator: "
+  module.def("expected_error", &expectedErrors, "a"_a, "b"_a, "shared"_a, "estimator"_a = "volume_true",
+             nb::sig("def expected_error(a: Packing, b: Packing, shared: typing.Any, estimator: "
                      "typing.Literal['volume_true', 'raw', 'surface'] = 'volume_true') -> typing.Any"),
              R"(How far off volumes are to be expected that Query.overlap() found for two packings.
 
-volume: one or an array [m^3]: shared["volume"].
+shared: what Query.overlap() returned, or else something with shared["volume"] [m^3] and shared["area"] [m^2].
 estimator: with which they were found.
 
 Returns two fields of the same shape, parts of the larger of the found and the true volume, from 0 to 1:
@@ -422,7 +432,8 @@ mean   expected |error|
 bound  what |error| exceeds in 1 of 20 cases: else the truth lies between volume (1 - bound) and volume / (1 - bound)
 
 Of A and B the worse one counts, as each was measured with copies of itself when it was packed. nan where nothing
-overlaps or nothing so shallow was measured, and for packings without overlap_errors; 0 with "surface".)");
+overlaps, nothing so shallow was measured or the area is 0, as with want="volume", and for packings without
+overlap_errors; 0 with "surface".)");
   module.def("cuda_device_count", &cudaDeviceCount, "The number of CUDA devices that answer.");
   module.def("cuda_available", &cudaAvailable, "Whether CUDA is built in and a device answers.");
 }

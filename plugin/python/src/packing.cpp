@@ -253,9 +253,16 @@ nb::object coverageRows(const SharedPacking& self) {
 nb::tuple overlapErrorsOf(const SharedPacking& self) {
   nb::list rows;
   const OverlapErrors& errors = self.packing().overlap_errors;
+  const double size = std::cbrt(self.packing().solid.volume);
+  const auto means = [size](const OverlapErrors::Estimate& estimate) {
+    nb::list all;
+    for (const OverlapErrors::AtDepth& at : estimate)
+      all.append(nb::make_tuple(size * at.depth, at.error.mean));
+    return all;
+  };
   for (const OverlapErrors::Prefix& prefix : errors.prefixes) {
     if (prefix.count <= self.count)
-      rows.append(nb::make_tuple(prefix.count, nb::cast(prefix.raw.mean), nb::cast(prefix.volume_true.mean)));
+      rows.append(nb::make_tuple(prefix.count, means(prefix.raw), means(prefix.volume_true)));
   }
   return nb::tuple(rows);
 }
@@ -390,12 +397,13 @@ gap_mean, gap_p95, gap_max: distance from the surface to the nearest sphere [m]:
 largest_missing_radius: no larger sphere fits between those that are there [m].)")
       .def_prop_ro(
           "overlap_errors", &overlapErrorsOf,
-          nb::sig("def overlap_errors(self) -> tuple[tuple[int, list[float], list[float]], ...]"),
+          nb::sig("def overlap_errors(self) -> tuple[tuple[int, list[tuple[float, float]], list[tuple[float, "
+                  "float]]], ...]"),
           R"(How far off volumes of overlaps are: the mean |error|, relative to the larger of the found and the true volume, measured
 when it was packed. expected_error() looks them up, with bounds.
 
-A row for each number of spheres: that number, the errors with estimator="raw", and those with "volume_true". Nine errors
-each, for overlaps of 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10 and 30 % of the solid. Empty with pack(overlap_errors=False).)")
+A row for each number of spheres: that number, the errors with estimator="raw", and those with "volume_true". Of each some
+pairs: how deep overlaps are, volume over area [m], and the error there. Empty with pack(overlap_errors=False).)")
       .def_prop_ro(
           "warnings", [](const SharedPacking& p) { return p.packing().warnings; },
           "What to know of the packing, a sentence each: what was mended in the mesh, parts without spheres.")

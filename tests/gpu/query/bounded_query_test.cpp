@@ -31,9 +31,9 @@ class BoundedQueryConformance : public Conformance {
   /// A mean that falls as 1 / (100 times the depth), from a hundredth on, and twice that as bound.
   static OverlapErrors::Estimate estimate(double at_a_hundredth) {
     OverlapErrors::Estimate result;
-    for (std::size_t k = 0; k < kOverlapDepths.size(); ++k) {
-      result.mean[k] = at_a_hundredth * 0.01 / kOverlapDepths[k];
-      result.bound[k] = 2 * result.mean[k];
+    for (const double depth : {0.01, 0.03, 0.08, 0.2, 0.5}) {
+      const double mean = at_a_hundredth * 0.01 / depth;
+      result.push_back({depth, {mean, 2 * mean}});
     }
     return result;
   }
@@ -84,13 +84,16 @@ TEST_P(BoundedQueryConformance, ErrorIsThatOfThePackings) {
   QueryContext context = makeContext(1);
   BoundedQuery bounded(context);
   const auto error = [&](std::uint64_t spheres, Estimator estimator) {
-    return bounded.overlap(query, {0, spheres}, {Want::volume, estimator});
+    return bounded.overlap(query, {0, spheres}, {Want::wrench, estimator});
   };
   for (const std::uint64_t spheres : {128u, 1024u}) {
     const BoundedOverlap result = error(spheres, Estimator::raw);
-    const double share = result.overlap.volume / 7, mean = (spheres == 128 ? 0.5 : 0.4) * 0.01 / share;
-    ASSERT_GT(share, 0.01);
-    ASSERT_LT(share, 0.3);
+    const double volume = result.overlap.volume,
+                 depth = volume / std::hypot(norm(result.overlap.area), std::pow(volume, 2.0 / 3)) /
+                         std::cbrt(7.0),
+                 mean = (spheres == 128 ? 0.5 : 0.4) * 0.01 / depth;
+    ASSERT_GT(depth, 0.01);
+    ASSERT_LT(depth, 0.5);
     EXPECT_NEAR(result.error, mean, 1e-9 * mean);
     EXPECT_NEAR(result.error_bound, 2 * mean, 1e-9 * mean);
   }
@@ -98,13 +101,23 @@ TEST_P(BoundedQueryConformance, ErrorIsThatOfThePackings) {
   // Depth is relative to the scaled solid; of two bodies the worse one counts; beyond the last depth its
   // errors hold.
   query.placement_b.scale = 3;
-  const double volume = 0.1 * 7;
-  EXPECT_NEAR(expectedError(query, Estimator::raw, volume * 27).mean, 0.04, 1e-9);
-  EXPECT_NEAR(expectedError(query, Estimator::raw, 1000).mean, 0.4 * 0.01 / 0.3, 1e-9);
-  EXPECT_TRUE(std::isnan(expectedError(query, Estimator::raw, volume / 11).mean));  // too shallow for A
-  EXPECT_TRUE(
-      std::isnan(expectedError(query, Estimator::raw, volume).mean));  // too shallow for B, which is large
-  EXPECT_EQ(expectedError(query, Estimator::surface, volume).bound, 0);
+  const auto errorOf = [&](double volume, double area, Estimator estimator = Estimator::raw) {
+    Overlap found;
+    found.volume = volume;
+    found.area = {0, 0.6 * area, -0.8 * area};
+    return expectedError(query, estimator, found);
+  };
+  // 0.1 deep for B, which is large and for which it is a thin layer.
+  const double volume = 0.1 * 7 * 27, depth = 0.1 * std::cbrt(7.0) * 3;
+  const double area = std::sqrt(std::pow(volume / depth, 2) - std::pow(volume, 4.0 / 3));
+  EXPECT_NEAR(errorOf(volume, area).mean, 0.04, 1e-9);
+  EXPECT_NEAR(errorOf(volume, 0.01 * area).mean, 0.4 * 0.01 / std::cbrt(0.1), 2e-5);
+  EXPECT_NEAR(errorOf(1000, 0.1).mean, 0.4 * 0.01 / 0.5, 1e-9);
+  EXPECT_NEAR(errorOf(1000, 1e9).mean, 0.4, 1e-9);
+  EXPECT_TRUE(std::isnan(errorOf(0.1 * 7 / 11, 1).mean));  // too shallow for A
+  EXPECT_TRUE(std::isnan(errorOf(0.1 * 7, 1).mean));       // too shallow for B
+  EXPECT_TRUE(std::isnan(errorOf(volume, 0).bound));       // as Want::volume leaves it
+  EXPECT_EQ(errorOf(volume, area, Estimator::surface).bound, 0);
   query.placement_b = at({50, 0, 0});
   EXPECT_TRUE(std::isnan(error(0, Estimator::raw).error));
   query.placement_b = at({0.2, 0.1, 0});

@@ -29,7 +29,7 @@ TEST(FileCorpus, EveryInputIsSurvived) {
 }
 
 TEST(FileMutation, Json) {
-  feed("volume_errors_json");
+  feed("errors_by_depth_json");
 }
 TEST(FileMutation, Cbor) {
   feed("measures_cbor");

@@ -13,6 +13,7 @@
 #include "innersphere/solids.hpp"
 #include "mesh_shapes.hpp"
 #include "packer/overlap_errors.hpp"
+#include "packer/surface_samples.hpp"
 #include "packer/voxels.hpp"
 #include "packer_oracles.hpp"
 
@@ -163,30 +164,33 @@ TEST_P(OverlapErrorsOfABall, AreThoseOfItsSphere) {
   const double unit = 1 / container.side(), wrong = GetParam();
   const std::vector<Ball> balls{{container.fromWorld({0, 0, 0}), wrong * unit}};
   // A volume-true radius is never the smaller one.
-  const OverlapErrors errors =
-      findOverlapErrors(container, {}, balls, {{1, {static_cast<float>(std::max(1.0, wrong))}, 0}},
-                        static_cast<double>(kBall) * std::pow(unit, 3));
+  const OverlapErrors errors = findOverlapErrors(container, {}, SurfaceSamples({}, container), balls,
+                                                 {{1, {static_cast<float>(std::max(1.0, wrong))}, 0}},
+                                                 static_cast<double>(kBall) * std::pow(unit, 3));
   ASSERT_EQ(errors.prefixes.size(), 1u);
-  EXPECT_GE(errors.poses, 300u);
+  EXPECT_GE(errors.poses, 200u);
   EXPECT_EQ(errors.shallowest, 0.002);  // it has no surface
-  // The error of the wrong sphere where it finds a part of the ball.
-  const auto error = [&](double part) {
-    double distance = 0;
-    while (static_cast<double>(lens(wrong, wrong, distance) / kBall) > part) distance += 1e-4;
+  EXPECT_LT(errors.sampling_error, 0.02);
+  // The error of the wrong sphere at a distance, and how deep it is there: the rim of a lens is its area.
+  const auto error = [&](double distance) {
     const long double found = lens(wrong, wrong, distance), exact = lens(1, 1, distance);
     return static_cast<double>(std::abs(found - exact) / std::max(found, exact));
   };
-  const double least = wrong < 1 ? 0.003 : 0.03;  // a larger sphere finds more than is there
-  for (std::size_t k = 0; k < kOverlapDepths.size(); ++k) {
-    if (kOverlapDepths[k] < least) continue;
-    const OverlapErrors::Prefix& prefix = errors.prefixes[0];
-    EXPECT_LT(errors.sampling_error[k], 0.02);
+  const auto depth = [&](double distance) {
+    const auto found = static_cast<double>(lens(wrong, wrong, distance));
+    const double area = std::numbers::pi * (wrong * wrong - distance * distance / 4);
+    return found / std::hypot(area, std::pow(found, 2.0 / 3)) / std::cbrt(static_cast<double>(kBall));
+  };
+  const OverlapErrors::Prefix& prefix = errors.prefixes[0];
+  ASSERT_GE(prefix.raw.size(), 8u);
+  for (const double distance : {0.6, 1.0, 1.2, 1.4}) {
+    const ExpectedError found = expectedError(prefix.raw, depth(distance));
+    EXPECT_GT(found.mean, error(distance - 0.4));
+    EXPECT_LT(found.bound, error(distance + 0.4));
+    EXPECT_LE(found.mean, found.bound + 1e-12);
     if (wrong < 1) {
-      EXPECT_LT(prefix.volume_true.mean[k], 3 * errors.sampling_error[k] + 1e-3);
+      EXPECT_LT(expectedError(prefix.volume_true, depth(distance)).mean, 3 * errors.sampling_error + 1e-3);
     }
-    EXPECT_LE(prefix.raw.mean[k], prefix.raw.bound[k] + 1e-12);
-    EXPECT_GT(prefix.raw.mean[k], error(3 * kOverlapDepths[k]));
-    EXPECT_LT(prefix.raw.bound[k], error(kOverlapDepths[k] / 3));
   }
 }
 
@@ -194,9 +198,10 @@ INSTANTIATE_TEST_SUITE_P(PackerMeasures, OverlapErrorsOfABall, testing::Values(0
 
 TEST(PackerMeasures, OverlapErrorsAreFoundFromTheSurfaceWhereItIsClosed) {
   const Packing packing = packed(*makeNamedSolid("lbracket"), 256, true);
-  EXPECT_EQ(packing.overlap_errors.shallowest, kOverlapDepths[0]);
-  for (std::size_t k = 0; kOverlapDepths[k] < 0.003; ++k)
-    EXPECT_EQ(packing.overlap_errors.sampling_error[k], 0);
+  EXPECT_EQ(packing.overlap_errors.shallowest, 3e-5);
+  // Deeper ones are sampled.
+  EXPECT_GT(packing.overlap_errors.sampling_error, 0);
+  EXPECT_LT(packing.overlap_errors.sampling_error, 0.002);
 }
 
 TEST(PackerMeasures, OverlapErrorsFallWithMoreSpheres) {
@@ -206,12 +211,13 @@ TEST(PackerMeasures, OverlapErrorsFallWithMoreSpheres) {
   const OverlapErrors::Prefix &few = errors.prefixes.front(), &all = errors.prefixes.back();
   EXPECT_EQ(few.count, 64u);
   EXPECT_EQ(all.count, 1024u);
-  for (std::size_t k = 4; k < kOverlapDepths.size(); ++k) {
-    EXPECT_LT(all.raw.mean[k], few.raw.mean[k]);
-    EXPECT_LT(all.volume_true.mean[k], 0.5 * all.raw.mean[k]);
-    EXPECT_LT(all.volume_true.mean[k], all.volume_true.bound[k]);
+  for (const double depth : {0.03, 0.06, 0.1, 0.2}) {
+    const ExpectedError error = expectedError(all.volume_true, depth), raw = expectedError(all.raw, depth);
+    EXPECT_LT(raw.mean, expectedError(few.raw, depth).mean);
+    EXPECT_LT(error.mean, 0.5 * raw.mean);
+    EXPECT_LT(error.mean, error.bound);
   }
-  EXPECT_LT(all.volume_true.mean.back(), 0.02);
+  EXPECT_LT(all.volume_true.back().error.mean, 0.02);
 }
 
 // What a packing at a program's start leaves out: nothing but the errors, and a file is read back without
