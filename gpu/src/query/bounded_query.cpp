@@ -41,17 +41,19 @@ std::size_t stepsOf(const PairQuery& query) {
   return steps;
 }
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr ExpectedError kUnknown{kNan, kNan};
+
 /// The errors that a packing gives for an overlap of this volume and depth; NaN if it gives none.
 ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator, double volume,
                       double depth) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const OverlapErrors& errors = packing.overlap_errors;
   const OverlapErrors::Prefix* best = nullptr;
   for (const OverlapErrors::Prefix& candidate : errors.prefixes) {
     if (candidate.count <= prefix) best = &candidate;
   }
   const double fraction = volume / packing.solid.volume;
-  if (!best || !(fraction > 0) || fraction < errors.shallowest) return {kUnknown, kUnknown};
+  if (!best || !(fraction > 0) || fraction < errors.shallowest) return kUnknown;
   return expectedError(estimator == Estimator::raw ? best->raw : best->volume_true,
                        depth / std::cbrt(packing.solid.volume));
 }
@@ -66,11 +68,10 @@ ExpectedError expectedError(const PairQuery& query, Estimator estimator, const O
   const std::uint32_t prefix_a = limitOf(query.a, query.prefix_a),
                       prefix_b = limitOf(query.b, query.prefix_b);
   if (estimator == Estimator::surface) return {0, 0};
-  const bool has_area = found.area != Vec3d{};
-  const double depth = has_area ? overlapDepth(found.volume, found.area) : 0,
-               volume = has_area ? found.volume : 0;
+  if (found.area == Vec3d{}) return kUnknown;
+  const double depth = overlapDepth(found.volume, found.area);
   const auto of = [&](const CollisionModel& model, std::uint32_t prefix, double scale) {
-    return errorOf(model.packing(), prefix, estimator, volume / (scale * scale * scale), depth / scale);
+    return errorOf(model.packing(), prefix, estimator, found.volume / (scale * scale * scale), depth / scale);
   };
   const ExpectedError a = of(*query.a, prefix_a, query.placement_a.scale),
                       b = of(*query.b, prefix_b, query.placement_b.scale);

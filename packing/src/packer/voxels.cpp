@@ -95,8 +95,8 @@ double Voxels::outsideBy(const Point& x) const {
 }
 
 Voxels::Shared Voxels::shared(const Pose& pose, std::size_t stride) const {
-  // Into the lattice of the original; in single precision, which is far finer than the cells. Plain numbers: with
-  // sanitizers Eigen's products would take most of the packer's time.
+  // Into the lattice of the original; in single precision, which is far finer than the cells. Plain numbers:
+  // with sanitizers Eigen's products would take most of the packer's time.
   Eigen::Matrix<float, 4, 3> to;
   to << (pose.rotation / spacing_).transpose().cast<float>(),
       ((pose.shift - origin_) / spacing_).transpose().cast<float>();
