@@ -17,14 +17,17 @@ class Workers {
   explicit Workers(int threads)
       : serial_(threads == 1), arena_(threads > 0 ? threads : static_cast<int>(tbb::task_arena::automatic)) {}
 
-  /// Calls f(begin, end) for ranges that cover [0, n), of about `grain` items. One range is run right here.
+  /// Calls f(begin, end) for ranges that cover [0, n), of about `grain` items. One range is run right here,
+  /// others in the same floating-point mode, whatever it was when the arena was first used.
   template <typename F>
   void forRanges(std::size_t n, std::size_t grain, const F& f) {
     if (n == 0) return;
     if (serial_ || n <= grain) return f(std::size_t{0}, n);
+    tbb::task_group_context as_here(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
     arena_.execute([&] {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
-                        [&](const tbb::blocked_range<std::size_t>& range) { f(range.begin(), range.end()); });
+      tbb::parallel_for(
+          tbb::blocked_range<std::size_t>(0, n, grain),
+          [&](const tbb::blocked_range<std::size_t>& range) { f(range.begin(), range.end()); }, as_here);
     });
   }
 

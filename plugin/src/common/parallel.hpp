@@ -14,19 +14,23 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Calls job(i) for each i below `count`. The caller may hold a lock: while it waits it takes on no work but
-/// this, which might want the same lock.
+/// this, which might want the same lock. Jobs compute in the caller's floating-point mode. Otherwise it would
+/// be the mode of whoever was the first to use the scheduler: Embree, which a packer uses, takes tiny numbers
+/// for 0 at that time, so bodies would move in another way in a program that packs.
 template <typename Job>
 void inParallel(std::size_t count, const Job& job) {
-  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t(0), count, job); });
+  tbb::task_group_context as_here(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t(0), count, job, as_here); });
 }
 
 /// Does the same, while this thread first calls here(working), where `working` turns false when all jobs are
 /// done. It must not wait for that: there may be no other thread for them.
 template <typename Here, typename Job>
 void inParallelBeside(const Here& here, std::size_t count, const Job& job) {
+  tbb::task_group_context as_here(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
   tbb::this_task_arena::isolate([&] {
     std::atomic<bool> working{true};
-    tbb::task_group group;
+    tbb::task_group group(as_here);
     group.run([&] {
       tbb::parallel_for(std::size_t(0), count, job);
       working = false;

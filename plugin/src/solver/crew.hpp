@@ -22,13 +22,15 @@ class Crew {
  public:
   static constexpr int kMostThreads = 64;
 
-  /// Calls lead(), which may call forEach(), with up to so many helpers.
+  /// Calls lead(), which may call forEach(), with up to so many helpers. They compute in the caller's
+  /// floating-point mode.
   template <typename Lead>
   void work(int helpers, const Lead& lead) {
     helpers = std::min(helpers, kMostThreads - 1);
     if (helpers <= 0) return lead();
+    tbb::task_group_context as_here(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
     tbb::this_task_arena::isolate([&] {
-      tbb::task_group group;
+      tbb::task_group group(as_here);
       ended_.store(false, std::memory_order_relaxed);
       const Dismissal dismissal{*this, group};
       for (int i = 0; i < helpers; ++i) group.run([this] { help(); });

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <cfenv>
 #include <chrono>
 #include <thread>
 
@@ -12,6 +13,8 @@
 #include <tbb/task_arena.h>
 
 #include "bullet_shapes.hpp"
+#include "common/parallel.hpp"
+#include "solver/crew.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
@@ -94,6 +97,57 @@ TEST(OwnShapes, AreAskedForTheirTrianglesByOneThreadAtATime) {
   });
   EXPECT_GT(shape->reads, 36);
   EXPECT_FALSE(shape->crowded);
+}
+
+/// The rounding mode of this thread, while it lives.
+struct Rounding {
+  explicit Rounding(int mode) { std::fesetround(mode); }
+  ~Rounding() { std::fesetround(before); }
+  const int before = std::fegetround();
+};
+
+TEST(FloatingPointMode, IsThatOfTheCallerInAllThreads) {
+  with(kThreads, [] {
+    const Rounding upward(FE_UPWARD);
+    std::atomic<int> calls{0}, in_other_modes{0};
+    const auto look = [&](auto...) {
+      ++calls;
+      if (std::fegetround() != FE_UPWARD) ++in_other_modes;
+    };
+    inParallel(1000, look);
+    inParallelBeside([](const std::atomic<bool>&) {}, 1000, look);
+    Crew crew;
+    crew.work(kThreads - 1, [&] {
+      for (int stage = 0; stage < 1000; ++stage) crew.forEachPart(kThreads, look);
+    });
+    EXPECT_GE(calls, 3000);
+    EXPECT_EQ(in_other_modes, 0);
+  });
+}
+
+/// Who was the first to use the scheduler may have had another mode: Embree, in a packer.
+TEST(FloatingPointMode, OfTheSchedulerDoesNotMoveBodies) {
+  const auto places = [](int mode) {
+    std::vector<std::array<btScalar, 3>> all;
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, kThreads);
+    tbb::task_arena arena(kThreads);
+    {
+      const Rounding rounding(mode);
+      arena.initialize();
+    }
+    arena.execute([&] {
+      const Rounding usual(FE_TONEAREST);  // the arena's is that of this thread, too
+      TestWorld world;
+      addCubes(world, makeBulletShape("box"));
+      world.run(10.0 / 60);
+      for (const auto& body : world.bodies) {
+        const btVector3& at = body->getWorldTransform().getOrigin();
+        all.push_back({at.x(), at.y(), at.z()});
+      }
+    });
+    return all;
+  };
+  EXPECT_EQ(places(FE_UPWARD), places(FE_TONEAREST));
 }
 
 }  // namespace
