@@ -30,6 +30,14 @@ Lanes massOf(Lanes yields) {
   return yields > Lanes{} ? (mass < inAll(BT_LARGE_FLOAT) ? mass : Lanes{}) : Lanes{};
 }
 
+/// Both parts of an impulse, which together are no larger than `most`.
+void holdWithin(btScalar most, btScalar& along_1, btScalar& along_2) {
+  const btScalar held = std::hypot(along_1, along_2);
+  if (!(held > most)) return;
+  along_1 *= most / held;
+  along_2 *= most / held;
+}
+
 struct Spring {
   btScalar stiffness, damping;
 };
@@ -74,6 +82,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];
       fillPlace(point, lane, source, pair, bodies);
       fillForces(point, lane, *source.point, pair, bodies);
+      fillTurning(point, lane, source);
       block.bounces = block.bounces || point.restitution[lane] > 0;
       block.bends = block.bends || point.fall_1[lane] != 0 || point.fall_2[lane] != 0;
       block.rolls = block.rolls || point.rolling[lane] > 0 || point.spinning[lane] > 0;
@@ -227,12 +236,25 @@ void ContactRows::fillForces(PointLanes& lanes, int lane, const btManifoldPoint&
   lanes.restitution[lane] = point.m_combinedRestitution;
   lanes.rolling[lane] = point.m_combinedRollingFriction;
   lanes.spinning[lane] = point.m_combinedSpinningFriction;
-  const btScalar most = lanes.friction[lane] * lanes.impulse[lane];
-  const btScalar held = std::hypot(lanes.impulse_1[lane], lanes.impulse_2[lane]);
-  if (held > most) {
-    lanes.impulse_1[lane] *= most / held;
-    lanes.impulse_2[lane] *= most / held;
-  }
+  holdWithin(lanes.friction[lane] * lanes.impulse[lane], lanes.impulse_1[lane], lanes.impulse_2[lane]);
+}
+
+/// What its manifold bore against rolling and spinning, shared out as its points bear.
+void ContactRows::fillTurning(PointLanes& lanes, int lane, const Source& source) const {
+  const Turning& borne = turnings_[static_cast<std::size_t>(source.manifold->m_index1a)];
+  if (borne.manifold != source.manifold || !isFinite(borne.on_first) || !(lanes.impulse[lane] > 0)) return;
+  btScalar all = 0;
+  for (int i = 0; i < source.manifold->getNumContacts(); ++i)
+    all += std::max(btScalar(0), source.manifold->getContactPoint(i).m_prevRHS);
+  const btScalar share = source.point->m_prevRHS / all;
+  const btVector3 turning = borne.on_first * (source.flipped ? -share : share);
+  lanes.roll_1[lane] = turning.dot(lanes.side_1.get(lane));
+  lanes.roll_2[lane] = turning.dot(lanes.side_2.get(lane));
+  lanes.spin[lane] = turning.dot(lanes.normal.get(lane));
+  const btScalar most_roll = lanes.rolling[lane] * lanes.impulse[lane],
+                 most_spin = lanes.spinning[lane] * lanes.impulse[lane];
+  holdWithin(most_roll, lanes.roll_1[lane], lanes.roll_2[lane]);
+  lanes.spin[lane] = std::clamp(lanes.spin[lane], -most_spin, most_spin);
 }
 
 /// How much each row moves.

@@ -99,14 +99,22 @@ void ContactRows::collect(SolverBodies& bodies) {
   sources_.clear();
   pairs_.clear();
   for (const Entry& entry : sorted_) {
+    makeRoomFor(*entry.manifold);
     if (pairs_.empty() || pairs_.back().a != entry.a || pairs_.back().b != entry.b)
       pairs_.push_back({entry.a, entry.b, static_cast<int>(sources_.size()), 0});
     for (int k = 0; k < MANIFOLD_CACHE_SIZE; ++k) {
       if ((entry.points >> k & 1u) == 0) continue;
-      sources_.push_back({&entry.manifold->getContactPoint(k), entry.flipped});
+      sources_.push_back({&entry.manifold->getContactPoint(k), entry.manifold, entry.flipped});
       ++pairs_.back().count;
     }
   }
+}
+
+/// A manifold that has come to the place of another has not borne anything.
+void ContactRows::makeRoomFor(const btPersistentManifold& manifold) {
+  const auto place = static_cast<std::size_t>(manifold.m_index1a);
+  if (turnings_.size() <= place) turnings_.resize(place + 1);
+  if (turnings_[place].manifold != &manifold) turnings_[place] = {&manifold, btVector3(0, 0, 0)};
 }
 
 void ContactRows::clearBlocks() {
@@ -336,11 +344,29 @@ void ContactRows::solve(int index, Pass pass, std::vector<BodyState>& states) {
   wide_ ? solveWide(index, pass, states) : solveBlock(index, pass, states);
 }
 
+/// Manifolds without a dispatcher may share a place: that is the last one's.
+void ContactRows::remember(const TouchingPair& pair, int lane, const PointLanes* points) {
+  const btPersistentManifold* before = nullptr;
+  for (int i = 0; i < pair.count; ++i) {
+    const PointLanes& from = points[i];
+    const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];
+    Turning& borne = turnings_[static_cast<std::size_t>(source.manifold->m_index1a)];
+    if (borne.manifold != source.manifold) continue;
+    if (source.manifold != before) borne.on_first.setZero();
+    before = source.manifold;
+    const btVector3 turning = from.side_1.get(lane) * from.roll_1[lane] +
+                              from.side_2.get(lane) * from.roll_2[lane] +
+                              from.normal.get(lane) * from.spin[lane];
+    borne.on_first += turning * (source.flipped ? btScalar(-1) : btScalar(1));
+  }
+}
+
 void ContactRows::writeBack(int index) {
   const Block& block = blocks_[static_cast<std::size_t>(index)];
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.pair[lane] < 0) continue;
     const TouchingPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
+    remember(pair, lane, points_.data() + block.begin);
     for (int i = 0; i < pair.count; ++i) {
       const PointLanes& from = points_[static_cast<std::size_t>(block.begin + i)];
       const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];

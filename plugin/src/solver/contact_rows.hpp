@@ -65,8 +65,10 @@ class ContactRows {
   /// Finds those that they reach in this substep. Bodies are only read.
   void findBounces(int block, const std::vector<BodyState>& states);
   void solve(int block, Pass pass, std::vector<BodyState>& states);
-  /// Tells the points what they have borne.
+  /// Tells the points what they have borne, and remembers what they have no place for.
   void writeBack(int block);
+  /// Forgets that.
+  void forget() { turnings_.clear(); }
 
   /// Returns the number of points that were left out because they are not finite.
   int broken() const { return broken_; }
@@ -74,7 +76,13 @@ class ContactRows {
  private:
   struct Source {
     btManifoldPoint* point;
+    btPersistentManifold* manifold;
     bool flipped;  ///< the manifold has the bodies the other way round
+  };
+  /// What all points of a manifold have borne against rolling and spinning in the last substep of a step.
+  struct Turning {
+    const btPersistentManifold* manifold = nullptr;
+    btVector3 on_first{0, 0, 0};  ///< on its first body [N m s]
   };
   /// A point of each pair of a block.
   struct PointLanes {
@@ -124,6 +132,9 @@ class ContactRows {
   static void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                          const SolverBodies& bodies);
   static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls);
+  void fillTurning(PointLanes& lanes, int lane, const Source& source) const;
+  void makeRoomFor(const btPersistentManifold& manifold);
+  void remember(const TouchingPair& pair, int lane, const PointLanes* points);
   void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                     const SolverBodies& bodies) const;
   // Position-independent code inlines what is declared so.
@@ -141,6 +152,7 @@ class ContactRows {
   std::vector<Entry> sorted_;
   CountingSort order_;
   std::vector<Source> sources_;
+  std::vector<Turning> turnings_;  ///< by the place of a manifold in its dispatcher
   std::vector<TouchingPair> pairs_;
   std::vector<Block> blocks_;
   std::vector<PointLanes> points_;  ///< some of them of an earlier, larger step

@@ -44,7 +44,10 @@ class SubstepSolver::Impl {
              btTypedConstraint** constraints, int constraint_count, const btContactSolverInfo& info);
   void beginStep();
   void endStep();
-  void reset() { constraints_.forget(); }
+  void reset() {
+    contacts_.forget();
+    constraints_.forget();
+  }
 
  private:
   int arrange(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);

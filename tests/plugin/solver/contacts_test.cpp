@@ -138,6 +138,21 @@ TEST(SubstepContacts, RollingFrictionStopsABall) {
   EXPECT_LT(ball.getLinearVelocity().length(), 1e-3);
 }
 
+TEST(SubstepContacts, RollingFrictionHoldsABallOnASlope) {
+  // The lever is 1.25 times the radius times the tangent of the slope: the ball stays where it is.
+  constexpr double kRadius = 0.2, kSlope = 0.1, kLever = 1.25 * kRadius * kSlope;
+  SolverWorld world;
+  world.addSlab().setFriction(1);
+  world.world.setGravity(btVector3(btScalar(kSlope * kGravity), 0, -kGravity));
+  btRigidBody& ball = world.addBall(btScalar(kRadius), 1, btVector3(0, 0, btScalar(kRadius)));
+  ball.setFriction(1);
+  ball.setRollingFriction(btScalar(kLever));
+  world.run(1);
+  const btVector3 before = ball.getWorldTransform().getOrigin();
+  world.run(5);
+  EXPECT_LT(ball.getWorldTransform().getOrigin().distance(before), 1e-5);
+}
+
 TEST(SubstepContacts, ImpulsesInPointsCarryTheWeight) {
   SolverWorld world;
   world.addFloor();
