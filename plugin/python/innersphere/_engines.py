@@ -128,7 +128,7 @@ def _dask(client: Any, workers: int | None) -> _Executor:
 def _local_dask(workers: int | None) -> _Executor:
     from distributed import Client, LocalCluster
 
-    cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
+    cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")  # any free port
     client = Client(cluster)
     engine = _dask(client, None)
 

@@ -118,6 +118,9 @@ class FileSink:
             self._reopen()
 
     def _reopen(self) -> None:
+        if not os.path.exists(self._done_path) or os.path.getsize(self._done_path) == 0:
+            os.remove(self._part)  # the sweep was ended before its first row
+            return
         self._files = [open(self._part, "r+b"), open(self._done_path, "r+b")]
         title, done = self._files[1].readline(), self._files[1].read()
         if title != self._title or len(done) != len(self._done):
@@ -133,6 +136,7 @@ class FileSink:
     def _create(self) -> None:
         dtype, shape = self._rows.dtype, self._rows.shape
         assert dtype is not None
+        _remove(self._done_path)  # of a sweep that was ended just as it was complete
         table = open(self._part, "xb")
         self._files = [table]
         descr = np.lib.format.dtype_to_descr(dtype)
@@ -188,11 +192,15 @@ class FileSink:
         made, whole = bool(self._files), len(self._files) == 2
         self._close()
         if made and not (whole and self._resume):
-            for path in (self._part, self._done_path):
-                if os.path.exists(path):
-                    os.remove(path)
+            _remove(self._part)
+            _remove(self._done_path)
 
     def _close(self) -> None:
         for file in self._files:
             file.close()
         self._files = []
+
+
+def _remove(path: str) -> None:
+    if os.path.exists(path):
+        os.remove(path)
