@@ -110,7 +110,8 @@ def test_expected_errors_are_those_of_the_file(tmp_path):
             depth, volume = np.array([row["depth"] for row in rows]), packing.volume * 0.1
             area = np.zeros((len(rows), 3))  # of a layer that is so deep
             area[:, 1] = np.sqrt(np.maximum((volume / (depth * size)) ** 2 - volume ** (4 / 3), 1e-12))
-            got = innersphere.expected_error(part, packing, {"volume": np.full(len(rows), volume), "area": area}, estimator=estimator)
+            layer = {"volume": np.full(len(rows), volume), "area": area, "energy": area[:, 1]}
+            got = innersphere.expected_error(part, packing, layer, estimator=estimator)
             layers = depth < 0.1 ** (1 / 3)  # others are deeper than this volume can be
             assert layers.sum() > 5
             for field in ("mean", "bound"):
@@ -130,8 +131,11 @@ def test_expected_errors_are_those_of_the_file(tmp_path):
     assert np.isnan(innersphere.expected_error(packing, packing, without_area)["mean"])
     with pytest.raises(TypeError):
         innersphere.expected_error(packing, packing, "much")
+    for rows in ("raw", "volume_true"):  # areas cancel where a solid lies upon itself: no overlap is deeper
+        itself = innersphere.expected_error(packing, packing, query.overlap(packing, packing, estimator=rows), estimator=rows)
+        assert itself["mean"] == pytest.approx(by_count[300][rows][-1]["mean"])
     with pytest.raises(innersphere.InvalidArgumentError):
-        innersphere.expected_error(packing, packing, {"volume": [1, 2], "area": [[1, 0, 0]]})
+        innersphere.expected_error(packing, packing, {"volume": [1, 2], "area": [[1, 0, 0]], "energy": [1, 1]})
 
 
 def test_want(box):

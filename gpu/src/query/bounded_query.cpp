@@ -68,7 +68,7 @@ ExpectedError expectedError(const PairQuery& query, Estimator estimator, const O
   const std::uint32_t prefix_a = limitOf(query.a, query.prefix_a),
                       prefix_b = limitOf(query.b, query.prefix_b);
   if (estimator == Estimator::surface) return {0, 0};
-  if (found.area == Vec3d{}) return kUnknown;
+  if (found.area == Vec3d{} && found.energy == 0) return kUnknown;
   const double depth = overlapDepth(found.volume, found.area);
   const auto of = [&](const CollisionModel& model, std::uint32_t prefix, double scale) {
     return errorOf(model.packing(), prefix, estimator, found.volume / (scale * scale * scale), depth / scale);
