@@ -61,6 +61,7 @@ const std::vector<Variant>& variants() {
                                            {"gripper-motor"},
                                            {"carabiner"},
                                            {"chain-rest"},
+                                           {"chain-rest", 0, 0, 1.0 / 60, "_at_60_Hz"},
                                            {"drops"},
                                            {"gear-box"},
                                            {"gear-plane"},

@@ -141,6 +141,9 @@ constexpr btScalar kWorthFalls = btScalar(0.1);
 /// too. That is twice the depth at which springs have become twice as stiff: under such loads the top alone,
 /// which a step takes as fixed while bodies turn under it, lets chains swing up.
 constexpr btScalar kSunkIn = btScalar(0.004);
+/// The same where bodies touch on one hill only, of how deep the step alone would drive them. Sides that bear
+/// now and then, as those of links that sink in by as much at rest, rock a chain.
+constexpr btScalar kDrivenIn = btScalar(0.03);
 /// Cosine, 15 degrees: points whose normals are closer to that of the deepest share its manifold.
 constexpr btScalar kSameManifoldCosine = btScalar(0.966);
 /// More manifolds of one pair than this are merged.

@@ -180,11 +180,14 @@ void keepTops(btScalar separation, const StepAhead& step, std::vector<WeightedPo
   });
   for (std::size_t i = 0; i < found.size() && found[i].is_top; ++i) {
     const ContactPoint top = found[i].point;
-    if (top.depth > kSunkIn * step.size) continue;
     const Hill hill(top.bend_a, top.bend_b, top.depth, Across(top.normal));
     const auto isBeside = [&](const WeightedPoint& p) {
       return p.bends && isOnHill(p.point.on_b - top.on_b, p.slope, hill, separation);
     };
+    const bool alone = i == 0 && std::all_of(found.begin() + 1, found.end(), isBeside);
+    const bool sunk_in = alone ? step.depthAtEnd(top.on_b, top.normal, top.depth) > kDrivenIn * step.size
+                               : top.depth > kSunkIn * step.size;
+    if (sunk_in) continue;
     found.erase(std::remove_if(found.begin() + std::ptrdiff_t(i) + 1, found.end(), isBeside), found.end());
   }
 }

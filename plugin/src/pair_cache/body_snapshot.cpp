@@ -21,6 +21,7 @@ BodySnapshot::BodySnapshot(const btCollisionObjectWrapper& wrapper, btScalar tim
 }
 
 void BodySnapshot::take(btScalar time_step) {
+  neighbours_ = neighbours_now_.exchange(0, std::memory_order_relaxed);
   if (shape_ != object_->getCollisionShape()) {
     ++changes_;
     shape_ = object_->getCollisionShape();

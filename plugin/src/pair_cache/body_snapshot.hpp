@@ -1,6 +1,7 @@
 // Shows a body as it was at one moment.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -52,6 +53,10 @@ class BodySnapshot {
   std::uint32_t changes() const { return changes_; }
   /// Returns a distance that no point of the body has exceeded since the first snapshot [m].
   double travel() const { return travel_; }
+  /// Notes, by any thread, that the body touches another one.
+  void noteNeighbour() { neighbours_now_.fetch_add(1, std::memory_order_relaxed); }
+  /// Returns how many it touched in the last update.
+  int neighbours() const { return neighbours_; }
 
   std::size_t users = 0;       ///< pairs
   std::size_t list_index = 0;  ///< see PairList
@@ -72,6 +77,8 @@ class BodySnapshot {
   bool active_ = true;
   bool changed_ = false;  ///< found by compare()
   std::uint32_t changes_ = 0;
+  int neighbours_ = 0;
+  std::atomic<int> neighbours_now_ = 0;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

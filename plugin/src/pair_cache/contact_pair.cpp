@@ -56,6 +56,11 @@ PairMotion motionOf(const BodySnapshot& a, const BodySnapshot& b, btScalar time_
           isSwept(a.motion(), b.motion(), time_step)};
 }
 
+/// A link of a chain hands what it bears on from one neighbour to the other.
+bool isLink(const BodySnapshot& body) {
+  return body.object()->isStaticOrKinematicObject() || body.neighbours() <= 2;
+}
+
 template <typename Visit>
 void forEachPoint(const ManifoldWriter& writer, const Visit& visit) {
   static thread_local btManifoldArray manifolds;
@@ -141,6 +146,10 @@ void ContactPair::publish(const StepSettings& settings, const BodySnapshot& body
 void ContactPair::write(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
                         btManifoldResult* result) {
   depth = deepest(found->patches());
+  if (depth > 0) {
+    this->body_a->noteNeighbour();
+    this->body_b->noteNeighbour();
+  }
   manifolds.write(*a.object, *b.object, {body_a.start(), body_b.start()},
                   motionOf(body_a, body_b, settings.time_step), origin(), found->patches(), lawOf(settings),
                   speculativeDistance(body_a.motion(), body_b.motion(), settings.time_step), result);
@@ -157,7 +166,7 @@ ContactLaw ContactPair::lawOf(const StepSettings& settings) const {
   if (chosen.response == Response::penalty && !Penalty::applies(*a.object, *b.object))
     chosen.response = Response::compliant;
   return ContactLaw(chosen, reducedMass(*a.object, *b.object), settings.time_step, smallerSize(a, b),
-                    settings.solver);
+                    settings.solver, isLink(*body_a) && isLink(*body_b));
 }
 
 bool ContactPair::hasPoints() const {

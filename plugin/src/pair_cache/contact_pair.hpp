@@ -80,8 +80,8 @@ struct ContactPair {
   void logOnce(const std::string& message);
 
   // What is read for each pair in each step comes first: most pairs of a pile are idle.
-  const BodySnapshot* body_a = nullptr;  ///< null if the pair is in no table
-  const BodySnapshot* body_b = nullptr;
+  BodySnapshot* body_a = nullptr;  ///< null if the pair is in no table
+  BodySnapshot* body_b = nullptr;
   std::uint64_t step = 0;    ///< of the last update that it was part of, or that came before it
   bool asked = false;        ///< by Bullet, since that
   bool published = false;    ///< in that update

@@ -15,6 +15,11 @@ constexpr btScalar kStiffness = 18, kDamping = 4;
 /// Depth at which that stiffness has doubled, in sizes of the smaller body: what carries many times its own
 /// mass needs more than what lies still.
 constexpr btScalar kStiffening = btScalar(0.002);
+/// The same in a chain. What its links do together, ten iterations change by a fifth; so a start from the last
+/// impulse lags behind the motion and drives it on. Where a spring is stiffer by kHeavy, as it bears several
+/// links, the solver starts with what that bears now. Then what moves about a load meets the slope of the law,
+/// which must not be steeper than this for links to come to rest; if it is much less, they sag.
+constexpr btScalar kChainStiffness = 31, kChainStiffening = btScalar(0.005), kHeavy = btScalar(1.5);
 /// Fastest push, in sizes of the body per second.
 constexpr btScalar kFastest = btScalar(0.5);
 /// The same in depths per second, for bodies that are deeper in each other than that: they leave at a speed
@@ -42,6 +47,13 @@ bool canRollOn(const ContactPatch& patch) {
     ++count;
   }
   return true;
+}
+
+/// Whether bodies touch in one round place.
+bool isRound(const std::vector<ContactPatch>& patches) {
+  if (patches.size() != 1 || patches[0].count != 1) return false;
+  const ContactPoint& point = patches[0].points[0];
+  return point.bend_a.mean() != 0 && point.bend_b.mean() != 0;
 }
 
 btScalar inverseMass(const btCollisionObject& object) {
@@ -73,14 +85,15 @@ btScalar leavingAlong(const btVector3& normal, const std::vector<ContactPatch>& 
 }  // namespace
 
 ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step,
-                       btScalar size, const SolverSettings& solver)
+                       btScalar size, const SolverSettings& solver, bool of_links)
     : response_(options.response),
       given_stiffness_(btScalar(options.stiffness)),
       damping_ratio_(btScalar(options.damping)),
       mass_(reduced_mass > 0 ? reduced_mass : btScalar(1)),
       time_step_(time_step > 0 ? time_step : btScalar(1) / 60),
       size_(size),
-      solver_(solver) {
+      solver_(solver),
+      of_links_(of_links) {
   if (defaultSpring()) damping_ratio_ *= kDamping;
   if (!penalty()) return;
   damping_ratio_ = 1;  // the points' own restitution has a say in it
@@ -92,11 +105,14 @@ ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std
   btScalar area = 0;
   for (const ContactPatch& other : patches)
     area += other.area * btMax(btScalar(0), patch.normal.dot(other.normal));
-  const btScalar stiffness =
-      defaultSpring() ? kStiffness * mass_ / (time_step_ * time_step_) : given_stiffness_ * area;
+  const bool in_chain = of_links_ && isRound(patches);
+  const btScalar stiffness = defaultSpring()
+                                 ? (in_chain ? kChainStiffness : kStiffness) * mass_ / (time_step_ * time_step_)
+                                 : given_stiffness_ * area;
   const btScalar share = area > 0 ? patch.area / (area * btScalar(patch.count)) : btScalar(0);
   OfPatch law;
   law.law_ = this;
+  law.in_chain_ = in_chain;
   law.stiffness_ = stiffness * share;
   law.damping_ = damping_ratio_ * 2 * btSqrt(stiffness * mass_) * share;
   law.leaving_ = patch.by_volume ? btScalar(0) : leavingAlong(patch.normal, patches);
@@ -137,10 +153,12 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     };
     law.depth = btMin(depth, law_->solver_.deepest_spring);
     hold();
-    const btScalar stiffening = 1 + btMax(law.depth, btScalar(0)) / (kStiffening * law_->size_);
+    const btScalar doubled = (in_chain_ ? kChainStiffening : kStiffening) * law_->size_;
+    const btScalar stiffening = 1 + btMax(law.depth, btScalar(0)) / doubled;
     law.stiffness *= stiffening;
     law.damping *= btSqrt(stiffening);
     hold();
+    law.starts = in_chain_ && stiffening > kHeavy && law.depth == depth;
   } else if (depth > law_->solver_.deepest_spring) {
     // The same force from a smaller depth.
     law.stiffness *= depth / law_->solver_.deepest_spring;

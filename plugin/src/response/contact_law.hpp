@@ -22,6 +22,7 @@ struct PointLaw {
   btScalar push = 0;       ///< speed at which the spring alone would drive the bodies apart [m/s]
   btScalar rolling = 0;    ///< how far ahead the load of bodies that roll lies [m]
   btScalar bears = 0;      ///< impulse of the spring in a step at rest [N s]
+  bool starts = false;     ///< the solver is to start with that, whatever the last impulse was
   bool held_back = false;  ///< the spring counts less than the depth, so that nothing is thrown
   btScalar time_step = 0;  ///< [s]
 };
@@ -34,8 +35,10 @@ struct PointLaw {
 ///                       default: K = 18 m / dt^2 (1 + d / (0.002 s)) at the depth d, s the size of the
 ///                       smaller body, for which a body that lies on a fixed one under gravity g sinks by
 ///                       g dt^2 / 18 (0.15 mm at 1/60 s), whatever its size and mass;
+///                       in a chain: K = 31 m / dt^2 (1 + d / (0.005 s));
 ///   damping along n     C = options.damping 2 sqrt(K m), four times that by default.
-/// Each patch takes the share A / T of both and divides it among its points. The default law drives bodies
+/// Each patch takes the share A / T of both and divides it among its points. A chain is where both bodies
+/// touch two others at most, and each other in one round place. The default law drives bodies
 /// that are inside each other apart no faster than half the size of the smaller one, or three times the depth
 /// that was measured on their surfaces, in a second; where they touch in several directions, so fast along
 /// the deepest patch only. So does Response::rigid as far as the solver would give them a speed; what is
@@ -48,9 +51,9 @@ struct PointLaw {
 class ContactLaw {
  public:
   /// Makes the law of a pair. `reduced_mass` is in kg, and 0 counts as 1; `time_step` is in s, and 0 counts
-  /// as 1/60; `size` [m] is that of the smaller body.
+  /// as 1/60; `size` [m] is that of the smaller body; `of_links` says that both touch two bodies at most.
   ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step, btScalar size,
-             const SolverSettings& solver = {});
+             const SolverSettings& solver = {}, bool of_links = false);
 
   /// This is the law for the points of one patch.
   class OfPatch {
@@ -68,6 +71,7 @@ class ContactLaw {
     btScalar damping_;
     btScalar leaving_;  ///< how fast what is deep may be driven apart [m/s]
     btScalar rolling_;
+    bool in_chain_;
   };
   /// Returns the law of patch `index`. All patches of the pair share its stiffness.
   OfPatch of(const std::vector<ContactPatch>& patches, std::size_t index) const;
@@ -87,6 +91,7 @@ class ContactLaw {
   btScalar time_step_;
   btScalar size_;
   SolverSettings solver_;
+  bool of_links_;
 };
 
 /// Returns 1 / (1/m_a + 1/m_b) [kg], static and kinematic bodies counting as infinitely heavy; 0 if both are.

@@ -156,7 +156,9 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     // The solver starts with a part of the last impulse. What is short of a load that lies still would make
     // it sink until its spring has replaced it: where the spring bears more, it starts with all of it. A
     // spring that is held back does so while the bodies still come nearer: later it would throw them apart.
-    if (solver.warm_starting > 0 && !(law.held_back && approach < 0))
+    if (solver.warm_starting > 0 && law.starts)
+      point.m_appliedImpulse = law.bears / solver.warm_starting;
+    else if (solver.warm_starting > 0 && !(law.held_back && approach < 0))
       point.m_appliedImpulse =
           btMax(point.m_appliedImpulse, btMin(point.m_appliedImpulse / solver.warm_starting, law.bears));
     point.m_combinedContactStiffness1 = law.stiffness;

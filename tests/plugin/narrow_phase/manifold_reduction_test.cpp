@@ -246,11 +246,28 @@ TEST(Tops, OfALineLeaveItsEndsAlone) {
   EXPECT_EQ(idsKept(found), (std::set<std::uint64_t>{1, 2}));
 }
 
-TEST(Tops, BearWithTheirSidesWhereBodiesHaveSunkIn) {
+TEST(Tops, OfSeveralHillsBearWithTheirSidesWhereBodiesHaveSunkIn) {
   StepAhead step;
   step.size = 2;  // the depth is 0.5 % of it
-  EXPECT_EQ(idsKept({onHill(0, 0, 0.01, 4, 2, 1), onHill(0.1, 0, 0.01, 4, 2, 2)}, step),
-            (std::set<std::uint64_t>{1, 2}));
+  WeightedPoint other = onHill(0, 0, 0.009, 4, 2, 3);
+  other.point.on_b.setX(btScalar(0.4));
+  EXPECT_EQ(idsKept({onHill(0, 0, 0.01, 4, 2, 1), onHill(0.1, 0, 0.01, 4, 2, 2), other}, step),
+            (std::set<std::uint64_t>{1, 2, 3}));
+}
+
+TEST(Tops, OfTheOnlyHillBearWithItsSidesWhereTheStepDrivesBodiesInDeep) {
+  const auto keptAtSpeed = [](double speed) {
+    StepAhead step;
+    step.size = 1;  // the depth is 1 % of it
+    step.time_step = btScalar(0.01);
+    BodyVelocity down;
+    down.linear = -kUp * btScalar(speed);
+    step.motion = PairMotion({0, 0, 0}, {}, {0, 0, 0}, down);
+    return idsKept({onHill(0, 0, 0.01, 4, 2, 1), onHill(0.1, 0, 0.01, 4, 2, 2)}, step);
+  };
+  EXPECT_EQ(keptAtSpeed(0), std::set<std::uint64_t>{1});
+  EXPECT_EQ(keptAtSpeed(1.5), std::set<std::uint64_t>{1});       // 2.5 % after the step
+  EXPECT_EQ(keptAtSpeed(2.5), (std::set<std::uint64_t>{1, 2}));  // 3.5 %
 }
 
 TEST(Tops, AreNotAllOfWhatSweptBodiesMayMeet) {
