@@ -54,6 +54,7 @@ struct PackingVsPacking::Bodies {
 QueryOptions queryOptionsOf(SearchPass pass, Estimator estimator) {
   switch (pass) {
     case SearchPass::surfaces:
+    case SearchPass::nearby:
       return {Want::contacts, Estimator::raw};
     case SearchPass::touch:
       return {Want::touch, Estimator::raw};
@@ -91,10 +92,10 @@ PairQuery PackingVsPacking::makeQuery(SearchPass pass, const ContactSettings& me
   query.margin = a_->getMargin() + b_->getMargin();
   query.prefix_a = static_cast<std::uint32_t>(measure.prefix_a->count);
   query.prefix_b = static_cast<std::uint32_t>(measure.prefix_b->count);
-  if (pass == SearchPass::surfaces) {
+  if (pass == SearchPass::surfaces || pass == SearchPass::nearby) {
     query.a = &measure.prefix_a->searchModel();
     query.b = &measure.prefix_b->searchModel();
-    query.margin += measure.separation;
+    query.margin += pass == SearchPass::nearby ? halfThickness() : measure.separation;
   }
   if (pass == SearchPass::deep)
     query.margin += gapsOf(*a_, *measure.prefix_a) + gapsOf(*b_, *measure.prefix_b);
@@ -115,12 +116,17 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
 
   const btMatrix3x3& reference = now_.a.getBasis();
   SearchPass next = SearchPass::none;
-  if (pass == SearchPass::surfaces) {
+  if (pass == SearchPass::surfaces || pass == SearchPass::nearby) {
     const Bodies bodies(*this, *search_);
-    selectSamples(contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), reference, memory.patches,
-                  memory.samples);
-    keepSamples(contacts, count_a, memory.samples, contacts_, count_a_);
-    releaseIfEmpty(contacts_);
+    if (pass == SearchPass::surfaces) {
+      selectSamples(contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), reference, memory.patches,
+                    memory.samples);
+      keepSamples(contacts, count_a, memory.samples, contacts_, count_a_);
+      releaseIfEmpty(contacts_);
+      if (!contacts.empty() && reachesFar()) return SearchPass::nearby;
+    } else {
+      selectMoreSamples(bodies, contacts, count_a);
+    }
     const bool near = evaluateDepths(bodies);
     if (sweep_.goesOn(memory.patches)) {
       now_ = sweep_.placed();
@@ -136,7 +142,7 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
     volumePatches(contacts, search_->spacing, reference, memory.patches);
     overlap_ = result.overlaps[index];
   }
-  on_surfaces = pass == SearchPass::surfaces;
+  on_surfaces = pass == SearchPass::surfaces || pass == SearchPass::nearby;
   memory.noteSearch(now_);
   memory.noteDepths(now_, search_->separation);
   sweep_.finish(memory.patches);
@@ -152,6 +158,42 @@ bool PackingVsPacking::refine(const Placed& now, const StepAhead& step) {
   evaluateDepths(Bodies(*this, *settings));
   memory.noteDepths(now, settings->separation);
   return true;
+}
+
+/// Of the thinner one.
+btScalar PackingVsPacking::halfThickness() const {
+  return btMin(search_->prefix_a->largest_radius * a_->getLocalScaling().x(),
+               search_->prefix_b->largest_radius * b_->getLocalScaling().x());
+}
+
+/// Whether spheres are enlarged so much that they meet all sides of what is thin. Pairs that are swept look
+/// around at many poses instead.
+bool PackingVsPacking::reachesFar() const {
+  return !step_.motion.isSwept() && search_->separation > halfThickness();
+}
+
+/// Adds samples to those that there are. Of `contacts`, too, the first are A's.
+void PackingVsPacking::selectMoreSamples(const Bodies& bodies, const std::vector<SphereContact>& contacts,
+                                         std::size_t count_a) {
+  static thread_local Samples more;
+  static thread_local std::vector<SphereContact> kept;
+  std::size_t kept_a = 0;
+  selectSamples(contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), now_.a.getBasis(),
+                memory.patches, more);
+  keepSamples(contacts, count_a, more, kept, kept_a);
+
+  Samples& all = memory.samples;
+  const std::size_t before = contacts_.size(), before_a = count_a_, first = all.indices.size();
+  const auto kept_b = kept.begin() + std::ptrdiff_t(kept_a);
+  contacts_.insert(contacts_.begin() + std::ptrdiff_t(before_a), kept.begin(), kept_b);
+  contacts_.insert(contacts_.end(), kept_b, kept.end());
+  count_a_ += kept_a;
+  for (std::size_t& i : all.indices) i += i < before_a ? 0 : kept_a;
+  for (const std::size_t i : more.indices) all.indices.push_back(i + (i < kept_a ? before_a : before));
+  for (Samples::OfPatch patch : more.patches) {
+    patch.end += first;
+    all.patches.push_back(patch);
+  }
 }
 
 /// Whether surfaces are near each other at any of the samples.

@@ -12,12 +12,14 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Names a pass of a search. A search takes up to three passes, each a query that many pairs can share; the
+/// Names a pass of a search. A search takes up to four passes, each a query that many pairs can share; the
 /// result of one tells whether there is another.
 enum class SearchPass : std::uint8_t {
   none,      ///< the search is over
   surfaces,  ///< with spheres enlarged so that they find all contact of the surfaces that they stand for;
              ///< once for each pose of a pair that is swept
+  nearby,    ///< the same with spheres enlarged by no more than half the thickness of the solids, where those
+             ///< of `surfaces` are larger: they meet all sides of what is thin, and do not tell the near one
   touch,     ///< with spheres as they are, where the surfaces showed no overlap: it may be too deep
   deep,      ///< with spheres enlarged so that they fill their solids, where it is: for the way out
   volumes,   ///< where the volume of overlap is all that is wanted
@@ -50,6 +52,10 @@ class PackingVsPacking : public FoundContact {
   struct Bodies;
   bool evaluateDepths(const Bodies& bodies);
   PairQuery makeQuery(SearchPass pass, const ContactSettings& measure, const Placed& now) const;
+  btScalar halfThickness() const;
+  bool reachesFar() const;
+  void selectMoreSamples(const Bodies& bodies, const std::vector<SphereContact>& contacts,
+                         std::size_t count_a);
 
   const PackingShape* a_;
   const PackingShape* b_;

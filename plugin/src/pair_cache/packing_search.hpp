@@ -48,8 +48,8 @@ class PackingSearch {
       context_.wait(result_);
       take(SearchPass::surfaces, done);
     }
-    for (const SearchPass pass :
-         {SearchPass::surfaces, SearchPass::touch, SearchPass::deep, SearchPass::volumes}) {
+    for (const SearchPass pass : {SearchPass::surfaces, SearchPass::nearby, SearchPass::touch,
+                                  SearchPass::deep, SearchPass::volumes}) {
       for (makeQueries(pass); !queries_.empty(); makeQueries(pass)) {
         run(pass);
         take(pass, done);

@@ -52,6 +52,12 @@ btScalar medianRadius(const Packing& packing, std::size_t count) {
   return btScalar(*median);
 }
 
+btScalar largestRadius(const Packing& packing, std::size_t count) {
+  btScalar largest = 0;
+  for (std::size_t i = 0; i < count; ++i) largest = btMax(largest, btScalar(packing.spheres[i].radius));
+  return largest;
+}
+
 }  // namespace
 
 Prefix::Prefix(const PackedModel& model, std::size_t sphere_count)
@@ -59,6 +65,7 @@ Prefix::Prefix(const PackedModel& model, std::size_t sphere_count)
       volume_true(volumeTrueRadii(model.packing(), sphere_count)),
       largest_overshoot(largestOvershoot(model.packing(), volume_true)),
       median_radius(medianRadius(model.packing(), sphere_count)),
+      largest_radius(largestRadius(model.packing(), sphere_count)),
       model_(model) {}
 
 void Prefix::warnOnce() const {

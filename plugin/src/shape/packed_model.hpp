@@ -48,6 +48,7 @@ class Prefix {
   const VolumeTrueRadii* const volume_true;  ///< the longest list that is not longer, or null
   const btScalar largest_overshoot;          ///< largest of them minus the sphere's own radius; 0 if none
   const btScalar median_radius;
+  const btScalar largest_radius;  ///< half as thick as the solid is where it is thickest
 
  private:
   const PackedModel& model_;

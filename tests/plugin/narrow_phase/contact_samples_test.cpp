@@ -113,6 +113,40 @@ TEST(ContactPoints, OfACornerAreAtTheCorner) {
   EXPECT_NEAR(deepest.point.turn_a, 0, 1e-3);
 }
 
+TEST(ContactPoints, SamplesFarFromACornerThatTheyFoundStay) {
+  const btQuaternion turn(btVector3(1, btScalar(0.4), 0).normalized(), btScalar(0.6));
+  const btMatrix3x3 axes(turn);
+  btVector3 corner;
+  for (int k = 0; k < 3; ++k) corner[k] = axes[2][k] > 0 ? btScalar(-0.5) : btScalar(0.5);
+  const btVector3 centre = axes * -corner;
+  Pair pair(cube(), at(centre.x(), centre.y(), centre.z() - kDepth, turn), singleBall(2), at(0, 0, -2));
+  const double separation = kSeparation / 2;
+  const auto find = [&](const std::vector<std::size_t>& indices) {
+    pair.samples = Samples();
+    pair.samples.indices = indices;
+    pair.samples.patches.push_back({kDown, 2, btScalar(0.4), indices.size()});
+    return pair.find(separation);
+  };
+  const auto isFar = [&](std::size_t i) {
+    return !find({i}).empty() && pair.scratch.probed.front().isFar(btScalar(separation));
+  };
+  const auto isNear = [&](std::size_t i) { return !find({i}).empty() && !isFar(i); };
+  std::vector<std::size_t> far, near;
+  for (std::size_t i = 0; i < pair.contacts.size(); ++i) {
+    if (isFar(i)) far.push_back(i);
+    if (isNear(i)) near.push_back(i);
+  }
+  ASSERT_FALSE(far.empty());
+  ASSERT_FALSE(near.empty());
+  for (const std::size_t i : far) {
+    const std::vector<WeightedPoint> found = find({i, near.front()});  // the ascent begins at the second
+    EXPECT_EQ(deepestOf(found).kind, Kind::corner);
+    EXPECT_NEAR(deepestOf(found).point.depth, kDepth, 1e-3);  // the ball is cut into triangles
+    dropUnprobed(pair.samples);
+    EXPECT_EQ(pair.samples.indices, (std::vector<std::size_t>{i, near.front()}));
+  }
+}
+
 TEST(ContactPoints, OfCrossingEdgesAreAtTheCrossing) {
   const double half = std::sqrt(0.5);
   Pair pair(cube(), at(0.1, 0.05, half - kDepth, btQuaternion(btVector3(0, 1, 0), SIMD_HALF_PI / 2)), cube(),
