@@ -101,8 +101,8 @@ class CellSearch {
   Probe probe(const Point& x, std::size_t begin, std::size_t end, double enough, double negligible);
   Probe nearestBall(const Point& x, std::size_t begin, std::size_t end) const;
 
-  /// Returns true if x, which is `distance` away from the surface, is inside.
-  bool isInside(const Point& x, double distance);
+  /// Returns true if x is inside. It is `distance` away from the surface, or more if that is not known.
+  bool isInside(const Point& x, double distance, const Container::Nearest& wall);
 
   static Point direction(const Point& from, const Point& to);
 

@@ -66,9 +66,10 @@ class ClearanceCache {
 
   /// Returns the distance from the surface, negative outside, or `reach` if that is less. It is kept.
   double signedDistance(const Container& container, const Point& x, double reach) {
-    const double distance = std::min(container.closest(x, reach).distance, reach);
+    const Container::Nearest nearest = container.closest(x, reach);
+    const double distance = std::min(nearest.distance, reach);
     int found = side(x, distance);
-    if (found == 0) found = container.contains(x) ? 1 : -1;
+    if (found == 0) found = container.contains(x, nearest) ? 1 : -1;
     add(x, found * distance);
     return found * distance;
   }
