@@ -18,8 +18,8 @@ namespace {
 // Less than this of the solid is found from triangles: samples are too coarse, and triangles few.
 constexpr double kShallowShare = 0.01;
 
-// More than this, and more than so many times what is wanted, is known well enough by few samples.
-constexpr double kFewShare = 0.002, kTooDeep = 4;
+// More than this is known well enough by few samples, as long as a pose is looked for: they have 30 of it.
+constexpr double kFewShare = 0.0005;
 
 // A pose may share up to so many times what is wanted, and is looked for with so many steps.
 constexpr double kAbout = 1.2;
@@ -78,12 +78,11 @@ class TrueOverlap {
     bool exact;
   };
 
-  /// The fraction, by few samples where these are enough to look for `target`. It is less than `most`.
-  Found whileLookingFor(double target, const Pose& pose, const Point& way, double most) const {
-    const double few = tree_ ? std::min(std::max(kFewShare, kTooDeep * target), kShallowShare) : 0;
-    if (!tree_ || most > few) {
+  /// About the fraction, by few samples if these are enough. It is less than `most`.
+  Found roughlyAt(const Pose& pose, const Point& way, double most) const {
+    if (!tree_ || most > kFewShare) {
       const double fraction = voxels_.roughlyShared(pose).fraction;
-      if (!tree_ || fraction > few) return {fraction, false};
+      if (!tree_ || fraction > kFewShare) return {fraction, false};
     }
     return {byTriangles(pose, way), true};
   }
@@ -164,7 +163,7 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
   };
   const auto poseAt = [&](double distance) { return Pose{start.turn, start.shift + distance * start.way}; };
   const auto look = [&](double distance, double most) {
-    return Step{distance, overlap.whileLookingFor(target, poseAt(distance), start.way, most)};
+    return Step{distance, overlap.roughlyAt(poseAt(distance), start.way, most)};
   };
   Step near = look(0, 1), far{std::numbers::sqrt3, {}};
   for (double push = kFirstPush; start.touches && near.share.fraction < target && push < kLastPush;
