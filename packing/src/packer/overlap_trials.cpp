@@ -19,7 +19,7 @@ namespace {
 constexpr double kShallowShare = 0.01;
 
 // More than this is known well enough by few samples, as long as a pose is looked for: they have 30 of it.
-constexpr double kFewShare = 0.0005;
+constexpr double kFewShare = 0.001;
 
 // A pose may share up to so many times what is wanted, and is looked for with so many steps.
 constexpr double kAbout = 1.2;

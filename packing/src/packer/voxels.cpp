@@ -19,7 +19,7 @@ constexpr std::uint32_t kBlock = 8;
 static_assert(kBlock == 8, "a row of a block is a byte of the bitmap");
 
 // Of so many points one is among the few.
-constexpr std::size_t kFew = 16;
+constexpr std::size_t kFew = 32;
 
 }  // namespace
 
