@@ -103,11 +103,6 @@ Point Voxels::point(double part) const {
   return points[static_cast<std::size_t>(part * static_cast<double>(points.size()))].cast<double>();
 }
 
-double Voxels::outsideBy(const Point& x) const {
-  const Block* block = blockAt(x);
-  return block ? std::max(0.0, -block->distance - (x - block->centre).norm()) : 0;
-}
-
 Voxels::Shared Voxels::shared(const Pose& pose, const Samples& samples) const {
   // Into the lattice of the original; in single precision, which is far finer than the cells. Plain numbers:
   // with sanitizers Eigen's products would take most of the packer's time.

@@ -40,9 +40,6 @@ class Voxels {
   /// Returns one of the points inside; `part` is in [0, 1). There must be one.
   Point point(double part) const;
 
-  /// Returns a length by which x is at least outside of the solid, or 0 if that is not known.
-  double outsideBy(const Point& x) const;
-
  private:
   using Index = std::array<std::uint32_t, 3>;
 
