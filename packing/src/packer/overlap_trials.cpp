@@ -21,8 +21,9 @@ constexpr double kShallowShare = 0.01;
 // More than this is known well enough by few samples, as long as a pose is looked for: they have 30 of it.
 constexpr double kFewShare = 0.001;
 
-// A pose may share up to so many times what is wanted, and is looked for with so many steps.
-constexpr double kAbout = 1.2;
+// A pose may share up to so many times what is wanted, and is looked for with so many steps. The aim is near
+// the deep side, where the search comes from.
+constexpr double kAim = 1.15, kAbout = 1.2;
 constexpr int kMostSteps = 24;
 
 // Overlaps, as fractions of the solid, that are looked for.
@@ -171,7 +172,7 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
     far = near;
     near = look(-push, 1);
   }
-  const double aim = std::sqrt(std::sqrt(kAbout) * target);
+  const double aim = std::sqrt(kAim * target);
   Step before = near;  // the last two that are too deep
   bool halve = false;
   for (int i = 0; i < kMostSteps && near.share.fraction > kAbout * target; ++i) {
