@@ -113,9 +113,8 @@ ClosestTriangle::Hit ClosestTriangle::find(const Vec3d& p, double cutoff) const 
   return {query.best2, query.best, query.point};
 }
 
-int ClosestTriangle::sideOf(const Vec3d& p) const {
-  const Hit hit = find(p, std::numeric_limits<double>::infinity());
-  const double front = triangles_[hit.triangle].inFront(p);
+int ClosestTriangle::sideOf(const Vec3d& p, const Triangle& nearest) const {
+  const double front = nearest.inFront(p);
   const double rounding = 1e-10 * (1 / to_unit_ + norm(p));
   return std::abs(front) <= rounding ? 0 : front > 0 ? 1 : -1;
 }

@@ -27,9 +27,9 @@ class ClosestTriangle {
 
   /// Returns the nearest point; beyond `cutoff` [m] the distance is infinity.
   Nearest closest(const Vec3d& p, double cutoff) const;
-  /// Returns 1 in front of the nearest triangle and -1 behind it, if the nearest point is clearly inside of
-  /// it and farther than rounding; else 0.
-  int sideOf(const Vec3d& p) const;
+  /// Returns 1 in front of the triangle, which is the nearest one, and -1 behind it, if the nearest point is
+  /// clearly inside of it and farther than rounding; else 0.
+  int sideOf(const Vec3d& p, const Triangle& nearest) const;
 
  private:
   struct Release {

@@ -37,9 +37,15 @@ ClosestPoint MeshSolid::closestPoint(const Vec3d& p, double cutoff) const {
 
 bool MeshSolid::contains(const Vec3d& p) const {
   if (!holds(bounds_, p)) return false;
+  if (count_once_) return winding_.windingNumber(p) > 0.5;
+  return contains(p, *tree_.closest(p, std::numeric_limits<double>::infinity()).triangle);
+}
+
+bool MeshSolid::contains(const Vec3d& p, const Triangle& nearest) const {
+  if (!holds(bounds_, p)) return false;
   // The winding number is expensive where large triangles lie beside small ones. Where no triangle passes
   // through another, the nearest one tells the side, unless that is nearest with its edge.
-  const int side = count_once_ ? 0 : tree_.sideOf(p);
+  const int side = count_once_ ? 0 : tree_.sideOf(p, nearest);
   return side != 0 ? side < 0 : winding_.windingNumber(p) > 0.5;
 }
 

@@ -20,6 +20,8 @@ class MeshSolid : public Solid {
     return tree_.closest(p, cutoff);
   }
   bool contains(const Vec3d& p) const override;
+  /// The same where the triangle nearest to p is known.
+  bool contains(const Vec3d& p, const Triangle& nearest) const;
   Bounds bounds() const override { return bounds_; }
   MassProperties massProperties() const override { return mass_; }
   Mesh surface() const override { return mesh_; }

@@ -10,13 +10,14 @@ bool CellSearch::climb(Point x) {
   const Point start = x;
   Probe best = probe(x, 0, block_balls_, 0, 0);
   double half = 0.5 * best.value;
+  DualSimplex& program = climb_program_;
   while (half > 1e-4 * best.value) {
     // The linear programme is trusted within a cube. As long as that keeps to the ball about x, all of it
     // lies inside the solid.
     half = std::min({half, 0.55 * best.value, (kWander * wanted_ - (x - start).norm()) / 1.75});
     const double before = best.value;
     const Point centre = x;
-    DualSimplex program(half);
+    program.restart(half);
     program.add(best.value, best.gradient);
     for (std::size_t i = 0; i < block_balls_; ++i) {
       const double distance = balls_[i].distance(centre);

@@ -42,16 +42,16 @@ CellSearch::Probe CellSearch::probe(const Point& x, std::size_t begin, std::size
   const Container::Nearest wall = container_.closest(x, ball.value);
   const double distance = std::min(wall.distance, ball.value);
   if (distance <= negligible) return {distance, direction(wall.point, x), {wall.point, 0}};
-  if (!isInside(x, distance))
+  if (!isInside(x, distance, wall))
     return {-distance,    direction(x, wall.point), {x, distance}, std::isfinite(wall.distance), wall.point,
             wall.triangle};
   if (distance == ball.value) return ball;
   return {distance, direction(wall.point, x), {wall.point, 0}, true, wall.point, wall.triangle};
 }
 
-bool CellSearch::isInside(const Point& x, double distance) {
+bool CellSearch::isInside(const Point& x, double distance, const Container::Nearest& wall) {
   int side = clearances_.side(x, distance);
-  if (side == 0) side = container_.contains(x) ? 1 : -1;
+  if (side == 0) side = container_.contains(x, wall) ? 1 : -1;
   clearances_.add(x, side * distance);
   return side > 0;
 }
@@ -62,7 +62,7 @@ Ball CellSearch::ballBehind(const Point& wall, const Point& normal, double radiu
     const double empty = radius * (1 - 1e-6);
     const Container::Nearest hit = container_.closest(centre, empty);
     if (std::isinf(hit.distance)) {
-      if (isInside(centre, empty)) break;  // a sheet without thickness
+      if (isInside(centre, empty, hit)) break;  // a sheet without thickness
       return {centre, empty};
     }
     // The ball through both points, and a little less, as there may be a third.

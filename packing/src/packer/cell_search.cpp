@@ -125,35 +125,35 @@ void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end) {
 CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
   const Point centre = cell.centre();
   const double half = cell.side() / 2;
-  DualSimplex program(half);
-  std::vector<Probe> cuts;
+  program_.restart(half);
+  cuts_.clear();
   const auto prove = [&] {
-    cell.upper = std::min(cell.upper, roundUp(provenBound(program, cuts, centre, half)));
+    cell.upper = std::min(cell.upper, roundUp(provenBound(centre, half)));
     return cell.upper <= bound_;
   };
   Point x = centre;
   for (int k = 0; k < (half > kLarge * wanted_ ? 1 : kProbes); ++k) {
     const Probe p = probe(x, begin, balls_.size(), wanted_, k == 0 ? bound_ - std::numbers::sqrt3 * half : 0);
     if (p.value > wanted_ && climb(x)) return Verdict::found;
-    program.add(p.value - p.gradient.dot(x - centre), p.gradient);
-    cuts.push_back(p);
-    const bool low = program.optimum() <= bound_;
+    program_.add(p.value - p.gradient.dot(x - centre), p.gradient);
+    cuts_.push_back(p);
+    const bool low = program_.optimum() <= bound_;
     if ((low || k == 0) && prove()) return Verdict::below;
     // Then only the balls' curvature is in the way.
     if (low) {
-      const bool below = (straighten(program, cuts) && prove()) || (flatten(program, half, cuts) && prove());
+      const bool below = (straighten() && prove()) || (flatten(half) && prove());
       return below ? Verdict::below : Verdict::undecided;
     }
-    x = centre + program.argmax();
+    x = centre + program_.argmax();
   }
   return Verdict::undecided;
 }
 
-bool CellSearch::straighten(const DualSimplex& program, std::vector<Probe>& cuts) {
+bool CellSearch::straighten() {
   bool straighter = false;
   prisms_.clear();
-  program.forWeights([&](int k, double) {
-    Probe& cut = cuts[k];
+  program_.forWeights([&](int k, double) {
+    Probe& cut = cuts_[k];
     if (!cut.triangle) return;
     const std::optional<Prism> prism = prismBehind(container_, *cut.triangle, cut.gradient);
     if (!prism) return;
@@ -164,27 +164,26 @@ bool CellSearch::straighten(const DualSimplex& program, std::vector<Probe>& cuts
   return straighter;
 }
 
-bool CellSearch::flatten(const DualSimplex& program, double half, std::vector<Probe>& cuts) {
+bool CellSearch::flatten(double half) {
   bool flatter = false;
-  program.forWeights([&](int k, double) {
-    if (!cuts[k].at_wall) return;
-    const Ball behind = ballBehind(cuts[k].wall, -cuts[k].gradient, kBehind * std::max(half, wanted_));
-    if (behind.radius <= cuts[k].ball.radius) return;
-    cuts[k].ball = behind;
-    cuts[k].prism = -1;
+  program_.forWeights([&](int k, double) {
+    if (!cuts_[k].at_wall) return;
+    const Ball behind = ballBehind(cuts_[k].wall, -cuts_[k].gradient, kBehind * std::max(half, wanted_));
+    if (behind.radius <= cuts_[k].ball.radius) return;
+    cuts_[k].ball = behind;
+    cuts_[k].prism = -1;
     flatter = true;
   });
   return flatter;
 }
 
-double CellSearch::provenBound(const DualSimplex& program, std::span<const Probe> cuts, const Point& centre,
-                               double half) const {
+double CellSearch::provenBound(const Point& centre, double half) const {
   double corners[8] = {}, behind = 0;
-  program.forWeights([&](int k, double weight) {
-    const Prism* prism = cuts[k].prism < 0 ? nullptr : &prisms_[cuts[k].prism];
+  program_.forWeights([&](int k, double weight) {
+    const Prism* prism = cuts_[k].prism < 0 ? nullptr : &prisms_[cuts_[k].prism];
     for (int corner = 0; corner < 8; ++corner) {
       const Point v = centre + half * Point(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-      corners[corner] += weight * (prism ? prism->distance(v) : cuts[k].ball.distance(v));
+      corners[corner] += weight * (prism ? prism->distance(v) : cuts_[k].ball.distance(v));
     }
     if (prism) behind = std::max(behind, prism->farthestBehind(centre, half));
   });

@@ -76,17 +76,16 @@ class CellSearch {
   /// Lowers the cell's bound. The balls that can matter in it are balls_[begin, ...).
   Verdict bound(Cell& cell, std::size_t begin);
 
-  /// Returns the bound proven by the programme's dual variables. Cut k of the programme is cuts[k].
-  double provenBound(const DualSimplex& program, std::span<const Probe> cuts, const Point& centre,
-                     double half) const;
+  /// Returns the bound proven by the programme's dual variables. Cut k of the programme is cuts_[k].
+  double provenBound(const Point& centre, double half) const;
 
   /// Puts prisms behind the flat walls that hold the optimum down, for these do not curve. Returns false if
   /// there are none.
-  bool straighten(const DualSimplex& program, std::vector<Probe>& cuts);
+  bool straighten();
 
   /// Puts larger balls behind the walls that hold the optimum down, for they curve less. Returns false if
   /// there are none.
-  bool flatten(const DualSimplex& program, double half, std::vector<Probe>& cuts);
+  bool flatten(double half);
 
   /// Returns the largest empty ball, up to `radius`, that touches the surface at `wall` from outside; or just
   /// the point.
@@ -101,8 +100,8 @@ class CellSearch {
   Probe probe(const Point& x, std::size_t begin, std::size_t end, double enough, double negligible);
   Probe nearestBall(const Point& x, std::size_t begin, std::size_t end) const;
 
-  /// Returns true if x, which is `distance` away from the surface, is inside.
-  bool isInside(const Point& x, double distance);
+  /// Returns true if x is inside. It is `distance` away from the surface, or more if that is not known.
+  bool isInside(const Point& x, double distance, const Container::Nearest& wall);
 
   static Point direction(const Point& from, const Point& to);
 
@@ -115,7 +114,10 @@ class CellSearch {
   // and so on.
   std::vector<Ball> balls_;
   std::size_t block_balls_ = 0;
-  std::vector<Prism> prisms_;  // of the cell being bounded
+  // Of the cell being bounded, and of the cube of a climb.
+  std::vector<Probe> cuts_;
+  std::vector<Prism> prisms_;
+  DualSimplex program_, climb_program_;
 };
 
 }  // namespace innersphere

@@ -38,9 +38,9 @@ class Sampler {
     const double half = lattice * spacing_ / 2;
     const Point centre = Point(at[0], at[1], at[2]) * spacing_ + Point::Constant(half);
     if (!inside) {
-      const double distance = container_.closest(centre, 1.01 * std::numbers::sqrt3 * half).distance;
-      if (distance > std::numbers::sqrt3 * half) {
-        if (!container_.contains(centre)) return;
+      const Container::Nearest wall = container_.closest(centre, 1.01 * std::numbers::sqrt3 * half);
+      if (wall.distance > std::numbers::sqrt3 * half) {
+        if (!container_.contains(centre, wall)) return;
         inside = true;
       }
     }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -18,7 +17,7 @@ struct Cell {
 
   static constexpr int kDeepest = 30;
 
-  double side() const { return std::ldexp(1.0, -level); }
+  double side() const { return 1.0 / (std::uint32_t{1} << level); }
   Point centre() const { return Point(at[0] + 0.5, at[1] + 0.5, at[2] + 0.5) * side(); }
 
   /// Returns one of the eight cells of half the side, 0 to 7, with the bound that it inherits.

@@ -60,15 +60,21 @@ class ClearanceCache {
   /// Returns true if x is inside the solid, asked of the solid only if the entries do not tell. What is
   /// learnt is kept; `reach` bounds the distances that are of use.
   bool contains(const Container& container, const Point& x, double reach) {
-    if (const Entry* known = around(x)) return known->distance > 0;
+    if (last_ < entries_.size() && reaches(entries_[last_], x)) return entries_[last_].distance > 0;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      if (!reaches(entries_[i], x)) continue;
+      last_ = i;
+      return entries_[i].distance > 0;
+    }
     return signedDistance(container, x, reach) > 0;
   }
 
   /// Returns the distance from the surface, negative outside, or `reach` if that is less. It is kept.
   double signedDistance(const Container& container, const Point& x, double reach) {
-    const double distance = std::min(container.closest(x, reach).distance, reach);
+    const Container::Nearest nearest = container.closest(x, reach);
+    const double distance = std::min(nearest.distance, reach);
     int found = side(x, distance);
-    if (found == 0) found = container.contains(x) ? 1 : -1;
+    if (found == 0) found = container.contains(x, nearest) ? 1 : -1;
     add(x, found * distance);
     return found * distance;
   }
@@ -77,9 +83,15 @@ class ClearanceCache {
   // The search moves through neighbouring cells, so the last entries are the near ones.
   static constexpr std::size_t kKept = 64;
 
+  bool reaches(const Entry& entry, const Point& x) const {
+    const double reach = std::abs(entry.distance) - margin_;
+    return reach > 0 && (x - entry.at).squaredNorm() < reach * reach;
+  }
+
   double margin_;
   std::vector<Entry> entries_;
   std::size_t oldest_ = 0;
+  std::size_t last_ = 0;  // entry that told where a point is: mostly it tells of the next one, too
 };
 
 }  // namespace innersphere

@@ -82,6 +82,10 @@ Container::Nearest Container::closest(const Point& x, double cutoff) const {
   return {hit.distance / side_, fromWorld(hit.point), hit.triangle};
 }
 
+bool Container::contains(const Point& x, const Nearest& nearest) const {
+  return nearest.triangle ? mesh_->contains(toWorld(x), *nearest.triangle) : contains(x);
+}
+
 Ball Container::rounded(const Ball& ball) const {
   Vec3d p = inFrame(ball.centre);
   for (double& component : p) {

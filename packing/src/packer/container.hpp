@@ -32,6 +32,8 @@ class Container {
   /// Returns the nearest point of the surface. Throws Error not_finite if the solid gives no number.
   Nearest closest(const Point& x, double cutoff) const;
   bool contains(const Point& x) const { return solid_.contains(toWorld(x)); }
+  /// The same, cheaper where the nearest point of the surface is known.
+  bool contains(const Point& x, const Nearest& nearest) const;
 
   Vec3d toWorld(const Point& x) const;
   Point fromWorld(const Vec3d& p) const;

@@ -19,20 +19,23 @@ double rounded(double x, double unit) {
 
 }  // namespace
 
-void DualSimplex::add(double value, const Point& gradient) {
-  if (rows_.empty()) {
-    rows_.reserve(kFaces + 24);
-    for (int k = 0; k < 3; ++k) {
-      for (double sign : {1.0, -1.0}) {
-        Row face{Eigen::Vector4d::Zero(), half_};
-        face.normal[1 + k] = sign;
-        rows_.push_back(face);
-      }
+void DualSimplex::restart(double half) {
+  half_ = half;
+  unit_ = std::ldexp(1.0, std::ilogb(half));
+  rows_.clear();
+  for (int k = 0; k < 3; ++k) {
+    for (double sign : {1.0, -1.0}) {
+      Row face{Eigen::Vector4d::Zero(), half_};
+      face.normal[1 + k] = sign;
+      rows_.push_back(face);
     }
   }
+}
+
+void DualSimplex::add(double value, const Point& gradient) {
   const auto slope = [&](int k) { return -rounded(gradient[k], 1); };
   rows_.push_back(
-      {Eigen::Vector4d(1, slope(0), slope(1), slope(2)), rounded(value, std::ldexp(1.0, std::ilogb(half_)))});
+      {Eigen::Vector4d(1, slope(0), slope(1), slope(2)), rounded(value, unit_)});
   if (size() == 1) {
     start();
     return;

@@ -14,7 +14,8 @@ namespace innersphere {
 /// with a basis of four of the functions and faces of the cube.
 class DualSimplex {
  public:
-  explicit DualSimplex(double half) : half_(half) {}
+  /// Begins with a cube and without functions; also a first time.
+  void restart(double half);
 
   /// Adds a function and finds the new optimum.
   void add(double value, const Point& gradient);
@@ -49,7 +50,7 @@ class DualSimplex {
   void enter(int row);
   double weightAt(int i) const { return basis_[i] < kFaces ? 0.0 : std::max(0.0, inverse_(0, i)); }
 
-  double half_;
+  double half_ = 0, unit_ = 1;  // the latter: of what is rounded
   std::vector<Row> rows_;  // the faces of the cube, then the functions
   int basis_[4] = {};
   Eigen::Matrix4d inverse_;  // of the matrix of the basis' normals; its first row holds the dual variables

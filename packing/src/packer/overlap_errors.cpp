@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "common/steady_math.hpp"
+#include "packer/ball_trees.hpp"
 #include "packer/overlap_trials.hpp"
-#include "packer/sphere_grid.hpp"
 
 namespace innersphere {
 namespace {
@@ -49,42 +49,34 @@ struct Found {
 class Prefix {
  public:
   Prefix(std::span<const Ball> balls, const VolumeTrueRadii& radii, double side)
-      : balls_(balls.first(radii.count)) {
-    for (std::size_t i = 0; i < balls_.size(); ++i) {
-      // Rounding may have made a volume-true radius the smaller one.
-      const double radius = std::max<double>(radii.radii[i] / side, balls_[i].radius);
-      grid_.insert({balls_[i].centre, radius});
-      overshoot_ = std::max(overshoot_, radius - balls_[i].radius);
-    }
-  }
+      : balls_(balls), volume_true_(withRadii(balls, radii, side)), trees_(volume_true_) {}
 
   struct Sums {
     Found raw, volume_true;
   };
 
-  Sums overlap(const Pose& pose, const Voxels& voxels) const {
+  Sums overlap(const Pose& pose) const {
     Sums sums;
-    for (std::size_t i = 0; i < balls_.size(); ++i) {
-      const Point x = pose.apply(balls_[i].centre);
-      const double large = grid_.balls()[i].radius;
-      if ((x.array() < -large - overshoot_).any() || (x.array() > 1 + large + overshoot_).any()) continue;
-      if (voxels.outsideBy(x) > large + overshoot_) continue;
-      grid_.visitNear(x, x, large, [&](std::uint32_t j) {
-        const Point way = x - balls_[j].centre;
-        const double d = way.norm();
-        const double other = grid_.balls()[j].radius;
-        if (d >= large + other) return;
-        sums.volume_true.add(large, other, way, d);
-        sums.raw.add(balls_[i].radius, balls_[j].radius, way, d);
-      });
-    }
+    trees_.forMeeting(pose, [&](std::uint32_t i, std::uint32_t j, const Point& way, double d) {
+      sums.volume_true.add(volume_true_[i].radius, volume_true_[j].radius, way, d);
+      sums.raw.add(balls_[i].radius, balls_[j].radius, way, d);
+    });
     return sums;
   }
 
  private:
+  static std::vector<Ball> withRadii(std::span<const Ball> balls, const VolumeTrueRadii& radii, double side) {
+    std::vector<Ball> larger;
+    for (std::size_t i = 0; i < radii.radii.size(); ++i) {
+      // Rounding may have made a volume-true radius the smaller one.
+      larger.push_back({balls[i].centre, std::max<double>(radii.radii[i] / side, balls[i].radius)});
+    }
+    return larger;
+  }
+
   std::span<const Ball> balls_;
-  SphereGrid grid_;       // with volume-true radii
-  double overshoot_ = 0;  // how far these reach out of the solid, at most
+  std::vector<Ball> volume_true_;
+  BallTrees trees_;  // of these
 };
 
 /// What was found in one pose.
@@ -151,7 +143,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
     const Prefix spheres(balls, prefix, container.side());
     std::vector<Prefix::Sums> sums(trials.size());
     tbb::parallel_for(std::size_t{0}, trials.size(),
-                      [&](std::size_t i) { sums[i] = spheres.overlap(trials[i].pose, voxels); });
+                      [&](std::size_t i) { sums[i] = spheres.overlap(trials[i].pose); });
     const auto estimate = [&](Found Prefix::Sums::*sum) {
       std::vector<OverlapErrors::AtDepth> findings;
       for (std::size_t i = 0; i < trials.size(); ++i)

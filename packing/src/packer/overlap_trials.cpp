@@ -15,14 +15,15 @@
 namespace innersphere {
 namespace {
 
-// Poses are searched for with fewer samples.
-constexpr std::size_t kStride = 16;
-
 // Less than this of the solid is found from triangles: samples are too coarse, and triangles few.
 constexpr double kShallowShare = 0.01;
 
-// How near to what is wanted a depth has to be, and how often it is looked for.
-constexpr double kAbout = 1.2;
+// More than this is known well enough by few samples, as long as a pose is looked for: they have 30 of it.
+constexpr double kFewShare = 0.001;
+
+// A pose may share up to so many times what is wanted, and is looked for with so many steps. The aim is near
+// the deep side, where the search comes from.
+constexpr double kAim = 1.15, kAbout = 1.2;
 constexpr int kMostSteps = 24;
 
 // Overlaps, as fractions of the solid, that are looked for.
@@ -66,18 +67,25 @@ class TrueOverlap {
 
   bool knowsSurface() const { return tree_.has_value(); }
 
-  /// The fraction of the solid, with all samples; `way` leads from the solid to the copy. It is about
-  /// `expected`.
+  /// The fraction of the solid, with all samples, or by triangles where it is shallow; `way` leads from the
+  /// solid to the copy. It is about `expected`.
   Voxels::Shared at(const Pose& pose, const Point& way, double expected) const {
     return tree_ && expected < kShallowShare ? Voxels::Shared{byTriangles(pose, way), 0}
                                              : voxels_.shared(pose);
   }
 
-  /// The fraction, with few samples where it is not shallow. It is less than `most`.
-  double coarsely(const Pose& pose, const Point& way, double most) const {
-    if (tree_ && most < kShallowShare) return byTriangles(pose, way);
-    const double samples = voxels_.shared(pose, kStride).fraction;
-    return tree_ && samples < kShallowShare ? byTriangles(pose, way) : samples;
+  struct Found {
+    double fraction;
+    bool exact;
+  };
+
+  /// About the fraction, by few samples if these are enough. It is less than `most`.
+  Found roughlyAt(const Pose& pose, const Point& way, double most) const {
+    if (!tree_ || most > kFewShare) {
+      const double fraction = voxels_.roughlyShared(pose).fraction;
+      if (!tree_ || fraction > kFewShare) return {fraction, false};
+    }
+    return {byTriangles(pose, way), true};
   }
 
  private:
@@ -149,37 +157,44 @@ Start facingStart(const SurfaceSamples& samples, std::size_t number) {
 /// Moves the copy away until both share about the fraction `target`, or leaves it there if they share less:
 /// thin solids do.
 OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double target) {
-  const Point& way = start.way;
-  const auto at = [&](double distance) { return Pose{start.turn, start.shift + distance * way}; };
-
   struct Step {
-    double distance, share;
+    double distance = 0;
+    TrueOverlap::Found share{};
+    double root() const { return std::sqrt(share.fraction); }
   };
-  Step near{0, overlap.coarsely(at(0), way, 1)};
-  double far = std::numbers::sqrt3;
-  for (double push = kFirstPush; start.touches && near.share < target && push < kLastPush; push *= kPushes) {
-    far = near.distance;
-    near = {-push, overlap.coarsely(at(-push), way, 1)};
+  const auto poseAt = [&](double distance) { return Pose{start.turn, start.shift + distance * start.way}; };
+  const auto look = [&](double distance, double most) {
+    return Step{distance, overlap.roughlyAt(poseAt(distance), start.way, most)};
+  };
+  Step near = look(0, 1), far{std::numbers::sqrt3, {}};
+  for (double push = kFirstPush; start.touches && near.share.fraction < target && push < kLastPush;
+       push *= kPushes) {
+    far = near;
+    near = look(-push, 1);
   }
+  const double aim = std::sqrt(kAim * target);
   Step before = near;  // the last two that are too deep
-  for (int i = 0; i < kMostSteps && near.share > kAbout * target; ++i) {
-    double distance = (near.distance + far) / 2;
+  bool halve = false;
+  for (int i = 0; i < kMostSteps && near.share.fraction > kAbout * target; ++i) {
+    const double width = far.distance - near.distance;
+    double distance = near.distance + width / 2;
     // Overlaps grow about as the square of their depth.
-    const double fallen = std::sqrt(before.share) - std::sqrt(near.share);
-    if (fallen > 0) {
-      const double slope = fallen / (near.distance - before.distance);
-      const double guess = near.distance + (std::sqrt(near.share) - std::sqrt(target)) / slope;
-      if (guess < far) distance = guess;
-    }
-    const Step now{distance, overlap.coarsely(at(distance), way, near.share)};
-    if (now.share > target) {
+    const Step& other = far.share.fraction > 0 ? far : before;
+    const double guess = near.distance + (aim - near.root()) / (other.root() - near.root()) *
+                                             (other.distance - near.distance);
+    if (!halve && guess > near.distance && guess < far.distance) distance = guess;
+    const Step now = look(distance, near.share.fraction);
+    if (now.share.fraction > target) {
       before = near;
       near = now;
     } else {
-      far = distance;
+      far = now;
     }
+    halve = far.distance - near.distance > width / 2;
   }
-  return {at(near.distance), overlap.at(at(near.distance), way, near.share)};
+  const double share = near.share.fraction;
+  const Pose pose = poseAt(near.distance);
+  return {pose, near.share.exact ? Voxels::Shared{share, 0} : overlap.at(pose, start.way, share)};
 }
 
 }  // namespace

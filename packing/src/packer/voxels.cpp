@@ -18,6 +18,9 @@ constexpr double kMostCells = 512;
 constexpr std::uint32_t kBlock = 8;
 static_assert(kBlock == 8, "a row of a block is a byte of the bitmap");
 
+// Of so many points one is among the few.
+constexpr std::size_t kFew = 32;
+
 }  // namespace
 
 Voxels::Voxels(const Container& container, double volume, double wanted) {
@@ -65,13 +68,24 @@ Voxels::Voxels(const Container& container, double volume, double wanted) {
   });
 
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    Block& block = blocks_[b];
-    block.begin = {points_[0].size(), points_[1].size()};
-    for (std::uint32_t i = 0; block.distance > -reach_ && i < kCells; ++i) {
+    const Block& block = blocks_[b];
+    if (block.distance <= -reach_) continue;
+    Samples::Run run{block.centre, {all_.points[0].size(), all_.points[1].size()}};
+    Samples::Run few{block.centre, {few_.points[0].size(), few_.points[1].size()}};
+    for (std::uint32_t i = 0; i < kCells; ++i) {
       const Index at = cell(b, i);
-      if (isInside(bit(at))) points_[(at[0] + at[1] + at[2]) % 2].push_back(place(at).cast<float>());
+      if (!isInside(bit(at))) continue;
+      const int half = (at[0] + at[1] + at[2]) % 2;
+      const Eigen::Vector3f x = place(at).cast<float>();
+      if (all_.points[half].size() % kFew == 0) few_.points[half].push_back(x);
+      all_.points[half].push_back(x);
     }
-    block.end = {points_[0].size(), points_[1].size()};
+    const auto end = [](Samples& samples, Samples::Run& of) {
+      of.end = {samples.points[0].size(), samples.points[1].size()};
+      if (of.end != of.begin) samples.runs.push_back(of);
+    };
+    end(all_, run);
+    end(few_, few);
   }
 }
 
@@ -85,16 +99,11 @@ const Voxels::Block* Voxels::blockAt(const Point& x) const {
 }
 
 Point Voxels::point(double part) const {
-  const auto& points = points_[points_[0].size() < points_[1].size()];
+  const auto& points = all_.points[all_.points[0].size() < all_.points[1].size()];
   return points[static_cast<std::size_t>(part * static_cast<double>(points.size()))].cast<double>();
 }
 
-double Voxels::outsideBy(const Point& x) const {
-  const Block* block = blockAt(x);
-  return block ? std::max(0.0, -block->distance - (x - block->centre).norm()) : 0;
-}
-
-Voxels::Shared Voxels::shared(const Pose& pose, std::size_t stride) const {
+Voxels::Shared Voxels::shared(const Pose& pose, const Samples& samples) const {
   // Into the lattice of the original; in single precision, which is far finer than the cells. Plain numbers:
   // with sanitizers Eigen's products would take most of the packer's time.
   Eigen::Matrix<float, 4, 3> to;
@@ -102,41 +111,39 @@ Voxels::Shared Voxels::shared(const Pose& pose, std::size_t stride) const {
       ((pose.shift - origin_) / spacing_).transpose().cast<float>();
   const float* const rows = to.data();
   const Point extent = Point(size_[0], size_[1], size_[2]) * spacing_;
+  const float sizes[] = {static_cast<float>(size_[0]), static_cast<float>(size_[1]),
+                         static_cast<float>(size_[2])};
   const auto hit = [&](const Eigen::Vector3f& point) {
     const float* const x = point.data();
     Index at;
+    bool within = true;  // without branches, which no processor foresees
     for (int k = 0; k < 3; ++k) {
       const float* const row = rows + 4 * k;
       const float along = row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3];
-      if (!(along >= 0 && along < static_cast<float>(size_[k]))) return false;
-      at[k] = static_cast<std::uint32_t>(along);
+      within &= along >= 0 && along < sizes[k];
+      at[k] = static_cast<std::uint32_t>(static_cast<std::int64_t>(along));
     }
-    return isInside(bit(at));
+    return within && isInside(bit(at));
   };
-  std::size_t hits[2] = {}, looked[2] = {};
-  for (const Block& block : blocks_) {
-    const Point centre = pose.apply(block.centre), corner = centre - origin_;
-    const bool outside = (corner.array() < -reach_).any() || ((extent - corner).array() < -reach_).any();
-    const Block* there = outside ? nullptr : blockAt(centre);
+  std::size_t hits[2] = {};
+  for (const Samples::Run& run : samples.runs) {
+    const Point centre = pose.apply(run.centre), corner = centre - origin_;
+    if ((corner.array() < -reach_).any() || ((extent - corner).array() < -reach_).any()) continue;
+    const Block* there = blockAt(centre);
     const double clear = there ? std::abs(there->distance) - (centre - there->centre).norm() - reach_ : 0;
+    // Cells are rounded to one side or the other within a cell's diagonal of the surface.
+    if (clear > std::sqrt(3.0) * spacing_) {
+      for (int half = 0; there->distance > 0 && half < 2; ++half) hits[half] += run.end[half] - run.begin[half];
+      continue;
+    }
     for (int half = 0; half < 2; ++half) {
-      const std::size_t first = (block.begin[half] + stride - 1) / stride * stride;
-      if (first >= block.end[half]) continue;
-      const std::size_t count = (block.end[half] - first + stride - 1) / stride;
-      looked[half] += count;
-      if (outside) continue;
-      // Cells are rounded to one side or the other within a cell's diagonal of the surface.
-      if (clear > std::sqrt(3.0) * spacing_) {
-        if (there->distance > 0) hits[half] += count;
-        continue;
-      }
-      for (std::size_t i = first; i < block.end[half]; i += stride) hits[half] += hit(points_[half][i]);
+      for (std::size_t i = run.begin[half]; i < run.end[half]; ++i) hits[half] += hit(samples.points[half][i]);
     }
   }
   double fraction[2] = {};
   for (int half = 0; half < 2; ++half) {
-    if (looked[half] > 0)
-      fraction[half] = static_cast<double>(hits[half]) / static_cast<double>(looked[half]);
+    const std::size_t looked = samples.points[half].size();
+    if (looked > 0) fraction[half] = static_cast<double>(hits[half]) / static_cast<double>(looked);
   }
   return {(fraction[0] + fraction[1]) / 2, std::abs(fraction[0] - fraction[1]) / 2};
 }

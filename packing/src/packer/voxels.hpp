@@ -31,24 +31,34 @@ class Voxels {
     double error = 0;     ///< standard error of it: half of the difference of two halves of the points
   };
 
-  /// Returns what the solid shares with its copy, by every `stride`-th point.
-  Shared shared(const Pose& pose, std::size_t stride = 1) const;
+  /// Returns what the solid shares with its copy.
+  Shared shared(const Pose& pose) const { return shared(pose, all_); }
+
+  /// The same by few of the points, which is less exact.
+  Shared roughlyShared(const Pose& pose) const { return shared(pose, few_); }
 
   /// Returns one of the points inside; `part` is in [0, 1). There must be one.
   Point point(double part) const;
 
-  /// Returns a length by which x is at least outside of the solid, or 0 if that is not known.
-  double outsideBy(const Point& x) const;
-
  private:
   using Index = std::array<std::uint32_t, 3>;
 
-  /// This is a cube of cells with its points. The points of a copy's block that lands far from the surface
-  /// need not be looked at one by one.
+  /// This is a cube of cells. The points of a copy's block that lands far from the surface need not be looked
+  /// at one by one.
   struct Block {
     Point centre;
     double distance = 0;  ///< of its middle from the surface; negative outside
-    std::array<std::size_t, 2> begin{}, end{};
+  };
+
+  /// Holds points inside, in two halves, in the order of blocks.
+  struct Samples {
+    /// The points of a block; there are no others in it.
+    struct Run {
+      Point centre;
+      std::array<std::size_t, 2> begin{}, end{};
+    };
+    std::array<std::vector<Eigen::Vector3f>, 2> points;
+    std::vector<Run> runs;
   };
 
   std::size_t bit(const Index& at) const {
@@ -57,6 +67,7 @@ class Voxels {
   bool isInside(std::size_t bit) const { return inside_[bit / 8] >> bit % 8 & 1; }
   void setInside(std::size_t bit) { inside_[bit / 8] |= static_cast<std::uint8_t>(1 << bit % 8); }
   const Block* blockAt(const Point& x) const;
+  Shared shared(const Pose& pose, const Samples& samples) const;
 
   Point origin_;
   double spacing_ = 1;
@@ -65,7 +76,7 @@ class Voxels {
   std::vector<Block> blocks_;
   // A bit for each cell. Eight cells along x make a byte and belong to one block, so that threads share none.
   std::vector<std::uint8_t> inside_;
-  std::array<std::vector<Eigen::Vector3f>, 2> points_;  // those inside, in two halves, in the order of blocks
+  Samples all_, few_;
 };
 
 }  // namespace innersphere

@@ -21,7 +21,8 @@ TEST(DualSimplex, EqualsADenseSearch) {
   std::uniform_real_distribution<double> unit(-1, 1);
   constexpr double kRounding = 1e-6;  // of the functions
   for (int round = 0; round < 30; ++round) {
-    DualSimplex program(0.5);
+    DualSimplex program;
+    program.restart(0.5);
     std::vector<std::pair<double, Point>> functions;
     for (int k = 0; k < 2 + round % 9; ++k) {
       const Point gradient = Point(unit(random), unit(random), unit(random)).normalized();

@@ -1,0 +1,74 @@
+// Finds the balls of two placements that meet.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "packer/voxels.hpp"
+
+namespace innersphere {
+
+/// Holds balls in binary trees of bounding balls, one for each size of ball: a large ball would make the nodes
+/// above it large.
+class BallTrees {
+ public:
+  explicit BallTrees(std::span<const Ball> balls);
+
+  /// Calls meet(i, j, way, distance) for each ball i that meets ball j once it is moved; `way` leads from the
+  /// centre of j to that of i.
+  template <class Meet>
+  void forMeeting(const Pose& pose, Meet&& meet) const {
+    for (std::uint32_t a : roots_) {
+      for (std::uint32_t b : roots_) visit(pose, a, pose.apply(nodes_[a].bounds.centre), b, meet);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLeaf = 4;
+
+  struct Node {
+    Ball bounds;
+    std::uint32_t begin = 0, end = 0;  ///< its balls
+    std::uint32_t second = 0;          ///< child, the first one follows the node; a leaf has none
+  };
+  struct Member {
+    Ball ball;
+    std::uint32_t index;  ///< as it was given
+  };
+
+  void build(std::uint32_t begin, std::uint32_t end);
+
+  template <class Meet>
+  void visit(const Pose& pose, std::uint32_t moved, const Point& at, std::uint32_t other, Meet& meet) const {
+    const Node &a = nodes_[moved], &b = nodes_[other];
+    const double reach = a.bounds.radius + b.bounds.radius;
+    if ((at - b.bounds.centre).squaredNorm() >= reach * reach) return;
+    if (a.second == 0 && b.second == 0) {
+      meetInLeaves(pose, a, b, meet);
+    } else if (b.second == 0 || (a.second > 0 && a.bounds.radius > b.bounds.radius)) {
+      for (std::uint32_t child : {moved + 1, a.second})
+        visit(pose, child, pose.apply(nodes_[child].bounds.centre), other, meet);
+    } else {
+      for (std::uint32_t child : {other + 1, b.second}) visit(pose, moved, at, child, meet);
+    }
+  }
+
+  template <class Meet>
+  void meetInLeaves(const Pose& pose, const Node& a, const Node& b, Meet& meet) const {
+    for (std::uint32_t i = a.begin; i < a.end; ++i) {
+      const Point x = pose.apply(members_[i].ball.centre);
+      for (std::uint32_t j = b.begin; j < b.end; ++j) {
+        const Point way = x - members_[j].ball.centre;
+        const double reach = members_[i].ball.radius + members_[j].ball.radius, squared = way.squaredNorm();
+        if (squared < reach * reach) meet(members_[i].index, members_[j].index, way, std::sqrt(squared));
+      }
+    }
+  }
+
+  std::vector<Member> members_;
+  std::vector<Node> nodes_;  // depth first
+  std::vector<std::uint32_t> roots_;
+};
+
+}  // namespace innersphere
