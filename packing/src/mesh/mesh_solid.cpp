@@ -37,8 +37,9 @@ ClosestPoint MeshSolid::closestPoint(const Vec3d& p, double cutoff) const {
 
 bool MeshSolid::contains(const Vec3d& p) const {
   if (!holds(bounds_, p)) return false;
-  if (count_once_) return winding_.windingNumber(p) > 0.5;
-  return contains(p, *tree_.closest(p, std::numeric_limits<double>::infinity()).triangle);
+  const Triangle* nearest =
+      count_once_ ? nullptr : tree_.closest(p, std::numeric_limits<double>::infinity()).triangle;
+  return nearest ? contains(p, *nearest) : winding_.windingNumber(p) > 0.5;
 }
 
 bool MeshSolid::contains(const Vec3d& p, const Triangle& nearest) const {

@@ -29,7 +29,8 @@ void BallTrees::build(std::uint32_t begin, std::uint32_t end) {
   Node node{{(lower + upper) / 2, 0}, begin, end, 0};
   for (std::uint32_t i = begin; i < end; ++i) {
     const Ball& ball = members_[i].ball;
-    node.bounds.radius = std::max(node.bounds.radius, (ball.centre - node.bounds.centre).norm() + ball.radius);
+    node.bounds.radius =
+        std::max(node.bounds.radius, (ball.centre - node.bounds.centre).norm() + ball.radius);
   }
   node.bounds.radius *= 1 + 1e-12;  // rounding
   const std::size_t self = nodes_.size();

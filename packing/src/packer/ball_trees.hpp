@@ -1,6 +1,7 @@
 // Finds the balls of two placements that meet.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,8 +10,8 @@
 
 namespace innersphere {
 
-/// Holds balls in binary trees of bounding balls, one for each size of ball: a large ball would make the nodes
-/// above it large.
+/// Holds balls in binary trees of bounding balls, one for each size of ball: a large ball would make the
+/// nodes above it large.
 class BallTrees {
  public:
   explicit BallTrees(std::span<const Ball> balls);

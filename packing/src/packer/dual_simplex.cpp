@@ -34,8 +34,7 @@ void DualSimplex::restart(double half) {
 
 void DualSimplex::add(double value, const Point& gradient) {
   const auto slope = [&](int k) { return -rounded(gradient[k], 1); };
-  rows_.push_back(
-      {Eigen::Vector4d(1, slope(0), slope(1), slope(2)), rounded(value, unit_)});
+  rows_.push_back({Eigen::Vector4d(1, slope(0), slope(1), slope(2)), rounded(value, unit_)});
   if (size() == 1) {
     start();
     return;

@@ -180,8 +180,8 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
     double distance = near.distance + width / 2;
     // Overlaps grow about as the square of their depth.
     const Step& other = far.share.fraction > 0 ? far : before;
-    const double guess = near.distance + (aim - near.root()) / (other.root() - near.root()) *
-                                             (other.distance - near.distance);
+    const double guess =
+        near.distance + (aim - near.root()) / (other.root() - near.root()) * (other.distance - near.distance);
     if (!halve && guess > near.distance && guess < far.distance) distance = guess;
     const Step now = look(distance, near.share.fraction);
     if (now.share.fraction > target) {

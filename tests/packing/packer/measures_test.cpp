@@ -132,6 +132,9 @@ TEST(PackerMeasures, SampledOverlapOfCubesIsTheirs) {
     const auto found = voxels.shared(poseOf(Eigen::AngleAxisd::Identity(), centre, shift / container.side()));
     const double exact = (1 - shift[0]) * (1 - shift[1]) * (1 - shift[2]);
     EXPECT_NEAR(found.fraction / exact, 1, 0.01) << shift.transpose();
+    const auto roughly =
+        voxels.roughlyShared(poseOf(Eigen::AngleAxisd::Identity(), centre, shift / container.side()));
+    EXPECT_NEAR(roughly.fraction / exact, 1, 0.05) << shift.transpose();
   }
   // Turned by 45 degrees about z, a corner of the copy reaches as deep as its diagonal says.
   const double depth = 0.3;

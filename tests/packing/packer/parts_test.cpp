@@ -5,8 +5,11 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "mesh/triangle.hpp"
+#include "packer/ball_trees.hpp"
 #include "packer/cells.hpp"
 #include "packer/dual_simplex.hpp"
 #include "packer/near_balls.hpp"
@@ -15,6 +18,40 @@
 
 namespace innersphere::test {
 namespace {
+
+// Balls of all sizes, some of them in one place, and a moved copy of them: against all pairs.
+TEST(BallTrees, FindAllPairsThatMeet) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto point = [&] { return Point(unit(random), unit(random), unit(random)); };
+  for (const std::size_t count : {1, 2, 5, 300}) {
+    std::vector<Ball> balls;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Point centre = i % 7 == 6 ? balls.back().centre : point();
+      balls.push_back({centre, 0.2 * std::pow(unit(random), 4)});
+    }
+    const BallTrees trees(balls);
+    for (int round = 0; round < 20; ++round) {
+      Pose pose;
+      pose.rotation = Eigen::AngleAxisd(3 * unit(random), (point() - Point::Constant(0.5)).normalized())
+                          .toRotationMatrix();
+      pose.shift = point() - pose.rotation * point();
+      std::set<std::pair<std::size_t, std::size_t>> expected, found;
+      for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t j = 0; j < count; ++j) {
+          const double apart = (pose.apply(balls[i].centre) - balls[j].centre).norm();
+          if (apart < balls[i].radius + balls[j].radius) expected.emplace(i, j);
+        }
+      }
+      trees.forMeeting(pose, [&](std::size_t i, std::size_t j, const Point& way, double distance) {
+        EXPECT_TRUE(found.emplace(i, j).second) << i << " and " << j << " twice";
+        EXPECT_NEAR((pose.apply(balls[i].centre) - balls[j].centre - way).norm(), 0, 1e-12);
+        EXPECT_NEAR(way.norm(), distance, 1e-12);
+      });
+      EXPECT_EQ(found, expected) << count << " balls, round " << round;
+    }
+  }
+}
 
 TEST(DualSimplex, EqualsADenseSearch) {
   std::mt19937_64 random(3);
