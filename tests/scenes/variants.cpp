@@ -48,7 +48,7 @@ const std::vector<Variant>& variants() {
                                            {"maze"},
                                            {"chazelle"},
                                            {"pile", 0, 0, 0, "", kBullet, 3},
-                                           {"large-pile"},
+                                           {"large-pile", 0, 0, 0, "", kBullet, 3},
                                            {"arch"},
                                            {"arch-thin"},
                                            {"dominoes"},
