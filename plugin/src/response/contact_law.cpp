@@ -15,10 +15,10 @@ constexpr btScalar kStiffness = 18, kDamping = 4;
 /// Depth at which that stiffness has doubled, in sizes of the smaller body: what carries many times its own
 /// mass needs more than what lies still.
 constexpr btScalar kStiffening = btScalar(0.002);
-/// The same in a chain. What its links do together, ten iterations change by a fifth; so a start from the last
-/// impulse lags behind the motion and drives it on. Where a spring is stiffer by kHeavy, as it bears several
-/// links, the solver starts with what that bears now. Then what moves about a load meets the slope of the law,
-/// which must not be steeper than this for links to come to rest; if it is much less, they sag.
+/// The same in a chain, where what all links do together is changed by ten iterations by a fifth only: a
+/// start from the last impulse lags behind the motion and drives it on. A spring that is stiffer by kHeavy
+/// bears several links, and the solver starts with what it bears now. Then the law must not be steeper than
+/// this for links to come to rest, nor much less, or they sag.
 constexpr btScalar kChainStiffness = 31, kChainStiffening = btScalar(0.005), kHeavy = btScalar(1.5);
 /// Fastest push, in sizes of the body per second.
 constexpr btScalar kFastest = btScalar(0.5);
@@ -106,9 +106,9 @@ ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std
   for (const ContactPatch& other : patches)
     area += other.area * btMax(btScalar(0), patch.normal.dot(other.normal));
   const bool in_chain = of_links_ && isRound(patches);
-  const btScalar stiffness = defaultSpring()
-                                 ? (in_chain ? kChainStiffness : kStiffness) * mass_ / (time_step_ * time_step_)
-                                 : given_stiffness_ * area;
+  const btScalar stiffness =
+      defaultSpring() ? (in_chain ? kChainStiffness : kStiffness) * mass_ / (time_step_ * time_step_)
+                      : given_stiffness_ * area;
   const btScalar share = area > 0 ? patch.area / (area * btScalar(patch.count)) : btScalar(0);
   OfPatch law;
   law.law_ = this;

@@ -7,7 +7,8 @@
 namespace innersphere::test {
 namespace {
 
-// Balls of a row touch two others at most, each in one round place. The ball in the middle of a heap does not.
+// Balls of a row touch two others at most, each in one round place. The ball in the middle of a heap does
+// not.
 TEST(ChainLaw, IsStifferAndLessSteepThanOfAHeap) {
   constexpr double kStep = 1.0 / 60, kRadius = 0.5, kMass = 1;
   for (const bool heap : {false, true}) {
@@ -31,7 +32,8 @@ TEST(ChainLaw, IsStifferAndLessSteepThanOfAHeap) {
       const double depth = -double(point.getDistance()) / kRadius;
       ASSERT_GT(depth, 1e-4);
       const double expected = heap ? 18 * (1 + depth / 0.002) : 31 * (1 + depth / 0.005);
-      EXPECT_NEAR(double(point.m_combinedContactStiffness1) * kStep * kStep / kMass, expected, 0.01 * expected);
+      EXPECT_NEAR(double(point.m_combinedContactStiffness1) * kStep * kStep / kMass, expected,
+                  0.01 * expected);
       ++found;
     }
     EXPECT_EQ(found, 1);
