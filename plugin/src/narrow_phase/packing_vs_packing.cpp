@@ -6,6 +6,10 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
+bool isOfSurfaces(SearchPass pass) {
+  return pass == SearchPass::surfaces || pass == SearchPass::nearby;
+}
+
 /// By how much spheres without volume-true radii are enlarged to fill their solid [m].
 btScalar gapsOf(const PackingShape& shape, const Prefix& prefix) {
   return prefix.volume_true == nullptr ? prefix.inset() * shape.getLocalScaling().x() : btScalar(0);
@@ -92,7 +96,7 @@ PairQuery PackingVsPacking::makeQuery(SearchPass pass, const ContactSettings& me
   query.margin = a_->getMargin() + b_->getMargin();
   query.prefix_a = static_cast<std::uint32_t>(measure.prefix_a->count);
   query.prefix_b = static_cast<std::uint32_t>(measure.prefix_b->count);
-  if (pass == SearchPass::surfaces || pass == SearchPass::nearby) {
+  if (isOfSurfaces(pass)) {
     query.a = &measure.prefix_a->searchModel();
     query.b = &measure.prefix_b->searchModel();
     query.margin += pass == SearchPass::nearby ? halfThickness() : measure.separation;
@@ -116,7 +120,7 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
 
   const btMatrix3x3& reference = now_.a.getBasis();
   SearchPass next = SearchPass::none;
-  if (pass == SearchPass::surfaces || pass == SearchPass::nearby) {
+  if (isOfSurfaces(pass)) {
     const Bodies bodies(*this, *search_);
     if (pass == SearchPass::surfaces) {
       selectSamples(contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), reference, memory.patches,
@@ -142,7 +146,7 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
     volumePatches(contacts, search_->spacing, reference, memory.patches);
     overlap_ = result.overlaps[index];
   }
-  on_surfaces = pass == SearchPass::surfaces || pass == SearchPass::nearby;
+  on_surfaces = isOfSurfaces(pass);
   memory.noteSearch(now_);
   memory.noteDepths(now_, search_->separation);
   sweep_.finish(memory.patches);
