@@ -83,12 +83,17 @@ inline Real lens(Real r1, Real r2, Real d) {
   return pi * s * s * (d * d + 2 * d * (r1 + r2) - 3 * (r1 - r2) * (r1 - r2)) / (12 * d);
 }
 
-inline bool sameEstimate(const OverlapErrors::Estimate& a, const OverlapErrors::Estimate& b) {
+inline bool sameErrors(const std::vector<OverlapErrors::AtDepth>& a,
+                       const std::vector<OverlapErrors::AtDepth>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const OverlapErrors::AtDepth& one, const OverlapErrors::AtDepth& other) {
                       return one.depth == other.depth && one.error.mean == other.error.mean &&
                              one.error.bound == other.error.bound;
                     });
+}
+
+inline bool sameEstimate(const OverlapErrors::Estimate& a, const OverlapErrors::Estimate& b) {
+  return sameErrors(a.copies, b.copies) && a.thickest == b.thickest && sameErrors(a.planes, b.planes);
 }
 
 inline bool sameBytes(const Packing& a, const Packing& b) {

@@ -44,18 +44,21 @@ std::size_t stepsOf(const PairQuery& query) {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr ExpectedError kUnknown{kNan, kNan};
 
-/// The errors that a packing gives for an overlap of this volume and depth; NaN if it gives none.
-ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, Estimator estimator, double volume,
-                      double depth) {
+/// The errors that a packing, scaled, gives for an overlap; NaN if it gives none.
+ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, double scale, Estimator estimator,
+                      const Overlap& found) {
   const OverlapErrors& errors = packing.overlap_errors;
   const OverlapErrors::Prefix* best = nullptr;
   for (const OverlapErrors::Prefix& candidate : errors.prefixes) {
     if (candidate.count <= prefix) best = &candidate;
   }
-  const double fraction = volume / packing.solid.volume;
+  const double size = scale * std::cbrt(packing.solid.volume);
+  const double fraction = found.volume / (size * size * size);
   if (!best || !(fraction > 0) || fraction < errors.shallowest) return kUnknown;
+  // Infinite if all spheres that meet are inside one another: such lenses have no rim.
+  const double thickness = found.volume / found.stiffness;
   return expectedError(estimator == Estimator::raw ? best->raw : best->volume_true,
-                       depth / std::cbrt(packing.solid.volume));
+                       overlapDepth(found.volume, found.area) / size, thickness / size);
 }
 
 double worse(double a, double b) {
@@ -69,9 +72,8 @@ ExpectedError expectedError(const PairQuery& query, Estimator estimator, const O
                       prefix_b = limitOf(query.b, query.prefix_b);
   if (estimator == Estimator::surface) return {0, 0};
   if (found.area == Vec3d{} && found.energy == 0) return kUnknown;
-  const double depth = overlapDepth(found.volume, found.area);
   const auto of = [&](const CollisionModel& model, std::uint32_t prefix, double scale) {
-    return errorOf(model.packing(), prefix, estimator, found.volume / (scale * scale * scale), depth / scale);
+    return errorOf(model.packing(), prefix, scale, estimator, found);
   };
   const ExpectedError a = of(*query.a, prefix_a, query.placement_a.scale),
                       b = of(*query.b, prefix_b, query.placement_b.scale);

@@ -84,16 +84,28 @@ double overlapDepth(double volume, const Vec3d& area);
 /// that walls lie along walls. They share 0.001 to 45 % of the volume. Spheres err at surfaces, so errors
 /// depend on how deep an overlap is, whatever its volume: a layer is as far off as a corner that is as deep.
 /// Depth is what the spheres find, not the truth, which a query does not know.
+///
+/// Copies of a thin solid are thin: they do not tell how well its spheres fill what is deep in a thick body.
+/// So the solid is also cut by planes, which are as thick as any.
 struct OverlapErrors {
   /// Holds the errors of kOverlapErrorPoses poses, next to each other in depth: a limit of 95 % for the mean
-  /// of as many others (Student's t), and the largest one, which one more pose exceeds with a probability of
-  /// 1 / (kOverlapErrorPoses + 1), whatever the distribution.
+  /// of as many others that are all of one kind (Student's t, with the variance between kinds), and the
+  /// largest one, which one more pose exceeds with a probability of 1 / (kOverlapErrorPoses + 1), whatever
+  /// the distribution.
   struct AtDepth {
     double depth = 0;     ///< See overlapDepth(), relative to the cube root of the solid's volume.
     ExpectedError error;  ///< The errors there.
   };
-  /// Holds the errors by rising depth. Empty if the spheres find next to nothing.
-  using Estimate = std::vector<AtDepth>;
+  /// Holds the errors with one kind of radii, by rising depth.
+  struct Estimate {
+    std::vector<AtDepth> copies;  ///< Empty if the spheres find next to nothing.
+    /// How thick the lenses of copies are at most: an overlap's volume over its stiffness, relative to the
+    /// cube root of the solid's volume. Thicker ones are with the larger spheres of a thick body.
+    double thickest = 0;
+    /// The errors of the solid cut by planes, times the root of two: the other body's are not smaller. Empty
+    /// if the surface is not closed.
+    std::vector<AtDepth> planes;
+  };
   /// Holds the errors of one prefix.
   struct Prefix {
     std::uint32_t count = 0;  ///< The length of the prefix, one that has volume-true radii.
@@ -156,7 +168,8 @@ const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count
 
 /// Returns the errors to expect at a depth that is relative to the cube root of the solid's volume. Between
 /// two depths of the estimate the logarithms are linear; beyond the first and the last their errors hold.
-ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth);
+/// Where lenses have a larger `thickness` than Estimate::thickest, those of planes count if they are smaller.
+ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness = 0);
 
 /// Returns the coverage of the longest measured prefix that is not longer than `count`, or null if there is
 /// none.

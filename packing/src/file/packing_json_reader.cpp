@@ -144,10 +144,21 @@ std::vector<Coverage> coverageOf(const Entry& entry) {
   return prefixes;
 }
 
-OverlapErrors::Estimate estimateOf(const Entry& entry) {
-  OverlapErrors::Estimate estimate;
+std::vector<OverlapErrors::AtDepth> errorsOf(const Entry& entry) {
+  std::vector<OverlapErrors::AtDepth> rows;
   for (const Entry& row : entry.items())
-    estimate.push_back({row["depth"].number(), {row["mean"].number(), row["bound"].number()}});
+    rows.push_back({row["depth"].number(), {row["mean"].number(), row["bound"].number()}});
+  return rows;
+}
+
+/// Returns the errors of a prefix with one kind of radii. The first files know nothing of planes.
+OverlapErrors::Estimate estimateOf(const Entry& prefix, const char* radii, const char* radii_of_planes) {
+  OverlapErrors::Estimate estimate{errorsOf(prefix[radii]), 0, {}};
+  if (prefix.has(radii_of_planes)) {
+    const Entry planes = prefix[radii_of_planes];
+    estimate.thickest = planes["thicker_than"].number();
+    estimate.planes = errorsOf(planes["errors"]);
+  }
   return estimate;
 }
 
@@ -157,8 +168,8 @@ OverlapErrors overlapErrorsOf(const Entry& entry) {
   errors.shallowest = entry["shallowest"].number();
   errors.sampling_error = entry["sampling_error"].number();
   for (const Entry& prefix : entry["prefixes"].items()) {
-    errors.prefixes.push_back(
-        {prefix["count"].index(), estimateOf(prefix["raw"]), estimateOf(prefix["volume_true"])});
+    errors.prefixes.push_back({prefix["count"].index(), estimateOf(prefix, "raw", "raw_planes"),
+                               estimateOf(prefix, "volume_true", "volume_true_planes")});
   }
   return errors;
 }

@@ -76,16 +76,22 @@ json coverageEntry(const std::vector<Coverage>& prefixes) {
 }
 
 json overlapErrorsEntry(const OverlapErrors& errors) {
-  const auto entry = [](const OverlapErrors::Estimate& estimate) {
+  const auto rowsOf = [](const std::vector<OverlapErrors::AtDepth>& errors_by_depth) {
     json rows = json::array();
-    for (const OverlapErrors::AtDepth& at : estimate)
+    for (const OverlapErrors::AtDepth& at : errors_by_depth)
       rows.push_back({{"depth", at.depth}, {"mean", at.error.mean}, {"bound", at.error.bound}});
     return rows;
   };
+  const auto planesOf = [&](const OverlapErrors::Estimate& estimate) {
+    return json{{"thicker_than", estimate.thickest}, {"errors", rowsOf(estimate.planes)}};
+  };
   json prefixes = json::array();
   for (const OverlapErrors::Prefix& prefix : errors.prefixes) {
-    prefixes.push_back(
-        {{"count", prefix.count}, {"raw", entry(prefix.raw)}, {"volume_true", entry(prefix.volume_true)}});
+    prefixes.push_back({{"count", prefix.count},
+                        {"raw", rowsOf(prefix.raw.copies)},
+                        {"volume_true", rowsOf(prefix.volume_true.copies)},
+                        {"raw_planes", planesOf(prefix.raw)},
+                        {"volume_true_planes", planesOf(prefix.volume_true)}});
   }
   return {{"poses", errors.poses},
           {"shallowest", errors.shallowest},

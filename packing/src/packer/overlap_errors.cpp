@@ -9,6 +9,7 @@
 
 #include "common/steady_math.hpp"
 #include "packer/ball_trees.hpp"
+#include "packer/errors_by_depth.hpp"
 #include "packer/overlap_trials.hpp"
 
 namespace innersphere {
@@ -19,10 +20,6 @@ constexpr double kVoxels = 1 << 20;
 // Enough for 15 depths.
 constexpr std::size_t kTrials = 15 * kOverlapErrorPoses;
 
-// Student's t of 95 %, one-sided, with kOverlapErrorPoses - 1 degrees of freedom.
-constexpr double kStudent = 1.734;
-static_assert(kOverlapErrorPoses == 19);
-
 /// What two balls share, by the closed form of the lens.
 double lens(double r1, double r2, double d) {
   const double s = r1 + r2 - d;
@@ -31,17 +28,29 @@ double lens(double r1, double r2, double d) {
   return std::numbers::pi * s * s * (d * d + 2 * d * (r1 + r2) - 3 * (r1 - r2) * (r1 - r2)) / (12 * d);
 }
 
-/// What two balls share, summed over all pairs.
+/// What two balls share, summed over all pairs, or what a plane cuts off.
 struct Found {
-  double volume = 0;
-  Point area = Point::Zero();  // as of Overlap
+  double volume = 0, stiffness = 0;
+  Point area = Point::Zero();  // these as of Overlap
 
   /// Adds two balls whose centres are `way` apart, which is d long.
   void add(double r1, double r2, const Point& way, double d) {
     volume += lens(r1, r2, d);
     if (d <= std::abs(r1 - r2) || d >= r1 + r2) return;
     const double along = (d * d + r1 * r1 - r2 * r2) / (2 * d);
-    area += std::numbers::pi * (r1 * r1 - along * along) / d * way;
+    const double rim = std::numbers::pi * (r1 * r1 - along * along);
+    stiffness += rim;
+    area += rim / d * way;
+  }
+
+  /// Adds what a plane cuts off from a ball whose centre is `depth` below it.
+  void addCap(double radius, double depth, const Point& normal) {
+    if (depth <= -radius) return;
+    const double height = std::min(radius + depth, 2 * radius);
+    volume += std::numbers::pi / 3 * height * height * (3 * radius - height);
+    const double rim = std::numbers::pi * std::max(0.0, radius * radius - depth * depth);
+    stiffness += rim;
+    area += rim * normal;
   }
 };
 
@@ -64,6 +73,16 @@ class Prefix {
     return sums;
   }
 
+  Sums below(const PlaneCut& plane) const {
+    Sums sums;
+    for (std::size_t i = 0; i < volume_true_.size(); ++i) {
+      const double depth = plane.height - plane.normal.dot(balls_[i].centre);
+      sums.volume_true.addCap(volume_true_[i].radius, depth, plane.normal);
+      sums.raw.addCap(balls_[i].radius, depth, plane.normal);
+    }
+    return sums;
+  }
+
  private:
   static std::vector<Ball> withRadii(std::span<const Ball> balls, const VolumeTrueRadii& radii, double side) {
     std::vector<Ball> larger;
@@ -80,46 +99,11 @@ class Prefix {
 };
 
 /// What was found in one pose.
-OverlapErrors::AtDepth findingOf(const Found& found, double truth, double volume) {
+Finding findingOf(const Found& found, double truth, double volume, OverlapKind kind) {
   const double error = std::abs(found.volume - truth) / std::max(found.volume, truth);
   const double depth =
       found.volume > 0 ? overlapDepth(found.volume, {found.area[0], found.area[1], found.area[2]}) : 0;
-  return {depth / steady::pow(volume, 1.0 / 3), {error, error}};
-}
-
-/// Summarises findings that are next to each other in depth.
-OverlapErrors::AtDepth summaryOf(std::span<const OverlapErrors::AtDepth> findings) {
-  const auto count = static_cast<double>(findings.size());
-  double sum = 0, squares = 0, largest = 0, logarithms = 0;
-  for (const OverlapErrors::AtDepth& one : findings) {
-    const double error = one.error.mean;
-    sum += error;
-    squares += error * error;
-    largest = std::max(largest, error);
-    logarithms += steady::log2(one.depth);
-  }
-  const double mean = sum / count;
-  const double variance = std::max(0.0, squares - count * mean * mean) / (count - 1);
-  const double margin = kStudent * std::sqrt(2 * variance / count);  // the others' scatter, too
-  return {steady::pow(2, logarithms / count), {std::min(mean + margin, 1.0), largest}};
-}
-
-/// Cuts findings into runs of kOverlapErrorPoses by depth, as evenly spread as they are.
-OverlapErrors::Estimate estimateFrom(std::vector<OverlapErrors::AtDepth> findings) {
-  std::erase_if(findings, [](const OverlapErrors::AtDepth& one) { return !(one.depth > 0); });
-  std::sort(findings.begin(), findings.end(),
-            [](const OverlapErrors::AtDepth& a, const OverlapErrors::AtDepth& b) {
-              return a.depth != b.depth ? a.depth < b.depth : a.error.mean < b.error.mean;
-            });
-  const std::size_t runs = findings.size() / kOverlapErrorPoses;
-  OverlapErrors::Estimate estimate;
-  for (std::size_t i = 0; i < runs; ++i) {
-    const auto run = std::span(findings).subspan(i * findings.size() / runs, kOverlapErrorPoses);
-    const OverlapErrors::AtDepth summary = summaryOf(run);
-    // All may be equally deep, as where one sphere is inside another.
-    if (estimate.empty() || summary.depth > estimate.back().depth) estimate.push_back(summary);
-  }
-  return estimate;
+  return {depth / steady::pow(volume, 1.0 / 3), error, kind};
 }
 
 }  // namespace
@@ -128,11 +112,13 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
                                 const SurfaceSamples& samples, std::span<const Ball> balls,
                                 const std::vector<VolumeTrueRadii>& radii, double volume) {
   const Voxels voxels(container, volume, kVoxels);
-  const auto [trials, shallowest] = makeOverlapTrials(container, surface, samples, voxels, volume, kTrials);
+  const OverlapTrials made = makeOverlapTrials(container, surface, samples, voxels, volume, kTrials);
+  const std::vector<OverlapTrial>& trials = made.trials;
+  const std::vector<PlaneCut>& planes = made.planes;
   if (trials.size() < kOverlapErrorPoses) return {};
   OverlapErrors errors;
   errors.poses = static_cast<std::uint32_t>(trials.size());
-  errors.shallowest = shallowest;
+  errors.shallowest = made.shallowest;
   double squares = 0;
   for (const OverlapTrial& trial : trials) {
     const double relative = trial.truth.error / trial.truth.fraction;
@@ -141,14 +127,31 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
   errors.sampling_error = std::sqrt(squares / static_cast<double>(trials.size()));
   for (const VolumeTrueRadii& prefix : radii) {
     const Prefix spheres(balls, prefix, container.side());
-    std::vector<Prefix::Sums> sums(trials.size());
+    std::vector<Prefix::Sums> copies(trials.size()), cuts(planes.size());
     tbb::parallel_for(std::size_t{0}, trials.size(),
-                      [&](std::size_t i) { sums[i] = spheres.overlap(trials[i].pose); });
+                      [&](std::size_t i) { copies[i] = spheres.overlap(trials[i].pose); });
+    tbb::parallel_for(std::size_t{0}, planes.size(),
+                      [&](std::size_t i) { cuts[i] = spheres.below(planes[i]); });
     const auto estimate = [&](Found Prefix::Sums::*sum) {
-      std::vector<OverlapErrors::AtDepth> findings;
-      for (std::size_t i = 0; i < trials.size(); ++i)
-        findings.push_back(findingOf(sums[i].*sum, trials[i].truth.fraction * volume, volume));
-      return estimateFrom(std::move(findings));
+      OverlapErrors::Estimate result;
+      std::vector<Finding> findings;
+      for (std::size_t i = 0; i < trials.size(); ++i) {
+        const Found& found = copies[i].*sum;
+        findings.push_back(findingOf(found, trials[i].truth.fraction * volume, volume, trials[i].kind));
+        if (found.stiffness > 0)
+          result.thickest =
+              std::max(result.thickest, found.volume / found.stiffness / steady::pow(volume, 1.0 / 3));
+      }
+      result.copies = errorsByDepth(std::move(findings));
+      findings = {};
+      for (std::size_t i = 0; i < planes.size(); ++i) {
+        Finding one = findingOf(cuts[i].*sum, planes[i].truth * volume, volume, OverlapKind::any);
+        // A plane has no error, but the other body may have one as large.
+        one.error = std::min(std::numbers::sqrt2 * one.error, 1.0);
+        findings.push_back(one);
+      }
+      result.planes = errorsByDepth(std::move(findings));
+      return result;
     };
     errors.prefixes.push_back(
         {prefix.count, estimate(&Prefix::Sums::raw), estimate(&Prefix::Sums::volume_true)});

@@ -10,11 +10,11 @@
 
 namespace innersphere {
 
-/// Overlaps the solid with copies of itself at poses that are the same for every run, and compares the sums
-/// of lenses with the true volumes (see OverlapErrors). `surface` is the solid's, in the packing's frame,
-/// `samples` are points of it; `balls` and `radii` are a packing and its volume-true radii [m]; `volume` is
-/// the solid's, in units of the unit cube. Returns nothing if the solid cannot be overlapped often enough.
-/// Runs in the current TBB arena.
+/// Overlaps the solid with copies of itself and with planes that are the same for every run, and compares
+/// sums of lenses with the true volumes (see OverlapErrors). `surface` is the solid's, in the packing's
+/// frame, `samples` are points of it; `balls` and `radii` are a packing and its volume-true radii [m];
+/// `volume` is the solid's, in units of the unit cube. Returns nothing if the solid cannot be overlapped
+/// often enough. Runs in the current TBB arena.
 OverlapErrors findOverlapErrors(const Container& container, const Surface& surface,
                                 const SurfaceSamples& samples, std::span<const Ball> balls,
                                 const std::vector<VolumeTrueRadii>& radii, double volume);

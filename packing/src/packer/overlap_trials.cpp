@@ -67,6 +67,31 @@ class TrueOverlap {
 
   bool knowsSurface() const { return tree_.has_value(); }
 
+  /// The fraction of the solid that is below a plane. The surface must be known.
+  double below(const Point& normal, double height) const {
+    double sum = 0;
+    for (const SurfaceTree::Triangle& triangle : tree_->triangles()) {
+      // Seen from a point of the plane: so the part of the plane in the solid adds nothing.
+      Point corners[3];
+      double heights[3];
+      for (int k = 0; k < 3; ++k) {
+        corners[k] = scale_ * Point(triangle[k].x, triangle[k].y, triangle[k].z) + shift_ - height * normal;
+        heights[k] = normal.dot(corners[k]);
+      }
+      Point polygon[4];
+      int count = 0;
+      for (int k = 0; k < 3; ++k) {
+        const int next = (k + 1) % 3;
+        if (heights[k] < 0) polygon[count++] = corners[k];
+        if ((heights[k] < 0) == (heights[next] < 0)) continue;
+        const double part = heights[k] / (heights[k] - heights[next]);
+        polygon[count++] = corners[k] + part * (corners[next] - corners[k]);
+      }
+      for (int k = 2; k < count; ++k) sum += polygon[0].dot(polygon[k - 1].cross(polygon[k])) / 6;
+    }
+    return sum / volume_;
+  }
+
   /// The fraction of the solid, with all samples, or by triangles where it is shallow; `way` leads from the
   /// solid to the copy. It is about `expected`.
   Voxels::Shared at(const Pose& pose, const Point& way, double expected) const {
@@ -112,14 +137,15 @@ class TrueOverlap {
 struct Start {
   Eigen::Matrix3d turn;
   Point shift, way;
-  bool touches = false;  ///< no more than that: it is pushed in first
+  OverlapKind kind;  ///< if it is facing, it does no more than touch: it is pushed in first
 };
 
 /// The copy is turned at random, and a random point of it lies on one of the solid.
 Start anyStart(const Voxels& voxels, std::size_t number) {
   const Point places = random(number, 1);
   const Eigen::Matrix3d turn = rotation(random(number, 2)).toRotationMatrix();
-  return {turn, voxels.point(places[0]) - turn * voxels.point(places[1]), direction(random(number, 0))};
+  return {turn, voxels.point(places[0]) - turn * voxels.point(places[1]), direction(random(number, 0)),
+          OverlapKind::any};
 }
 
 /// A turn by some degrees about any axis.
@@ -133,7 +159,7 @@ Eigen::Quaterniond slightTurn(double part, const Point& axis) {
 Start nestedStart(const Voxels& voxels, std::size_t number) {
   const Point places = random(number, 1), middle = voxels.point(places[0]);
   const Eigen::Matrix3d turn = slightTurn(places[1], random(number, 2)).toRotationMatrix();
-  return {turn, middle - turn * middle, direction(random(number, 0))};
+  return {turn, middle - turn * middle, direction(random(number, 0)), OverlapKind::nested};
 }
 
 /// A face of the copy touches a face of the solid, but for some degrees.
@@ -151,7 +177,7 @@ Start facingStart(const SurfaceSamples& samples, std::size_t number) {
   const Eigen::Quaterniond facing = w > 1e-6 ? Eigen::Quaterniond(w, axis[0], axis[1], axis[2]).normalized()
                                              : Eigen::Quaterniond::Identity();
   const Eigen::Matrix3d turn = (slightTurn(places[2], random(number, 3)) * facing * any).toRotationMatrix();
-  return {turn, samples.points()[at] - turn * samples.points()[of], outwards, true};
+  return {turn, samples.points()[at] - turn * samples.points()[of], outwards, OverlapKind::facing};
 }
 
 /// Moves the copy away until both share about the fraction `target`, or leaves it there if they share less:
@@ -167,7 +193,8 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
     return Step{distance, overlap.roughlyAt(poseAt(distance), start.way, most)};
   };
   Step near = look(0, 1), far{std::numbers::sqrt3, {}};
-  for (double push = kFirstPush; start.touches && near.share.fraction < target && push < kLastPush;
+  const bool touches = start.kind == OverlapKind::facing;
+  for (double push = kFirstPush; touches && near.share.fraction < target && push < kLastPush;
        push *= kPushes) {
     far = near;
     near = look(-push, 1);
@@ -194,7 +221,14 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
   }
   const double share = near.share.fraction;
   const Pose pose = poseAt(near.distance);
-  return {pose, near.share.exact ? Voxels::Shared{share, 0} : overlap.at(pose, start.way, share)};
+  return {pose, near.share.exact ? Voxels::Shared{share, 0} : overlap.at(pose, start.way, share), start.kind};
+}
+
+/// A plane through a random point of the solid.
+PlaneCut cutSolid(const TrueOverlap& overlap, const Voxels& voxels, std::size_t number) {
+  const Point normal = direction(random(number, 4));
+  const double height = normal.dot(voxels.point(random(number, 5)[0]));
+  return {normal, height, overlap.below(normal, height)};
 }
 
 }  // namespace
@@ -204,7 +238,9 @@ OverlapTrials makeOverlapTrials(const Container& container, const Surface& surfa
                                 std::size_t count) {
   const TrueOverlap overlap(container, surface, voxels, volume);
   const double least = overlap.knowsSurface() ? kLeastByTriangles : kLeastBySamples;
-  OverlapTrials result{std::vector<OverlapTrial>(count), overlap.knowsSurface() ? kShallowest : least};
+  OverlapTrials result{std::vector<OverlapTrial>(count), std::vector<PlaneCut>(count / 3),
+                       overlap.knowsSurface() ? kShallowest : least};
+  if (!overlap.knowsSurface()) result.planes.clear();
   const auto start = [&](std::size_t i) {
     if (i % 3 == 0) return anyStart(voxels, i);
     return i % 3 == 1 || samples.empty() ? nestedStart(voxels, i) : facingStart(samples, i);
@@ -213,6 +249,8 @@ OverlapTrials makeOverlapTrials(const Container& container, const Surface& surfa
     const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     result.trials[i] = findTrial(overlap, start(i), least * steady::pow(kMostShared / least, part));
   });
+  tbb::parallel_for(std::size_t{0}, result.planes.size(),
+                    [&](std::size_t i) { result.planes[i] = cutSolid(overlap, voxels, i); });
   std::erase_if(result.trials, [](const OverlapTrial& trial) { return !(trial.truth.fraction > 0); });
   return result;
 }

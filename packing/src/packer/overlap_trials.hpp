@@ -1,4 +1,5 @@
-// Places copies of a solid so that they share given parts of it, and tells exactly how much they share.
+// Places copies of a solid so that they share given parts of it, cuts it by planes, and tells exactly how
+// much they share.
 #pragma once
 
 #include <cstddef>
@@ -11,24 +12,36 @@
 
 namespace innersphere {
 
+/// Says how a copy lies on the solid.
+enum class OverlapKind { any, nested, facing };
+
 /// Says where a copy is, and which part of the solid both share.
 struct OverlapTrial {
   Pose pose;
   Voxels::Shared truth;
+  OverlapKind kind;
 };
 
-/// Holds copies at poses that are the same for every run, by rising depth.
+/// Says which part of the solid a plane cuts off: where `normal` x is less than `height`.
+struct PlaneCut {
+  Point normal;
+  double height, truth;
+};
+
+/// Holds copies at poses that are the same for every run, by rising depth, and planes.
 struct OverlapTrials {
   std::vector<OverlapTrial> trials;
+  std::vector<PlaneCut> planes;
   double shallowest = 0;  ///< See OverlapErrors::shallowest.
 };
 
 /// Places `count` copies. Of each three one is turned at random, with a random point of it on one of the
 /// solid, one lies upon the solid and one has a face on a face, but for some degrees. Each moves until it is
 /// as deep as wanted: the logarithms of volumes are evenly spread. Overlaps of less than 1 % of the solid are
-/// found from `surface`, in the packing's frame, if it is closed, others from sample points. `samples` are
-/// points of the surface; without any no face lies on a face. `volume` is the solid's, in units of the unit
-/// cube. Runs in the current TBB arena.
+/// found from `surface`, in the packing's frame, if it is closed, others from sample points. If it is closed,
+/// there are a third as many planes through random points of the solid. `samples` are points of the surface;
+/// without any no face lies on a face. `volume` is the solid's, in units of the unit cube. Runs in the
+/// current TBB arena.
 OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface,
                                 const SurfaceSamples& samples, const Voxels& voxels, double volume,
                                 std::size_t count);

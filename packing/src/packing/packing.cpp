@@ -25,16 +25,27 @@ double overlapDepth(double volume, const Vec3d& area) {
   return volume / std::sqrt(dot(area, area) + face * face);
 }
 
-ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth) {
-  if (estimate.empty()) return {1, 1};
-  const auto next = std::find_if(estimate.begin(), estimate.end(),
+namespace {
+
+ExpectedError errorAt(const std::vector<OverlapErrors::AtDepth>& rows, double depth) {
+  if (rows.empty()) return {1, 1};
+  const auto next = std::find_if(rows.begin(), rows.end(),
                                  [depth](const OverlapErrors::AtDepth& at) { return at.depth > depth; });
-  if (next == estimate.begin()) return next->error;
+  if (next == rows.begin()) return next->error;
   const OverlapErrors::AtDepth& low = *std::prev(next);
-  if (next == estimate.end()) return low.error;
+  if (next == rows.end()) return low.error;
   const double part = steady::log2(depth / low.depth) / steady::log2(next->depth / low.depth);
   const auto between = [part](double a, double b) { return steady::pow(a, 1 - part) * steady::pow(b, part); };
   return {between(low.error.mean, next->error.mean), between(low.error.bound, next->error.bound)};
+}
+
+}  // namespace
+
+ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness) {
+  const ExpectedError copies = errorAt(estimate.copies, depth);
+  if (!(thickness > estimate.thickest)) return copies;
+  const ExpectedError planes = errorAt(estimate.planes, depth);
+  return {std::min(copies.mean, planes.mean), std::min(copies.bound, planes.bound)};
 }
 
 const Coverage* coverageOf(const Packing& packing, std::size_t count) {
@@ -95,15 +106,21 @@ void validateRadii(const std::vector<VolumeTrueRadii>& prefixes, std::size_t sph
   }
 }
 
-void validateEstimate(const OverlapErrors::Estimate& estimate) {
+void validateErrors(const std::vector<OverlapErrors::AtDepth>& rows) {
   double before = 0;
-  for (const OverlapErrors::AtDepth& at : estimate) {
+  for (const OverlapErrors::AtDepth& at : rows) {
     if (!std::isfinite(at.depth) || !std::isfinite(at.error.mean) || !std::isfinite(at.error.bound))
       notFinite("a number of the overlap errors");
     if (!(at.depth > before))
       throw Error(ErrorCode::bad_argument, "the depths of the overlap errors do not rise");
     before = at.depth;
   }
+}
+
+void validateEstimate(const OverlapErrors::Estimate& estimate) {
+  validateErrors(estimate.copies);
+  validateErrors(estimate.planes);
+  if (!std::isfinite(estimate.thickest)) notFinite("a number of the overlap errors");
 }
 
 void validateMeasures(const Packing& packing) {

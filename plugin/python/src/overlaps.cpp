@@ -268,10 +268,13 @@ nb::object expectedErrors(const SharedPacking& a, const SharedPacking& b, nb::ha
   using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig>;
   const auto volumes = nb::cast<Numbers>(given.attr("ravel")());
   const auto areas = nb::cast<Numbers>(as_float64(shared["area"], "area").attr("ravel")());
+  const auto stiffnesses = nb::cast<Numbers>(as_float64(shared["stiffness"], "stiffness").attr("ravel")());
   const auto energies = nb::cast<Numbers>(as_float64(shared["energy"], "energy").attr("ravel")());
-  if (areas.size() != 3 * volumes.size() || energies.size() != volumes.size())
-    throw Error(ErrorCode::bad_argument,
-                "there must be a volume, an area of three numbers, and an energy of each overlap");
+  if (areas.size() != 3 * volumes.size() || stiffnesses.size() != volumes.size() ||
+      energies.size() != volumes.size())
+    throw Error(
+        ErrorCode::bad_argument,
+        "there must be a volume, an area of three numbers, a stiffness and an energy of each overlap");
   PairQuery query;
   query.a = a.model.get();
   query.b = b.model.get();
@@ -284,6 +287,7 @@ nb::object expectedErrors(const SharedPacking& a, const SharedPacking& b, nb::ha
     Overlap found;
     found.volume = volumes.data()[i];
     found.area = {area[0], area[1], area[2]};
+    found.stiffness = stiffnesses.data()[i];
     found.energy = energies.data()[i];
     errors.push_back(expectedError(query, by, found));
   }
@@ -425,7 +429,8 @@ area        sum of the areas of their rims, along the lines from A's centres to 
                      "typing.Literal['volume_true', 'raw', 'surface'] = 'volume_true') -> typing.Any"),
              R"(How far off volumes are to be expected that Query.overlap() found for two packings.
 
-shared: what Query.overlap() returned, or else something with shared["volume"] [m^3], shared["area"] [m^2] and shared["energy"] [m^4].
+shared: what Query.overlap() returned, or else something with shared["volume"] [m^3], shared["area"] and shared["stiffness"] [m^2] and
+shared["energy"] [m^4].
 estimator: with which they were found.
 
 Returns two fields of the same shape, parts of the larger of the found and the true volume, from 0 to 1:
@@ -433,7 +438,7 @@ Returns two fields of the same shape, parts of the larger of the found and the t
 mean   expected |error|
 bound  what |error| exceeds in 1 of 20 cases: else the truth lies between volume (1 - bound) and volume / (1 - bound)
 
-Of A and B the worse one counts, as each was measured with copies of itself when it was packed. nan where nothing
+Of A and B the worse one counts, as each was measured with copies of itself and cut by planes when it was packed. nan where nothing
 overlaps, nothing so shallow was measured or area and energy are 0, as with want="volume", and for packings without
 overlap_errors; 0 with "surface".)");
   module.def("cuda_device_count", &cudaDeviceCount, "The number of CUDA devices that answer.");

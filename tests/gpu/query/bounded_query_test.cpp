@@ -33,8 +33,10 @@ class BoundedQueryConformance : public Conformance {
     OverlapErrors::Estimate result;
     for (const double depth : {0.01, 0.03, 0.08, 0.2, 0.5}) {
       const double mean = at_a_hundredth * 0.01 / depth;
-      result.push_back({depth, {mean, 2 * mean}});
+      result.copies.push_back({depth, {mean, 2 * mean}});
     }
+    result.thickest = 1e9;
+    result.planes = {{0.1, {0.01, 0.05}}};
     return result;
   }
 
@@ -101,10 +103,12 @@ TEST_P(BoundedQueryConformance, ErrorIsThatOfThePackings) {
   // Depth is relative to the scaled solid; of two bodies the worse one counts; beyond the last depth its
   // errors hold.
   query.placement_b.scale = 3;
+  double stiffness = 1;
   const auto errorOf = [&](double volume, double area, Estimator estimator = Estimator::raw) {
     Overlap found;
     found.volume = volume;
     found.area = {0, 0.6 * area, -0.8 * area};
+    found.stiffness = stiffness;
     return expectedError(query, estimator, found);
   };
   // 0.1 deep for B, which is large and for which it is a thin layer.
@@ -118,6 +122,13 @@ TEST_P(BoundedQueryConformance, ErrorIsThatOfThePackings) {
   EXPECT_TRUE(std::isnan(errorOf(0.1 * 7, 1).mean));       // too shallow for B
   EXPECT_TRUE(std::isnan(errorOf(volume, 0).bound));       // as Want::volume leaves it
   EXPECT_EQ(errorOf(volume, area, Estimator::surface).bound, 0);
+  // Lenses that are thicker than those of copies are foretold by planes, for each body by itself.
+  stiffness = volume / (1e9 * std::cbrt(7.0)) / 2;
+  EXPECT_NEAR(errorOf(volume, area).mean, 0.04, 1e-9);  // not for B, which is larger
+  stiffness = 0;
+  EXPECT_NEAR(errorOf(volume, area).mean, 0.01, 1e-9);
+  EXPECT_NEAR(errorOf(volume, area).bound, 0.05, 1e-9);
+  EXPECT_NEAR(errorOf(1000, 0.1).mean, 0.4 * 0.01 / 0.5, 1e-9);  // copies are better there
   query.placement_b = at({50, 0, 0});
   EXPECT_TRUE(std::isnan(error(0, Estimator::raw).error));
   query.placement_b = at({0.2, 0.1, 0});

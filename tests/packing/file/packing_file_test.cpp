@@ -41,19 +41,26 @@ Packing somePacking(std::size_t n, unsigned seed = 1) {
   packing.quality = {0.8, 0.01, 0.02, 0.1 + 0.2};
   packing.coverage = {{2, 0.1, 0.2, 1.0 / 3, {1, -2, 1e-17}, 0.25}, {5, 0.01, 0.02, 0.03, {}, 0}};
   packing.overlap_errors = {
-      200, 1e-5, 1.0 / 3, {{2, {{1e-3, {0.5, 1.0 / 3}}, {0.1, {0.4, 0.6}}}, {{0.2, {1e-17, 0.7}}}}}};
+      200,
+      1e-5,
+      1.0 / 3,
+      {{2, {{{1e-3, {0.5, 1.0 / 3}}, {0.1, {0.4, 0.6}}}, 0.1 + 0.2, {}}, {{}, 0, {{0.2, {1e-17, 0.7}}}}}}};
   for (std::size_t i = 0; i < n; ++i) packing.mass_weights.push_back(1 + 1 / static_cast<float>(i + 3));
   packing.warnings = {"a \"part\" is empty", ""};
   packing.provenance = {"some \"mesh\".obj", "0123456789abcdef", "--spheres 5", "0.1.0"};
   return packing;
 }
 
-bool sameEstimate(const OverlapErrors::Estimate& a, const OverlapErrors::Estimate& b) {
+bool sameErrors(const std::vector<OverlapErrors::AtDepth>& a, const std::vector<OverlapErrors::AtDepth>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const OverlapErrors::AtDepth& one, const OverlapErrors::AtDepth& other) {
                       return one.depth == other.depth && one.error.mean == other.error.mean &&
                              one.error.bound == other.error.bound;
                     });
+}
+
+bool sameEstimate(const OverlapErrors::Estimate& a, const OverlapErrors::Estimate& b) {
+  return sameErrors(a.copies, b.copies) && a.thickest == b.thickest && sameErrors(a.planes, b.planes);
 }
 
 void expectSame(const Packing& a, const Packing& b) {
@@ -175,6 +182,21 @@ TEST(FilePacking, FilesWithoutTheLaterEntriesAreFine) {
   expectSame(fromJson(document.dump()), packing);
 }
 
+// Files of before planes were measured keep what they have.
+TEST(FilePacking, EstimatesWithoutPlanesAreRead) {
+  const Packing packing = somePacking(3);
+  nlohmann::json document = nlohmann::json::parse(toJson(packing));
+  nlohmann::json& prefix = document["errors_by_depth"]["prefixes"][0];
+  EXPECT_EQ(prefix.erase("raw_planes") + prefix.erase("volume_true_planes"), 2u);
+  const Packing read = fromJson(document.dump());
+  EXPECT_EQ(read.warnings, packing.warnings);
+  const OverlapErrors::Estimate &raw = read.overlap_errors.prefixes.at(0).raw,
+                                &had = packing.overlap_errors.prefixes.at(0).raw;
+  EXPECT_TRUE(sameErrors(raw.copies, had.copies));
+  EXPECT_TRUE(raw.planes.empty());
+  EXPECT_EQ(expectedError(raw, 0.1, 7).mean, expectedError(had, 0.1).mean);
+}
+
 // Their estimates of errors were means of four bins, then relative to the truth, then by volume: they are not
 // taken for what is written today.
 TEST(FilePacking, OldEstimatesAreLeftOutWithAWord) {
@@ -220,6 +242,10 @@ TEST(FilePacking, BadMeasuresAreRefused) {
   refused("/errors_by_depth/prefixes/0/raw/0/depth", 0);
   refused("/errors_by_depth/prefixes/0/raw/1/mean", {0.1});
   refused("/errors_by_depth/prefixes/0/volume_true/0/bound", nullptr);
+  refused("/errors_by_depth/prefixes/0/raw_planes", 1);
+  refused("/errors_by_depth/prefixes/0/raw_planes/thicker_than", "thick");
+  refused("/errors_by_depth/prefixes/0/volume_true_planes/errors", 1);
+  refused("/errors_by_depth/prefixes/0/volume_true_planes/errors/0/depth", -1);
 }
 
 TEST(FilePacking, JsonIsReadableByPeople) {

@@ -12,7 +12,9 @@
 #include "innersphere/packing_file.hpp"
 #include "innersphere/solids.hpp"
 #include "mesh_shapes.hpp"
+#include "packer/errors_by_depth.hpp"
 #include "packer/overlap_errors.hpp"
+#include "packer/overlap_trials.hpp"
 #include "packer/surface_samples.hpp"
 #include "packer/voxels.hpp"
 #include "packer_oracles.hpp"
@@ -185,7 +187,8 @@ TEST_P(OverlapErrorsOfABall, AreThoseOfItsSphere) {
     return found / std::hypot(area, std::pow(found, 2.0 / 3)) / std::cbrt(static_cast<double>(kBall));
   };
   const OverlapErrors::Prefix& prefix = errors.prefixes[0];
-  ASSERT_GE(prefix.raw.size(), 8u);
+  ASSERT_GE(prefix.raw.copies.size(), 8u);
+  EXPECT_TRUE(prefix.raw.planes.empty());
   for (const double distance : {0.6, 1.0, 1.2, 1.4}) {
     const ExpectedError found = expectedError(prefix.raw, depth(distance));
     EXPECT_GT(found.mean, error(distance - 0.4));
@@ -220,7 +223,107 @@ TEST(PackerMeasures, OverlapErrorsFallWithMoreSpheres) {
     EXPECT_LT(error.mean, 0.5 * raw.mean);
     EXPECT_LT(error.mean, error.bound);
   }
-  EXPECT_LT(all.volume_true.back().error.mean, 0.02);
+  EXPECT_LT(all.volume_true.copies.back().error.mean, 0.02);
+}
+
+/// What a plane cuts off from a box with a corner in the origin.
+double cutOff(Vec3d size, const Point& normal, double height) {
+  double volume = 0;
+  Vec3d n;
+  for (int k = 0; k < 3; ++k) {  // seen from the corner that is the lowest
+    n[k] = std::abs(normal[k]);
+    if (normal[k] < 0) height += n[k] * size[k];
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    double left = height, sign = 1;
+    for (int k = 0; k < 3; ++k) {
+      if ((corner >> k & 1) == 0) continue;
+      left -= n[k] * size[k];
+      sign = -sign;
+    }
+    volume += sign * std::pow(std::max(0.0, left), 3);
+  }
+  return volume / (6 * n[0] * n[1] * n[2]);
+}
+
+// A sphere in a box stands for it: what planes cut off from both is known.
+TEST(PackerMeasures, OverlapErrorsKnowPlanes) {
+  const Vec3d size{1, 0.5, 0.4};
+  const auto solid = makeSolid(boxMesh({}, size), "box");
+  const Container container(*solid);
+  const double volume = 0.2, unit = 1 / container.side(), radius = 0.2;
+  const Surface surface = container.toSurface(solid->surface());
+  const SurfaceSamples samples(solid->surface(), container);
+  const std::vector<Ball> balls{{container.fromWorld({0.4, 0.3, 0.2}), radius * unit}};
+  const auto in_cube = volume * std::pow(unit, 3);
+  const OverlapErrors errors =
+      findOverlapErrors(container, surface, samples, balls, {{1, {static_cast<float>(radius)}, 0}}, in_cube);
+  const std::vector<PlaneCut> planes =
+      makeOverlapTrials(container, surface, samples, Voxels(container, in_cube, 1 << 20), in_cube, 285)
+          .planes;
+  ASSERT_EQ(planes.size(), 95u);
+  std::vector<std::pair<double, double>> found;  // depths and errors
+  for (const PlaneCut& plane : planes) {
+    const double height = (plane.height - plane.normal.dot(container.fromWorld({}))) / unit;
+    const double truth = cutOff(size, plane.normal, height);
+    EXPECT_NEAR(plane.truth, truth / volume, 1e-6);
+    const double below = std::clamp(height - plane.normal.dot(Point(0.4, 0.3, 0.2)), -radius, radius);
+    const double cap =
+        std::numbers::pi * (2 * std::pow(radius, 3) / 3 + below * radius * radius - std::pow(below, 3) / 3);
+    const double area = std::numbers::pi * (radius * radius - below * below);
+    if (cap > 1e-12)
+      found.emplace_back(cap / std::hypot(area, std::pow(cap, 2.0 / 3)) / std::cbrt(volume),
+                         std::sqrt(2.0) * std::abs(cap - truth) / std::max(cap, truth));
+  }
+  std::sort(found.begin(), found.end());
+  const std::vector<OverlapErrors::AtDepth>& rows = errors.prefixes.at(0).raw.planes;
+  const std::size_t runs = found.size() / 19;
+  ASSERT_GE(rows.size(), 2u);
+  ASSERT_LE(rows.size(), runs);
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i) {  // planes beyond the sphere are all equally deep
+    double largest = 0, mean = 0;
+    for (std::size_t k = i * found.size() / runs; k < i * found.size() / runs + 19; ++k) {
+      largest = std::max(largest, std::min(1.0, found[k].second));
+      mean += std::min(1.0, found[k].second) / 19;
+    }
+    EXPECT_NEAR(rows[i].error.bound, largest, 1e-5);
+    EXPECT_GE(rows[i].error.mean, mean - 1e-5);
+  }
+}
+
+// Copies of a blade never get as deep into each other as it gets into a thick body.
+TEST(PackerMeasures, ThickBodiesAreForetoldByPlanes) {
+  const Packing packing = packed(*makeNamedSolid("blade"), 1024, true);
+  const OverlapErrors::Estimate& blade = packing.overlap_errors.prefixes.back().volume_true;
+  ASSERT_GT(blade.thickest, 0);
+  for (const double depth : {0.3, 0.6}) {
+    const ExpectedError thin = expectedError(blade, depth, 0.9 * blade.thickest),
+                        thick = expectedError(blade, depth, 1.1 * blade.thickest);
+    EXPECT_EQ(thin.mean, expectedError(blade, depth).mean);
+    EXPECT_LT(thick.mean, 0.6 * thin.mean);
+    EXPECT_LT(thick.bound, thin.bound);
+  }
+}
+
+// Errors go by the kind of pose: the limit of a mean is one for poses that are all of one kind.
+TEST(PackerMeasures, ErrorsOfOneKindOfPosesAreBelowTheirLimit) {
+  std::vector<Finding> kinds, alike;
+  for (std::size_t i = 0; i < 285; ++i) {
+    const auto kind = static_cast<OverlapKind>(i % 3);
+    const double depth = 0.01 * std::exp(0.01 * static_cast<double>(i));
+    kinds.push_back({depth, 0.1 * (1 + static_cast<double>(i % 3)), kind});
+    alike.push_back({depth, i % 19 % 2 == 0 ? 0.1 : 0.3, kind});
+  }
+  const std::vector<OverlapErrors::AtDepth> of_kinds = errorsByDepth(kinds), of_alike = errorsByDepth(alike);
+  ASSERT_EQ(of_kinds.size(), 15u);
+  ASSERT_EQ(of_alike.size(), 15u);
+  for (const OverlapErrors::AtDepth& at : of_kinds) {
+    EXPECT_GT(at.error.mean, 0.3);
+    EXPECT_LT(at.error.mean, 0.5);
+    EXPECT_EQ(at.error.bound, 0.1 * 3);
+  }
+  // The mean of ten and nine, and Student's t times the root of 2 / 19 of a deviation of about 0.1.
+  for (const OverlapErrors::AtDepth& at : of_alike) EXPECT_NEAR(at.error.mean, 0.195 + 0.058, 0.005);
 }
 
 // What a packing at a program's start leaves out: nothing but the errors, and a file is read back without

@@ -1,0 +1,21 @@
+// Foretells errors at a depth from those that were found near it.
+#pragma once
+
+#include <vector>
+
+#include "innersphere/packing.hpp"
+#include "packer/overlap_trials.hpp"
+
+namespace innersphere {
+
+/// Says what was found in one pose.
+struct Finding {
+  double depth, error;  ///< as of OverlapErrors::AtDepth
+  OverlapKind kind;
+};
+
+/// Returns limits of the errors that others will have, by rising depth: see OverlapErrors::AtDepth. What has
+/// no depth is left out.
+std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings);
+
+}  // namespace innersphere
