@@ -61,7 +61,8 @@ double depthOnLanding(double beside) {
   PackingCollisionAlgorithm::prepareWorld(world.world);
   const btQuaternion turn(btVector3(0, 1, 0), SIMD_HALF_PI / 2);
   const btVector3 normal = quatRotate(turn, btVector3(0, 0, 1));
-  world.add(std::make_shared<btBoxShape>(btVector3(1, 1, 1)), 0, btVector3(0, btScalar(beside), 0) - normal, turn);
+  world.add(std::make_shared<btBoxShape>(btVector3(1, 1, 1)), 0, btVector3(0, btScalar(beside), 0) - normal,
+            turn);
   const std::shared_ptr<PackingShape> ball = makeFineBallShape(kRadius, 100);
   const double lower = (kRadius + kAbove) / normal.z();
   for (const double height : {lower, lower + 2 * kRadius + kBetween})
