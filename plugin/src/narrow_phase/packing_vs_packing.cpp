@@ -166,8 +166,7 @@ bool PackingVsPacking::refine(const Placed& now, const StepAhead& step) {
 
 /// Of the thinner one.
 btScalar PackingVsPacking::halfThickness() const {
-  return btMin(search_->prefix_a->largest_radius * a_->getLocalScaling().x(),
-               search_->prefix_b->largest_radius * b_->getLocalScaling().x());
+  return btMin(a_->impl().halfThickness(), b_->impl().halfThickness());
 }
 
 /// Whether spheres are enlarged so much that they meet all sides of what is thin. Pairs that are swept look

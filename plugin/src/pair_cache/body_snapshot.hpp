@@ -53,6 +53,14 @@ class BodySnapshot {
   std::uint32_t changes() const { return changes_; }
   /// Returns a distance that no point of the body has exceeded since the first snapshot [m].
   double travel() const { return travel_; }
+  /// Notes, by any thread, how much nearer a body comes that it may meet in the step [m].
+  void noteWay(btScalar way) {
+    btScalar known = way_.load(std::memory_order_relaxed);
+    while (way > known && !way_.compare_exchange_weak(known, way, std::memory_order_relaxed)) {
+    }
+  }
+  /// Returns the most that was noted since the snapshot was taken [m].
+  btScalar way() const { return way_.load(std::memory_order_relaxed); }
   /// Notes, by any thread, that the body touches another one.
   void noteNeighbour() { neighbours_now_.fetch_add(1, std::memory_order_relaxed); }
   /// Returns how many it touched in the last update.
@@ -79,6 +87,7 @@ class BodySnapshot {
   std::uint32_t changes_ = 0;
   int neighbours_ = 0;
   std::atomic<int> neighbours_now_ = 0;
+  std::atomic<btScalar> way_ = 0;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

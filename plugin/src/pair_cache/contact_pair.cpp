@@ -3,6 +3,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include "common/log.hpp"
+#include "pair_cache/reuse.hpp"
 #include "shape/option_rules.hpp"
 
 namespace innersphere {
@@ -152,7 +153,7 @@ void ContactPair::write(const StepSettings& settings, const BodySnapshot& body_a
   }
   manifolds.write(*a.object, *b.object, {body_a.start(), body_b.start()},
                   motionOf(body_a, body_b, settings.time_step), origin(), found->patches(), lawOf(settings),
-                  speculativeDistance(body_a.motion(), body_b.motion(), settings.time_step), result);
+                  neededSeparation(*this, body_a, body_b, settings.time_step), result);
 }
 
 void ContactPair::report(btManifoldResult* result) const {

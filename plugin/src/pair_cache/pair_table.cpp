@@ -161,7 +161,11 @@ void PairTable::process(ContactPair& pair, const btCollisionObjectWrapper& a,
   pair.separation = separation;
   pair.published = false;
   const StepSettings settings = settingsFor(dispatch.m_timeStep);
-  const BodySnapshot body_a(a, settings.time_step), body_b(b, settings.time_step);
+  BodySnapshot body_a(a, settings.time_step), body_b(b, settings.time_step);
+  if (pair.body_a != nullptr) {
+    body_a.noteWay(pair.body_a->way());
+    body_b.noteWay(pair.body_b->way());
+  }
   const Busy busy(pair, mutex_, number_);
   lock.unlock();
 

@@ -97,6 +97,7 @@ class PairTable {
 
   // The stages of an update of all pairs; the table is locked.
   void begin(btScalar time_step);
+  void noteWays();
   Job decide(ContactPair& pair) const;
   void collectJobs();
   void work();

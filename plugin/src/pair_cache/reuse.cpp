@@ -14,6 +14,12 @@ btScalar sizeOf(const btCollisionShape& shape) {
   return shape.isInfinite() ? BT_LARGE_FLOAT : shape.getAngularMotionDisc();
 }
 
+/// Of the thinner body. What gets no further into it than this is pushed out by the side that it came from.
+btScalar halfThickness(const ContactPair& pair) {
+  const btScalar a = pair.a.packing->impl().halfThickness();
+  return pair.b.packing == nullptr ? a : btMin(a, pair.b.packing->impl().halfThickness());
+}
+
 bool staysApart(const SafeDistance& safe, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step) {
   return safe.known && (a.isActive() || b.isActive()) && a.changes() + b.changes() == safe.changes &&
          a.travel() + b.travel() <= safe.travel &&
@@ -24,7 +30,8 @@ bool staysApart(const SafeDistance& safe, const BodySnapshot& a, const BodySnaps
 
 Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step,
               Reuse least) {
-  const bool apart = least == Reuse::idle && staysApart(pair.safe, a, b, time_step);
+  const bool apart = least == Reuse::idle && staysApart(pair.safe, a, b, time_step) &&
+                     neededSeparation(pair, a, b, time_step) <= pair.safe.separation;
   if (apart && pair.of_packings) return Reuse::idle;  // has read nothing but the beginning of the pair
   const bool same_shapes = pair.found->hasSameShapes();
   if (apart && same_shapes) return Reuse::idle;
@@ -54,7 +61,16 @@ Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot
 
 btScalar neededSeparation(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                           btScalar time_step) {
-  return btMax(pair.separation, speculativeDistance(a.motion(), b.motion(), time_step));
+  const btScalar needed = btMax(pair.separation, speculativeDistance(a.motion(), b.motion(), time_step));
+  const btScalar stopped = btMax(a.way(), b.way());
+  return stopped > needed ? btMax(needed, btMin(stopped, halfThickness(pair))) : needed;
+}
+
+void noteWay(const ContactPair& pair, BodySnapshot& a, BodySnapshot& b, btScalar time_step) {
+  if (staysApart(pair.safe, a, b, time_step)) return;
+  const btScalar way = speculativeDistance(a.motion(), b.motion(), time_step);
+  if (!a.object()->isStaticOrKinematicObject()) a.noteWay(way);
+  if (!b.object()->isStaticOrKinematicObject()) b.noteWay(way);
 }
 
 SafeDistance safeDistanceOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b) {

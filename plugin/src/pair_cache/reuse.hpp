@@ -14,9 +14,13 @@ Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot
               Reuse least = Reuse::idle);
 
 /// Returns the width up to which gaps of the pair are to have a contact in the step [m]: they might close in
-/// it.
+/// it, also where another body stops one of the two.
 btScalar neededSeparation(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                           btScalar time_step);
+
+/// Notes on both bodies how much nearer they come to each other in the step, if they may meet in it: what
+/// flies along with one of them does not stop with it.
+void noteWay(const ContactPair& pair, BodySnapshot& a, BodySnapshot& b, btScalar time_step);
 
 /// Returns for how far the bodies of a pair without contacts stay apart, after an update that is published.
 SafeDistance safeDistanceOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b);

@@ -70,10 +70,20 @@ void PairTable::begin(btScalar time_step) {
   ++number_;
   settings_ = settingsFor(time_step);
   body_list_.forEachInParallel([&](BodySnapshot& body) { body.take(settings_.time_step); });
+  noteWays();
   jobs_.assign(pairs_.size(), Job());
   pairs_.forEachInParallel([&](ContactPair& pair) { jobs_[pair.list_index] = decide(pair); });
   collectJobs();
   work();
+}
+
+/// For solvers that let bodies go on after they have met. Bullet's hands an impact on to the next body at
+/// once, without its restitution.
+void PairTable::noteWays() {
+  if (!settings_.solver.substeps) return;
+  pairs_.forEachInParallel([&](ContactPair& pair) {
+    if (pair.asked && !pair.busy) noteWay(pair, *pair.body_a, *pair.body_b, settings_.time_step);
+  });
 }
 
 PairTable::Job PairTable::decide(ContactPair& pair) const {

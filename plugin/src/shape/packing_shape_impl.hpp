@@ -32,6 +32,8 @@ struct PackingShape::Impl {
   const Prefix& prefixFor(btScalar accuracy) const {
     return accuracy > 0 ? solid->prefixWithin(accuracy / scaling.x(), *prefix) : *prefix;
   }
+  /// Returns half the thickness of the solid where it is thickest [m].
+  btScalar halfThickness() const { return prefix->largest_radius * scaling.x(); }
   /// Returns the transform from the packing's frame to the world for a body at `body`: x_world = result(scale
   /// * x).
   btTransform toWorld(const btTransform& body) const;

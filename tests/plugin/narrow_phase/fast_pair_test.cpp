@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "innersphere/pair_overlaps.hpp"
+#include "innersphere/substep_solver.hpp"
 #include "named_packings.hpp"
 #include "test_world.hpp"
 
@@ -48,6 +49,38 @@ TEST(FastPair, RingsTouchWhereTheyHangInEachOther) {
       EXPECT_NEAR(depthFound(shape, turn_a, turn_b, spin), kDepth, kDepth / 2)
           << "placement " << i << ", " << spin << " rad/s";
   }
+}
+
+constexpr double kRadius = 0.1, kAbove = 0.08, kBetween = 0.008;  // [m] of balls: above the slope, between
+
+/// How deep the upper ball gets into the lower one as both fall on to a slope, or past it [m].
+double depthOnLanding(double beside) {
+  TestWorld world;
+  SubstepSolver solver;
+  world.world.setConstraintSolver(&solver);
+  PackingCollisionAlgorithm::prepareWorld(world.world);
+  const btQuaternion turn(btVector3(0, 1, 0), SIMD_HALF_PI / 2);
+  const btVector3 normal = quatRotate(turn, btVector3(0, 0, 1));
+  world.add(std::make_shared<btBoxShape>(btVector3(1, 1, 1)), 0, btVector3(0, btScalar(beside), 0) - normal,
+            turn);
+  const std::shared_ptr<PackingShape> ball = makeFineBallShape(kRadius, 100);
+  const double lower = (kRadius + kAbove) / normal.z();
+  for (const double height : {lower, lower + 2 * kRadius + kBetween})
+    world.add(ball, 1, btVector3(0, 0, btScalar(height))).setLinearVelocity(btVector3(0, 0, -3));
+  double nearest = 2 * kRadius;
+  for (int i = 0; i < 10; ++i) {
+    world.run(kStep, kStep);
+    nearest = std::min(nearest, double(world.bodies[2]->getWorldTransform().getOrigin().distance(
+                                    world.bodies[1]->getWorldTransform().getOrigin())));
+  }
+  world.world.setConstraintSolver(&world.solver);
+  return 2 * kRadius - nearest;
+}
+
+TEST(FastPair, WhatFliesWithABodyThatIsStoppedIsStoppedByIt) {
+  // In a step they fall by 50 mm, and keep their distance until the lower one lands.
+  EXPECT_LT(depthOnLanding(0), 0.01 * kRadius);
+  EXPECT_LT(depthOnLanding(2), 1e-6);
 }
 
 }  // namespace
