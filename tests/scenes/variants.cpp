@@ -103,9 +103,11 @@ std::string missesOf(const demo::ScenePlay& play) {
 
 void expectTruths(const Variant& variant, Backend backend) {
   const demo::Scene& scene = demo::sceneNamed(variant.scene);
+  const int may_miss = variant.runs / 3;
   int missed = 0;
   std::string misses;
-  for (int run = 0; run < variant.runs; ++run) {
+  // What is decided needs no further run: these scenes take longest.
+  for (int run = 0; missed <= may_miss && run - missed < variant.runs - may_miss; ++run) {
     demo::SceneOptions options;
     options.spheres = variant.spheres + std::size_t(run) * variant.spheres / 10;
     options.seed += std::uint64_t(run);
@@ -122,7 +124,7 @@ void expectTruths(const Variant& variant, Backend backend) {
     ++missed;
     misses += "Run " + std::to_string(run + 1) + ": " + of_run;
   }
-  EXPECT_LE(missed, variant.runs / 3) << misses << "Guards: " << scene.guards;
+  EXPECT_LE(missed, may_miss) << misses << "Guards: " << scene.guards;
 }
 
 }  // namespace innersphere::test
