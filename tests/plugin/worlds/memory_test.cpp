@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include <tbb/global_control.h>
+
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
@@ -62,6 +64,8 @@ Memory heapOf(int count) {
 }
 
 TEST(MemoryOfAHeap, GrowsByLittleForEachPair) {
+  // Each thread has room of its own to work in.
+  const tbb::global_control two(tbb::global_control::max_allowed_parallelism, 2);
   heapOf(4);  // what all worlds share
   const Memory few = heapOf(12), many = heapOf(36);
   const double pairs = 36 * 35 / 2 - 12 * 11 / 2;
