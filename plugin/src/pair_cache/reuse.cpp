@@ -20,17 +20,17 @@ btScalar halfThickness(const ContactPair& pair) {
   return pair.b.packing == nullptr ? a : btMin(a, pair.b.packing->impl().halfThickness());
 }
 
-bool staysApart(const SafeDistance& safe, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step) {
+/// As long as they come no nearer in the step than SafeDistance::separation.
+bool staysApart(const SafeDistance& safe, const BodySnapshot& a, const BodySnapshot& b) {
   return safe.known && (a.isActive() || b.isActive()) && a.changes() + b.changes() == safe.changes &&
-         a.travel() + b.travel() <= safe.travel &&
-         speculativeDistance(a.motion(), b.motion(), time_step) <= safe.separation;
+         a.travel() + b.travel() <= safe.travel;
 }
 
 }  // namespace
 
 Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b, btScalar time_step,
               Reuse least) {
-  const bool apart = least == Reuse::idle && staysApart(pair.safe, a, b, time_step) &&
+  const bool apart = least == Reuse::idle && staysApart(pair.safe, a, b) &&
                      neededSeparation(pair, a, b, time_step) <= pair.safe.separation;
   if (apart && pair.of_packings) return Reuse::idle;  // has read nothing but the beginning of the pair
   const bool same_shapes = pair.found->hasSameShapes();
@@ -67,8 +67,8 @@ btScalar neededSeparation(const ContactPair& pair, const BodySnapshot& a, const 
 }
 
 void noteWay(const ContactPair& pair, BodySnapshot& a, BodySnapshot& b, btScalar time_step) {
-  if (staysApart(pair.safe, a, b, time_step)) return;
   const btScalar way = speculativeDistance(a.motion(), b.motion(), time_step);
+  if (staysApart(pair.safe, a, b) && way <= pair.safe.separation) return;
   if (!a.object()->isStaticOrKinematicObject()) a.noteWay(way);
   if (!b.object()->isStaticOrKinematicObject()) b.noteWay(way);
 }
