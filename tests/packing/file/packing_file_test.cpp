@@ -16,6 +16,7 @@
 #include "file_scratch.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/packing_file.hpp"
+#include "packer_oracles.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -49,18 +50,6 @@ Packing somePacking(std::size_t n, unsigned seed = 1) {
   packing.warnings = {"a \"part\" is empty", ""};
   packing.provenance = {"some \"mesh\".obj", "0123456789abcdef", "--spheres 5", "0.1.0"};
   return packing;
-}
-
-bool sameErrors(const std::vector<OverlapErrors::AtDepth>& a, const std::vector<OverlapErrors::AtDepth>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const OverlapErrors::AtDepth& one, const OverlapErrors::AtDepth& other) {
-                      return one.depth == other.depth && one.error.mean == other.error.mean &&
-                             one.error.bound == other.error.bound;
-                    });
-}
-
-bool sameEstimate(const OverlapErrors::Estimate& a, const OverlapErrors::Estimate& b) {
-  return sameErrors(a.copies, b.copies) && a.thickest == b.thickest && sameErrors(a.planes, b.planes);
 }
 
 void expectSame(const Packing& a, const Packing& b) {
