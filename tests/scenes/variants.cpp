@@ -62,6 +62,7 @@ const std::vector<Variant>& variants() {
                                            {"carabiner"},
                                            {"chain-rest"},
                                            {"chain-rest", 0, 0, 1.0 / 60, "_at_60_Hz"},
+                                           {"chain-rest", 1000, 0, 1.0 / 60, "_of_1000_spheres_at_60_Hz"},
                                            {"drops"},
                                            {"gear-box"},
                                            {"gear-plane"},

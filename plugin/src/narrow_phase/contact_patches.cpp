@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <type_traits>
 
 #include "innersphere/patch.hpp"
 #include "narrow_phase/contact_samples.hpp"
+#include "narrow_phase/deepest_points.hpp"
 #include "narrow_phase/manifold_reduction.hpp"
 #include "narrow_phase/patch_moments.hpp"
 #include "narrow_phase/way_out.hpp"
@@ -40,6 +42,8 @@ struct Scratch {
   std::vector<btScalar> depths;
   std::vector<std::size_t> indices;
   std::vector<std::uint64_t> old_ids;
+  std::vector<ContactPoint> old_points;
+  std::vector<Top> tops;
   SelectionScratch selection;
   SampleScratch sampling;
   std::vector<WeightedPoint> found;
@@ -126,6 +130,12 @@ void collectIds(const std::vector<ContactPatch>& patches, std::vector<std::uint6
   }
 }
 
+void collectPoints(const std::vector<ContactPatch>& patches, std::vector<ContactPoint>& points) {
+  points.clear();
+  for (const ContactPatch& patch : patches)
+    points.insert(points.end(), patch.points.begin(), patch.points.begin() + patch.count);
+}
+
 void clear(Samples& samples) {
   samples.indices.clear();
   samples.lines.clear();
@@ -170,10 +180,16 @@ bool refine(Samples& samples, const Probe& probe, const ContactSettings& setting
   Scratch& scratch = scratchOfThread();
   std::vector<WeightedPoint>& found = scratch.found;
   collectIds(patches, scratch.old_ids);
+  scratch.tops.clear();
+  // Fast bodies have left them behind.
+  if (std::is_same_v<Probe, PackingProbe> && !step.motion.isSwept()) {
+    collectPoints(patches, scratch.old_points);
+    ascendAgain({probe, samples.indices}, settings.separation, scratch.old_points, scratch.tops);
+  }
   found.clear();
   const bool first_time = samples.lines.empty();
   for (std::size_t p = 0; p < samples.patches.size(); ++p)
-    findContactPoints(probe, p, settings.separation, samples, scratch.sampling, found);
+    findContactPoints(probe, p, settings.separation, scratch.tops, samples, scratch.sampling, found);
   if (first_time) dropUnprobed(samples);
   keepLeastWaysOut(settings.spacing, scratch.reduction, found);
   keepTops(settings.separation, step, found);

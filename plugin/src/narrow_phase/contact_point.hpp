@@ -19,6 +19,11 @@ constexpr int kPatchPoints = 4;
 /// sphere has them.
 constexpr std::uint64_t kDeepestId = ~std::uint64_t(0);
 
+/// Returns true for those.
+inline bool isDeepest(std::uint64_t id) {
+  return id > kDeepestId - kPatchPoints;
+}
+
 /// This is a point of contact. It has the axes of the world, and positions are relative to the origin of A's
 /// packing.
 struct ContactPoint {

@@ -1,6 +1,8 @@
 #include "narrow_phase/contact_samples.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 
 #include "common/contact_tolerances.hpp"
 #include "common/parallel.hpp"
@@ -107,6 +109,18 @@ void keepAscents(const SampleScratch& scratch, Samples& samples) {
   for (std::size_t i = 0; i < scratch.places.size(); ++i) {
     if (scratch.probed[i].starts_ascent) samples.lines[scratch.places[i]] = lineOf(scratch.probed[i]);
   }
+}
+
+/// Sorts tops so that those whose lines start from samples of the patch come first. Returns their number.
+std::size_t sortTops(const PatchSamples& of, const std::vector<Top>& tops, SampleScratch& scratch) {
+  const auto first = of.samples.indices.begin() + std::ptrdiff_t(of.begin);
+  const auto end = first + std::ptrdiff_t(of.count());
+  const auto isOfPatch = [&](const Top& top) { return std::find(first, end, top.sample.index) != end; };
+  scratch.tops.clear();
+  std::copy_if(tops.begin(), tops.end(), std::back_inserter(scratch.tops), isOfPatch);
+  const std::size_t count = scratch.tops.size();
+  std::copy_if(tops.begin(), tops.end(), std::back_inserter(scratch.tops), std::not_fn(isOfPatch));
+  return count;
 }
 
 /// Whether a corner of a surface is deeper than the place where it was probed.
@@ -271,12 +285,15 @@ SampleScratch::SampleScratch() {
   sideways.reserve(kUsualPatchSamples);
 }
 
-void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation, Samples& samples,
-                       SampleScratch& scratch, std::vector<WeightedPoint>& found) {
+void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation,
+                       const std::vector<Top>& tops, Samples& samples, SampleScratch& scratch,
+                       std::vector<WeightedPoint>& found) {
   const PatchSamples of(samples, p);
   probeAll(probe, of, separation, scratch.tried);
   keepProbed(of, separation, scratch);
-  appendDeepestPoints(probe, separation, scratch.probed);
+  const std::size_t tops_of_patch = sortTops(of, tops, scratch);
+  const LineStarts lines{probe, samples.indices};
+  appendDeepestPoints(lines, separation, scratch.tops, tops_of_patch, scratch.probed);
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, &probe);
   PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
@@ -289,15 +306,18 @@ void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separa
   points.shareOutArea();
 }
 
-void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separation, Samples& samples,
-                       SampleScratch& scratch, std::vector<WeightedPoint>& found) {
+void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separation,
+                       const std::vector<Top>& tops, Samples& samples, SampleScratch& scratch,
+                       std::vector<WeightedPoint>& found) {
   const PatchSamples of(samples, p);
   probeAll(probe, of, scratch.tried);
   keepProbed(of, separation, scratch);
   keepSideways(of, scratch);
   const std::size_t count = scratch.probed.size();
-  appendDeepestPoints(probe, separation, scratch.probed);
-  ascendBeside(probe, count, scratch.probed);
+  const std::size_t tops_of_patch = sortTops(of, tops, scratch);
+  const LineStarts lines{probe, samples.indices};
+  appendDeepestPoints(lines, separation, scratch.tops, tops_of_patch, scratch.probed);
+  ascendBeside(lines, count, scratch.probed);
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, nullptr);
   PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "narrow_phase/contact_point.hpp"
+#include "narrow_phase/deepest_points.hpp"
 #include "narrow_phase/packing_probe.hpp"
 #include "narrow_phase/sample_selection.hpp"
 #include "narrow_phase/shape_probe.hpp"
@@ -41,6 +42,7 @@ struct SampleScratch {
   std::vector<Tried> tried;             ///< all samples of a patch
   std::vector<ProbedSample> probed;     ///< those whose lines met both surfaces, then the deepest points
   std::vector<std::size_t> places;      ///< of the former, among the samples
+  std::vector<Top> tops;                ///< of the step before: first those of the patch
   std::vector<ProbedSample> sideways;   ///< those whose line leaves A by its side
   std::vector<EdgeContact> corners;     ///< at one sample
   std::vector<EdgeContact> peaks;       ///< the same for corners that neither face lies flat at
@@ -48,11 +50,14 @@ struct SampleScratch {
 };
 
 /// Appends those contacts of the samples' patch `p` that are on, or near, both surfaces: not further apart
-/// than `separation` [m]. Leaves the lines that were probed in the samples.
-void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation, Samples& samples,
-                       SampleScratch& scratch, std::vector<WeightedPoint>& found);
-void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separation, Samples& samples,
-                       SampleScratch& scratch, std::vector<WeightedPoint>& found);
+/// than `separation` [m]. `tops` are those of ascendAgain(). Leaves the lines that were probed in the
+/// samples.
+void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation,
+                       const std::vector<Top>& tops, Samples& samples, SampleScratch& scratch,
+                       std::vector<WeightedPoint>& found);
+void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separation,
+                       const std::vector<Top>& tops, Samples& samples, SampleScratch& scratch,
+                       std::vector<WeightedPoint>& found);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -54,6 +54,11 @@ class ContactTransport {
   void turnTo(const Placed& now);
   /// Notes that patches have been measured, with all contacts up to `found` [m] apart.
   void noteDepths(const Placed& now, btScalar found);
+  /// Forgets all patches.
+  void drop() {
+    patches.clear();
+    measured_.clear();
+  }
   /// Moves the patches along: each contact has a point that moves with A and one that moves with B, and rolls
   /// on where surfaces are curved. A's is the packing that positions are relative to the origin of.
   void carryTo(const Placed& now, const PackingShape& a, btScalar spacing);

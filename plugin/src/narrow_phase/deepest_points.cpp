@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
+#include <optional>
 
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/contact_point.hpp"
@@ -88,10 +88,42 @@ class Falls {
   btScalar xx_, xy_ = 0, yy_;
 };
 
+btVector3 middleOf(const OpposedPoints& points) {
+  return (points.on_a + points.on_b) / 2;
+}
+
+/// From a sphere to the line through `place`.
+btVector3 shiftTo(const btVector3& place, const btVector3& direction, const SurfaceProbe& probe,
+                  std::size_t index) {
+  const btVector3 way = place - probe.lineStart(index);
+  return way - direction * way.dot(direction);
+}
+
+/// Lets the line of a sample start from the sphere that is nearest to where it goes, and returns the shift
+/// from there; nothing if that sphere does not see the same place, but another wall.
+std::optional<btVector3> startNearer(const LineStarts& lines, const btVector3& step, ProbedSample& sample) {
+  const btVector3 direction = lines.probe.lineDirection(sample), place = middleOf(sample.points);
+  const std::size_t nearest = lines.nearest(place + step, direction);
+  if (nearest == LineStarts::kNone || nearest == sample.index) return std::nullopt;
+  const btVector3 shift = shiftTo(place, direction, lines.probe, nearest);
+  OpposedPoints points;
+  points.triangle_a = sample.points.triangle_a;
+  points.triangle_b = sample.points.triangle_b;
+  const btScalar same = kReached * lines.probe.reach(nearest);
+  if (!lines.probe.probeLine(nearest, sample.direction, shift, points) ||
+      points.on_a.distance2(sample.points.on_a) > same * same ||
+      points.on_b.distance2(sample.points.on_b) > same * same)
+    return std::nullopt;
+  sample.index = nearest;
+  return shift;
+}
+
 /// Moves a sample uphill along lines beside that from `shift` beside its sphere; not where slopes above
-/// `steepest` say that the top is far. Notes whether it got there. Over edges the slope may fall suddenly, so
-/// a step which loses the surface there is taken again, shorter.
-void climb(const SurfaceProbe& probe, btScalar steepest, int steps, btVector3 shift, ProbedSample& sample) {
+/// `steepest` say that the top is far. Notes whether it got there. What is out of reach of its sphere is
+/// probed from another one. Over edges the slope may fall suddenly, so a step which loses the surface there
+/// is taken again, shorter.
+void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shift, ProbedSample& sample) {
+  const SurfaceProbe& probe = lines.probe;
   const bool over_edges = probe.hasEdges();
   Hillside here = hillsideAt(sample.points, sample.direction);
   // There is no top where faces are flat, or fit together.
@@ -106,6 +138,10 @@ void climb(const SurfaceProbe& probe, btScalar steepest, int steps, btVector3 sh
     const btVector3 step = falls.toTop(here.slope);
     if (!probe.probeLine(sample.index, sample.direction, shift + step, points) ||
         !isUsable(points, sample.direction)) {
+      if (const auto from_there = startNearer(lines, step, sample)) {
+        shift = *from_there;
+        continue;
+      }
       if (!over_edges) return;
       falls.shorten();
       continue;
@@ -128,19 +164,13 @@ void climb(const SurfaceProbe& probe, btScalar steepest, int steps, btVector3 sh
   sample.is_top = here.slope.length2() < kReached * kReached;
 }
 
-/// Moves a sample to the top of its hill. Normals agree all along a line over it, for lines of any direction;
-/// but both points are opposed only along the normal, so a line that is askew is drawn again along that.
-void ascend(const SurfaceProbe& probe, ProbedSample& sample) {
-  ProbedSample start = sample;
-  btVector3 back = probe.toMiddleOfBend(sample);
-  if (!back.isZero() && probe.probeLine(sample.index, sample.direction, back, start.points) &&
-      isUsable(start)) {
-    sample = start;
-  } else {
-    back.setZero();
-  }
+/// Moves a sample to the top of its hill, beginning `shift` beside its sphere. Normals agree all along a line
+/// over it, for lines of any direction; but both points are opposed only along the normal, so a line that is
+/// askew is drawn again along that.
+void climbToTop(const LineStarts& lines, const btVector3& shift, ProbedSample& sample) {
+  const SurfaceProbe& probe = lines.probe;
   const int steps = probe.hasEdges() ? kAscentStepsOverEdges : kAscentSteps;
-  climb(probe, BT_LARGE_FLOAT, steps, back, sample);
+  climb(lines, BT_LARGE_FLOAT, steps, shift, sample);
   const OpposedPoints& points = sample.points;
   const btVector3 normal = (points.normal_a + points.normal_b).normalized();
   const btVector3 apart = points.on_a - points.on_b;
@@ -149,47 +179,73 @@ void ascend(const SurfaceProbe& probe, ProbedSample& sample) {
     return;
   ProbedSample again = sample;
   again.direction = normal;
-  const btVector3 middle = (points.on_a + points.on_b) / 2 - probe.lineStart(sample.index);
-  const btVector3 shift = middle - normal * middle.dot(normal) + probe.toMiddleOfBend(again);
-  if (!probe.probeLine(sample.index, normal, shift, again.points)) return;
-  climb(probe, BT_LARGE_FLOAT, steps, shift, again);
+  const btVector3 start = shiftTo(middleOf(points), normal, probe, again.index) + probe.toMiddleOfBend(again);
+  if (!probe.probeLine(sample.index, normal, start, again.points)) return;
+  climb(lines, BT_LARGE_FLOAT, steps, start, again);
   if (again.is_top) sample = again;
 }
 
-/// The tops that were reached.
+void ascend(const LineStarts& lines, ProbedSample& sample) {
+  ProbedSample start = sample;
+  btVector3 back = lines.probe.toMiddleOfBend(sample);
+  if (!back.isZero() && lines.probe.probeLine(sample.index, sample.direction, back, start.points) &&
+      isUsable(start)) {
+    sample = start;
+  } else {
+    back.setZero();
+  }
+  climbToTop(lines, back, sample);
+}
+
+/// Whether a top that is guessed from a place is this one.
+bool leadsTo(const Top& top, const ProbedSample& sample, btScalar separation) {
+  return isOnHill(sample.points.on_b - top.sample.points.on_b,
+                  sample.points.normal_b - sample.points.normal_a, top.hill, separation);
+}
+
+Top topOf(const ProbedSample& sample, const SurfaceProbe& probe) {
+  return {sample, hillAt(probe, sample)};
+}
+
+/// The tops of a patch, with those that were reached before.
 class Tops {
  public:
+  Tops(const std::vector<Top>& known, std::size_t of_patch) : known_(known) {
+    for (std::size_t i = 0; i < of_patch && !areAll(); ++i) add(known[i]);
+  }
   bool areAll() const { return count_ == kPatchPoints; }
-  bool areNone() const { return count_ == 0; }
+  bool areNone() const { return count_ == 0 && known_.empty(); }
 
   /// Whether a top that is guessed from a place is one of those that were reached.
   bool include(const ProbedSample& sample, btScalar separation) const {
-    for (int i = 0; i < count_; ++i) {
-      const OpposedPoints& top = tops_[i].points;
-      if (isOnHill(sample.points.on_b - top.on_b, sample.points.normal_b - sample.points.normal_a, hills_[i],
-                   separation))
-        return true;
-    }
-    return false;
+    const auto isOf = [&](const Top& top) { return leadsTo(top, sample, separation); };
+    return std::any_of(known_.begin(), known_.end(), isOf) ||
+           std::any_of(tops_.begin(), tops_.begin() + count_, isOf);
   }
 
-  void ascendFrom(const ProbedSample& start, const SurfaceProbe& probe) {
-    ProbedSample& top = tops_[count_];
-    top = start;
-    top.id = kDeepestId - static_cast<std::uint64_t>(count_++);
-    ascend(probe, top);
-    hills_[count_ - 1] = hillAt(probe, top);
+  void ascendFrom(const ProbedSample& start, const LineStarts& lines) {
+    ProbedSample top = start;
+    ascend(lines, top);
+    add(topOf(top, lines.probe));
   }
 
   /// Only those of convex hills: elsewhere the sample itself is as deep.
   void appendTo(std::vector<ProbedSample>& samples) const {
-    std::copy_if(tops_.begin(), tops_.begin() + count_, std::back_inserter(samples),
-                 [](const ProbedSample& top) { return top.points.curvature_a + top.points.curvature_b > 0; });
+    for (int i = 0; i < count_; ++i) {
+      const ProbedSample& top = tops_[i].sample;
+      if (top.points.curvature_a + top.points.curvature_b > 0) samples.push_back(top);
+    }
   }
 
  private:
-  std::array<ProbedSample, kPatchPoints> tops_;
-  std::array<Hill, kPatchPoints> hills_;
+  void add(const Top& top) {
+    tops_[count_] = top;
+    tops_[count_].sample.id = kDeepestId - static_cast<std::uint64_t>(count_);
+    ++count_;
+  }
+
+  const std::vector<Top>& known_;
+  std::array<Top, kPatchPoints> tops_;
   int count_ = 0;
 };
 
@@ -218,23 +274,59 @@ bool isOnHill(const btVector3& from_top, const btVector3& slope, const Hill& hil
   return (way - hill.toTop(slope)).length() < btMax(kSameHill * way.length(), kSameTop * separation);
 }
 
-void appendDeepestPoints(const SurfaceProbe& probe, btScalar separation, std::vector<ProbedSample>& samples) {
-  for (ProbedSample& sample : samples) {
-    if (isUsable(sample)) guessTop(probe, sample);
+std::size_t LineStarts::nearest(const btVector3& place, const btVector3& direction) const {
+  std::size_t nearest = kNone;
+  btScalar most = 0;
+  for (const std::size_t sphere : spheres) {
+    const btVector3 way = place - probe.lineStart(sphere);
+    const btScalar along = way.dot(direction), reach = probe.reach(sphere);
+    const btScalar spare = reach - (way - direction * along).length();
+    if (spare <= most || btFabs(along) > 2 * reach) continue;
+    most = spare;
+    nearest = sphere;
   }
-  Tops tops;
+  return nearest;
+}
+
+void ascendAgain(const LineStarts& lines, btScalar separation, const std::vector<ContactPoint>& before,
+                 std::vector<Top>& tops) {
+  tops.clear();
+  for (const ContactPoint& point : before) {
+    if (!isDeepest(point.id)) continue;
+    const btVector3 place = point.on_b + point.normal * (point.depth / 2);
+    ProbedSample top;
+    top.direction = point.normal;
+    top.index = lines.nearest(place, top.direction);
+    if (top.index == LineStarts::kNone) continue;
+    const btVector3 shift = shiftTo(place, top.direction, lines.probe, top.index);
+    if (!lines.probe.probeLine(top.index, top.direction, shift, top.points) || !isUsable(top) ||
+        middleOf(top.points).distance2(place) > separation * separation)
+      continue;
+    const auto isOf = [&](const Top& other) { return leadsTo(other, top, separation); };
+    if (std::any_of(tops.begin(), tops.end(), isOf)) continue;
+    climbToTop(lines, shift, top);
+    if (top.is_top) tops.push_back(topOf(top, lines.probe));
+  }
+}
+
+void appendDeepestPoints(const LineStarts& lines, btScalar separation, const std::vector<Top>& known,
+                         std::size_t of_patch, std::vector<ProbedSample>& samples) {
+  for (ProbedSample& sample : samples) {
+    if (isUsable(sample)) guessTop(lines.probe, sample);
+  }
+  Tops tops(known, of_patch);
   while (!tops.areAll()) {
     ProbedSample* start = bestStart(tops, separation, samples);
     if (start == nullptr) break;
     start->starts_ascent = true;
-    tops.ascendFrom(*start, probe);
+    tops.ascendFrom(*start, lines);
   }
   tops.appendTo(samples);
 }
 
-void ascendBeside(const SurfaceProbe& probe, std::size_t count, std::vector<ProbedSample>& samples) {
+void ascendBeside(const LineStarts& lines, std::size_t count, std::vector<ProbedSample>& samples) {
   for (std::size_t i = 0; i < count; ++i) {
-    if (isUsable(samples[i])) climb(probe, kSlopeBeside, kAscentStepsBeside, btVector3(0, 0, 0), samples[i]);
+    if (isUsable(samples[i])) climb(lines, kSlopeBeside, kAscentStepsBeside, btVector3(0, 0, 0), samples[i]);
   }
 }
 

@@ -31,7 +31,7 @@ struct FoundContact {
   /// Notes that there are no contacts, as far as is known.
   void drop() {
     forget();
-    memory.patches.clear();
+    memory.drop();
   }
 
   ContactTransport memory;

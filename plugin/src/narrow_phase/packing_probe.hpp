@@ -32,6 +32,7 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
   bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
                  OpposedPoints& points) const override;
   btVector3 lineStart(std::size_t index) const override;
+  btScalar reach(std::size_t index) const override { return surfaceDistance(index); }
   bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const override;
   Bends bends(const OpposedPoints& points, const Across& axes) const override;
   void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,

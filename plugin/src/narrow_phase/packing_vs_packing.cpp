@@ -202,6 +202,7 @@ void PackingVsPacking::selectMoreSamples(const Bodies& bodies, const std::vector
 /// Whether surfaces are near each other at any of the samples.
 bool PackingVsPacking::evaluateDepths(const Bodies& bodies) {
   const PackingProbe probe(bodies.a, bodies.b, contacts_, count_a_);
+  memory.carryTo(now_, *a_, search_->spacing);
   return refinePatches(memory.samples, probe, *search_, step_, memory.patches);
 }
 

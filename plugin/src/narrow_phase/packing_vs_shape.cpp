@@ -84,7 +84,7 @@ void PackingVsShape::searchAt(const Placed& now, const ContactOptions& options, 
   forget();
   overlap_.reset();
   if (!surface_) {
-    memory.patches.clear();
+    memory.drop();
     return;
   }
   const ContactSettings measure(options, packing_, other_, step.needed);

@@ -28,6 +28,11 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
 
   bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
                  OpposedPoints& points) const override;
+  /// Of spheres over curved shapes: over flat ones all samples see the same face.
+  btScalar reach(std::size_t index) const override {
+    return near_spheres_[index].curvature == 0 ? btScalar(0) : surfaceDistance(near_spheres_[index]);
+  }
+  btVector3 lineDirection(const ProbedSample& sample) const override { return sample.points.normal_b; }
   btVector3 lineStart(std::size_t index) const override {
     return a_.centreOf(near_spheres_[index].sphere) + near_spheres_[index].aside;
   }

@@ -74,6 +74,10 @@ class SurfaceProbe {
                          OpposedPoints& points) const = 0;
   /// Returns where lines start that are not moved sideways: the middle of the sphere [m].
   virtual btVector3 lineStart(std::size_t index) const = 0;
+  /// Returns how far beside there a line may start [m].
+  virtual btScalar reach(std::size_t index) const = 0;
+  /// Returns the direction of the line that was drawn for a sample.
+  virtual btVector3 lineDirection(const ProbedSample& sample) const { return sample.direction; }
   /// Returns true if B may have edges, at which the slope of the depth falls suddenly.
   virtual bool hasEdges() const { return false; }
   /// Returns the way back along a sample's line to where ascents do better to start; zero by default [m].

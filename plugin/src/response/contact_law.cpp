@@ -158,7 +158,9 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     law.stiffness *= stiffening;
     law.damping *= btSqrt(stiffening);
     hold();
-    law.starts = in_chain_ && stiffening > kHeavy && law.depth == depth;
+    const bool heavy = in_chain_ && stiffening > kHeavy;
+    law.starts = heavy && law.depth == depth;
+    law.tilting = heavy ? law_->size_ : btScalar(0);
   } else if (depth > law_->solver_.deepest_spring) {
     // The same force from a smaller depth.
     law.stiffness *= depth / law_->solver_.deepest_spring;

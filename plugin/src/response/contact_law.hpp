@@ -21,6 +21,7 @@ struct PointLaw {
   btScalar damping = 0;    ///< [N s/m]
   btScalar push = 0;       ///< speed at which the spring alone would drive the bodies apart [m/s]
   btScalar rolling = 0;    ///< how far ahead the load of bodies that roll lies [m]
+  btScalar tilting = 0;    ///< how much further for each radian that they tilt in the step [m]
   btScalar bears = 0;      ///< impulse of the spring in a step at rest [N s]
   bool starts = false;     ///< the solver is to start with that, whatever the last impulse was
   bool held_back = false;  ///< the spring counts less than the depth, so that nothing is thrown
@@ -47,7 +48,9 @@ struct PointLaw {
 /// A SubstepSolver is told the measured depth, without a spring but for one that is given: it has its own.
 ///
 /// Where bodies touch in one place or along a line, on which they could roll, they resist it as if their load
-/// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second.
+/// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second. Links that bear several others
+/// tilt against a stiffness N s of their load N, which a step takes as it was when it began. Backward Euler
+/// takes it at the end, a way s w dt further ahead, with w the speed at which they tilt.
 class ContactLaw {
  public:
   /// Makes the law of a pair. `reduced_mass` is in kg, and 0 counts as 1; `time_step` is in s, and 0 counts

@@ -116,8 +116,10 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   // Directions of the user's own may be those of a belt that moves what lies on it.
   const bool belt = (point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0;
   if (!belt) point.m_combinedFriction *= from.friction;
-  if (point.m_combinedFriction > 0 && point.m_combinedRollingFriction == 0)
-    point.m_combinedRollingFriction = law.rolling;
+  if (point.m_combinedFriction > 0 && point.m_combinedRollingFriction == 0) {
+    const btScalar tilts = motion.spin().cross(from.normal).length() * law.time_step;
+    point.m_combinedRollingFriction = law.rolling + law.tilting * tilts;
+  }
   // Bullet reads the one only where there is the other.
   if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
     point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curvature);

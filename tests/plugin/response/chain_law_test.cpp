@@ -40,5 +40,37 @@ TEST(ChainLaw, IsStifferAndLessSteepThanOfAHeap) {
   }
 }
 
+// Of a load W that stands on a lever s, W s for a radian pushes the ball further over. Backward Euler takes
+// it at the end of the step: at W a further way s w dt ahead.
+TEST(ChainLaw, ResistsTiltingUnderTheWeightOfSeveralLinks) {
+  constexpr double kStep = 1.0 / 60, kRadius = 0.5, kTilts = 0.7, kAhead = 1e-5;
+  struct Case {
+    double depth;  // in radii; twice as much as makes the spring half as stiff again, and a tenth of it
+    btVector3 spin;
+    double lever;
+  };
+  const btVector3 tilts(btScalar(kTilts), 0, 0), spins(0, 0, btScalar(kTilts));
+  for (const Case& c : {Case{0.005, tilts, kAhead + kTilts * kStep}, Case{0.005, spins, kAhead},
+                        Case{0.00025, tilts, kAhead}}) {
+    TestWorld world;
+    world.world.setGravity(btVector3(0, 0, 0));
+    const auto ball = makeFineBallShape(kRadius, 200);
+    const auto apart = btScalar(kRadius * (2 - c.depth));
+    world.add(ball, 0, btVector3(0, 0, 0));
+    btRigidBody& middle = world.add(ball, 1, btVector3(0, 0, apart));
+    for (int i = 0; i < 2; ++i) {  // the first one tells how many touch
+      middle.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, apart)));
+      middle.setLinearVelocity(btVector3(0, 0, 0));
+      middle.setAngularVelocity(c.spin);
+      world.run(kStep, kStep);
+    }
+    ASSERT_EQ(world.dispatcher.getNumManifolds(), 1);
+    const btPersistentManifold& manifold = *world.dispatcher.getManifoldByIndexInternal(0);
+    ASSERT_EQ(manifold.getNumContacts(), 1);
+    EXPECT_NEAR(double(manifold.getContactPoint(0).m_combinedRollingFriction), kRadius * c.lever,
+                0.01 * kRadius * c.lever);
+  }
+}
+
 }  // namespace
 }  // namespace innersphere::test
