@@ -181,7 +181,8 @@ bool refine(Samples& samples, const Probe& probe, const ContactSettings& setting
   std::vector<WeightedPoint>& found = scratch.found;
   collectIds(patches, scratch.old_ids);
   scratch.tops.clear();
-  // Fast bodies have left them behind.
+  // Bullet's curved shapes have no triangles that make several tops of one, and fast bodies have left theirs
+  // behind.
   if (std::is_same_v<Probe, PackingProbe> && !step.motion.isSwept()) {
     collectPoints(patches, scratch.old_points);
     ascendAgain({probe, samples.indices}, settings.separation, scratch.old_points, scratch.tops);

@@ -22,10 +22,10 @@ void selectSamples(const std::vector<SphereContact>& contacts, const ShapeProbe&
                    const ContactSettings& settings, const StepAhead& step, const btMatrix3x3& reference,
                    const std::vector<ContactPatch>& patches, Samples& samples);
 
-/// Replaces `patches`, which hold those of the step before, carried to where the bodies are, by such whose
-/// depth is that of the solids' surfaces: points are contacts of spheres, the deepest and those that span the
-/// patch, the old ones by preference. Returns false if none is near touching: the solids are apart, or so
-/// deep in each other that no surface is near.
+/// Replaces `patches`, which hold those of the step before, by such whose depth is that of the solids'
+/// surfaces: points are contacts of spheres, the deepest and those that span the patch, the old ones by
+/// preference. Those of two packings are to have been carried to where the bodies are. Returns false if none
+/// is near touching: the solids are apart, or so deep in each other that no surface is near.
 bool refinePatches(Samples& samples, const PackingProbe& probe, const ContactSettings& settings,
                    const StepAhead& step, std::vector<ContactPatch>& patches);
 bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSettings& settings,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/contact_point.hpp"
@@ -103,18 +102,18 @@ btVector3 shiftTo(const btVector3& place, const btVector3& direction, const Surf
 /// from there; nothing if that sphere does not see the same place, but another wall.
 std::optional<btVector3> startNearer(const LineStarts& lines, const btVector3& step, ProbedSample& sample) {
   const btVector3 direction = lines.probe.lineDirection(sample), place = middleOf(sample.points);
-  const std::size_t nearest = lines.nearest(place + step, direction);
-  if (nearest == LineStarts::kNone || nearest == sample.index) return std::nullopt;
-  const btVector3 shift = shiftTo(place, direction, lines.probe, nearest);
+  const std::optional<std::size_t> nearest = lines.nearest(place + step, direction);
+  if (!nearest || *nearest == sample.index) return std::nullopt;
+  const btVector3 shift = shiftTo(place, direction, lines.probe, *nearest);
   OpposedPoints points;
   points.triangle_a = sample.points.triangle_a;
   points.triangle_b = sample.points.triangle_b;
-  const btScalar same = kReached * lines.probe.reach(nearest);
-  if (!lines.probe.probeLine(nearest, sample.direction, shift, points) ||
+  const btScalar same = kReached * lines.probe.reach(*nearest);
+  if (!lines.probe.probeLine(*nearest, sample.direction, shift, points) ||
       points.on_a.distance2(sample.points.on_a) > same * same ||
       points.on_b.distance2(sample.points.on_b) > same * same)
     return std::nullopt;
-  sample.index = nearest;
+  sample.index = *nearest;
   return shift;
 }
 
@@ -274,8 +273,8 @@ bool isOnHill(const btVector3& from_top, const btVector3& slope, const Hill& hil
   return (way - hill.toTop(slope)).length() < btMax(kSameHill * way.length(), kSameTop * separation);
 }
 
-std::size_t LineStarts::nearest(const btVector3& place, const btVector3& direction) const {
-  std::size_t nearest = kNone;
+std::optional<std::size_t> LineStarts::nearest(const btVector3& place, const btVector3& direction) const {
+  std::optional<std::size_t> nearest;
   btScalar most = 0;
   for (const std::size_t sphere : spheres) {
     const btVector3 way = place - probe.lineStart(sphere);
@@ -296,8 +295,9 @@ void ascendAgain(const LineStarts& lines, btScalar separation, const std::vector
     const btVector3 place = point.on_b + point.normal * (point.depth / 2);
     ProbedSample top;
     top.direction = point.normal;
-    top.index = lines.nearest(place, top.direction);
-    if (top.index == LineStarts::kNone) continue;
+    const std::optional<std::size_t> nearest = lines.nearest(place, top.direction);
+    if (!nearest) continue;
+    top.index = *nearest;
     const btVector3 shift = shiftTo(place, top.direction, lines.probe, top.index);
     if (!lines.probe.probeLine(top.index, top.direction, shift, top.points) || !isUsable(top) ||
         middleOf(top.points).distance2(place) > separation * separation)

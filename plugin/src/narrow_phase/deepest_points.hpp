@@ -1,6 +1,7 @@
 // Finds the deepest points between curved surfaces.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "narrow_phase/contact_point.hpp"
@@ -14,10 +15,8 @@ struct LineStarts {
   const SurfaceProbe& probe;
   const std::vector<std::size_t>& spheres;
 
-  /// Returns the sphere that has most to spare for a line through `place`; kNone if it is out of reach of
-  /// all.
-  std::size_t nearest(const btVector3& place, const btVector3& direction) const;
-  static constexpr std::size_t kNone = ~std::size_t(0);
+  /// Returns the sphere that has most to spare for a line through `place`; nothing if all are out of reach.
+  std::optional<std::size_t> nearest(const btVector3& place, const btVector3& direction) const;
 };
 
 /// The top of a hill of the depth.

@@ -28,8 +28,8 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
 
   bool probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
                  OpposedPoints& points) const override;
-  /// Of spheres over curved shapes. Over edges lines do not start at spheres, see
-  /// toMiddleOfBend(), and over planes the tops that were missed are of no use.
+  /// Of spheres over curved shapes. Over edges lines do not start at spheres, see toMiddleOfBend(), and over
+  /// planes the tops that were missed are of no use.
   btScalar reach(std::size_t index) const override {
     return near_spheres_[index].curvature == 0 ? btScalar(0) : surfaceDistance(near_spheres_[index]);
   }
