@@ -223,7 +223,7 @@ void run(Arguments& arguments) {
       Overlap& overlap = result.overlaps[i];
       const Wrench wrench =
           from_contacts ? gradientWrench(result, i, reference) : volumeWrench(overlap, place, reference);
-      if (overlap.pair_count > 0) overlap.centroid = plus(overlap.centroid, a->packing().origin);
+      if (overlap.volume > 0) overlap.centroid = plus(overlap.centroid, a->packing().origin);
       appendRow(table, poses[first + i].name, overlap, wrench,
                 expectedError(queries[i], arguments.query.estimator, overlap));
     }

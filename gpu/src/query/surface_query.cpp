@@ -18,31 +18,25 @@ PlacedSurface placedSurface(const CollisionModel& model, const Placement& placem
   core::Mat3<double> rotation;
   std::copy(placement.rotation.begin(), placement.rotation.end(), rotation.m);
   core::makeRotation(rotation);
-  return {model.impl().surface(), core::scaled(rotation, placement.scale), placement.translation - origin};
+  return {model.impl().surface(), {core::scaled(rotation, placement.scale), placement.translation - origin}};
 }
 
-Vec3d middleOfBox(const PlacedSurface& surface) {
-  return surface.matrix * (0.5 * (surface.tree.bounds().min + surface.tree.bounds().max)) +
-         surface.translation;
-}
-
-void refineOne(const PairQuery& query, bool volume_only, Overlap& overlap) {
+Overlap overlapOf(const PairQuery& query, bool volume_only) {
   const Vec3d& origin = query.placement_a.translation;
   const PlacedSurface a = placedSurface(*query.a, query.placement_a, origin);
   const PlacedSurface b = placedSurface(*query.b, query.placement_b, origin);
-  const bool directed = norm(overlap.area) > 0;
-  const SharedSums sums = sharedVolume(a, b, directed ? overlap.area : middleOfBox(b) - middleOfBox(a));
-  const std::uint64_t pairs = overlap.pair_count;
-  overlap = {};
-  overlap.pair_count = pairs;
-  if (!(sums.volume > 0)) return;
+  const SharedSums sums = sharedVolume(a, b);
+  Overlap overlap;
+  if (!(sums.volume > 0)) return overlap;
+  overlap.pair_count = sums.pairs;
   overlap.volume = sums.volume;
   overlap.centroid = (1 / sums.volume) * sums.moment;
-  if (volume_only) return;
+  if (volume_only) return overlap;
   overlap.energy = sums.volume;
   overlap.area = overlap.force = -sums.area;
-  overlap.torque = cross(b.translation, sums.area) - sums.turning;
+  overlap.torque = cross(b.place.translation, sums.area) - sums.turning;
   overlap.stiffness = sums.wetted;
+  return overlap;
 }
 
 }  // namespace
@@ -66,8 +60,10 @@ void SurfaceQueries::keep(const PairQuery* queries, std::size_t count, const Que
 }
 
 void SurfaceQueries::refine(Workers& workers, std::vector<Overlap>& overlaps) const {
+  if (queries_.empty()) return;
+  overlaps.resize(queries_.size());
   workers.forRanges(queries_.size(), kSurfaceGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) refineOne(queries_[i], volume_only_, overlaps[i]);
+    for (std::size_t i = begin; i < end; ++i) overlaps[i] = overlapOf(queries_[i], volume_only_);
   });
 }
 

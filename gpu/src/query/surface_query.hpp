@@ -1,4 +1,4 @@
-// Answers queries with Estimator::surface, after the spheres have said where to look.
+// Answers queries with Estimator::surface.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@ inline Estimator estimatorOfSpheres(const QueryOptions& options) {
   return options.estimator == Estimator::raw ? Estimator::raw : Estimator::volume_true;
 }
 
-/// Returns what the spheres are asked for: with Estimator::surface always the direction of the contact.
-inline Want wantOfSpheres(const QueryOptions& options) {
-  return options.estimator == Estimator::surface && options.want == Want::volume ? Want::wrench
-                                                                                 : options.want;
+/// Returns whether the triangles answer all that is wanted.
+inline bool needsNoSpheres(const QueryOptions& options) {
+  return options.estimator == Estimator::surface &&
+         (options.want == Want::volume || options.want == Want::wrench);
 }
 
 /// Holds a batch from its start to its end, if it is one for surfaces.
@@ -27,7 +27,7 @@ class SurfaceQueries {
   /// for a margin.
   void keep(const PairQuery* queries, std::size_t count, const QueryOptions& options);
 
-  /// Replaces what the spheres said of the volume by what the surfaces say.
+  /// Puts what the surfaces say in the place of what the spheres said.
   void refine(Workers& workers, std::vector<Overlap>& overlaps) const;
 
  private:

@@ -75,7 +75,8 @@ class TrueOverlap {
       Point corners[3];
       double heights[3];
       for (int k = 0; k < 3; ++k) {
-        corners[k] = scale_ * Point(triangle[k].x, triangle[k].y, triangle[k].z) + shift_ - height * normal;
+        const Vec3f& v = tree_->vertices()[triangle[k]];
+        corners[k] = scale_ * Point(v.x, v.y, v.z) + shift_ - height * normal;
         heights[k] = normal.dot(corners[k]);
       }
       Point polygon[4];
@@ -92,11 +93,10 @@ class TrueOverlap {
     return sum / volume_;
   }
 
-  /// The fraction of the solid, with all samples, or by triangles where it is shallow; `way` leads from the
-  /// solid to the copy. It is about `expected`.
-  Voxels::Shared at(const Pose& pose, const Point& way, double expected) const {
-    return tree_ && expected < kShallowShare ? Voxels::Shared{byTriangles(pose, way), 0}
-                                             : voxels_.shared(pose);
+  /// The fraction of the solid, with all samples, or by triangles where it is shallow. It is about
+  /// `expected`.
+  Voxels::Shared at(const Pose& pose, double expected) const {
+    return tree_ && expected < kShallowShare ? Voxels::Shared{byTriangles(pose), 0} : voxels_.shared(pose);
   }
 
   struct Found {
@@ -105,24 +105,23 @@ class TrueOverlap {
   };
 
   /// About the fraction, by few samples if these are enough. It is less than `most`.
-  Found roughlyAt(const Pose& pose, const Point& way, double most) const {
+  Found roughlyAt(const Pose& pose, double most) const {
     if (!tree_ || most > kFewShare) {
       const double fraction = voxels_.roughlyShared(pose).fraction;
       if (!tree_ || fraction > kFewShare) return {fraction, false};
     }
-    return {byTriangles(pose, way), true};
+    return {byTriangles(pose), true};
   }
 
  private:
-  double byTriangles(const Pose& pose, const Point& way) const {
+  double byTriangles(const Pose& pose) const {
     const Eigen::Matrix3d r = scale_ * pose.rotation;
-    const Point shift = pose.apply(shift_);
-    const PlacedSurface solid{*tree_, {{scale_, 0, 0, 0, scale_, 0, 0, 0, scale_}}, vectorOf(shift_)};
+    const PlacedSurface solid{*tree_, {{{scale_, 0, 0, 0, scale_, 0, 0, 0, scale_}}, vectorOf(shift_)}};
     const PlacedSurface copy{
         *tree_,
-        {{r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}},
-        vectorOf(shift)};
-    return sharedVolume(solid, copy, vectorOf(way)).volume / volume_;
+        {{{r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}},
+         vectorOf(pose.apply(shift_))}};
+    return sharedVolume(solid, copy).volume / volume_;
   }
 
   static Vec3d vectorOf(const Point& x) { return {x[0], x[1], x[2]}; }
@@ -190,7 +189,7 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
   };
   const auto poseAt = [&](double distance) { return Pose{start.turn, start.shift + distance * start.way}; };
   const auto look = [&](double distance, double most) {
-    return Step{distance, overlap.roughlyAt(poseAt(distance), start.way, most)};
+    return Step{distance, overlap.roughlyAt(poseAt(distance), most)};
   };
   Step near = look(0, 1), far{std::numbers::sqrt3, {}};
   const bool touches = start.kind == OverlapKind::facing;
@@ -221,7 +220,7 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
   }
   const double share = near.share.fraction;
   const Pose pose = poseAt(near.distance);
-  return {pose, near.share.exact ? Voxels::Shared{share, 0} : overlap.at(pose, start.way, share), start.kind};
+  return {pose, near.share.exact ? Voxels::Shared{share, 0} : overlap.at(pose, share), start.kind};
 }
 
 /// A plane through a random point of the solid.

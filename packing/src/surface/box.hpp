@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "innersphere/geometry.hpp"
@@ -33,9 +34,9 @@ inline void include(const Bounds& part, Bounds& whole) {
   }
 }
 
-inline bool isWithin(const Bounds& a, const Bounds& b) {
-  return a.min.x >= b.min.x && a.max.x <= b.max.x && a.min.y >= b.min.y && a.max.y <= b.max.y &&
-         a.min.z >= b.min.z && a.max.z <= b.max.z;
+/// Returns the largest absolute value of a component.
+inline double largest(const Vec3d& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
 }  // namespace innersphere

@@ -1,23 +1,41 @@
 // Finds the volume that two solids share from the triangles of their surfaces.
 #pragma once
 
-#include "surface/column_pair.hpp"
-#include "surface/surface_view.hpp"
+#include <cstdint>
+
+#include "innersphere/geometry.hpp"
+#include "surface/grid_surface.hpp"
+#include "surface/surface_tree.hpp"
 
 namespace innersphere {
 
-/// Returns the sums for the volume that A and B share. In the direction z, a point is in A as often as more
-/// triangles of A above it face up than down, and in B as often as more of B below it face down than up. So
-/// the volume is
+/// Says which surface it is, and where.
+struct PlacedSurface {
+  const SurfaceTree& tree;
+  Similarity place;
+};
+
+/// Holds integrals over what A and B share.
+struct SharedSums {
+  double volume = 0;
+  Vec3d moment{};           ///< of the volume, about the origin
+  Vec3d area{};             ///< the integral of the outward normal over B's surface in A
+  Vec3d turning{};          ///< the integral of place x outward normal there
+  double wetted = 0;        ///< the area of B's surface in A
+  std::uint64_t pairs = 0;  ///< of triangles that meet
+};
+
+/// Returns the sums for the volume that A and B share. It is bounded by A's surface as far as that is in B,
+/// and by B's as far as that is in A, so by the divergence theorem
 ///
-///   V = - sum over t of A, u of B of s_t s_u integral of max(0, z_t - z_u) dx dy,
+///   V = 1/3 sum over triangles t of A of the integral over t of w_B x . n,  and the same with A and B
+///   exchanged,
 ///
-/// with s = 1 for triangles that face up and -1 for those that face down, over the columns that t and u have
-/// in common. That holds for each direction z. Only pairs with t above u count; where `up` leads from A to B
-/// and the overlap is shallow, these are the few that meet. Where a surface encloses a part of space twice,
-/// that part counts twice.
+/// where w_B is how often B encloses x. On t it changes by one along the lines in which t and triangles of B
+/// meet. So only pairs of triangles that meet are looked at one by one; to all others w_B comes over the
+/// edges that they share. Where a surface encloses a part of space twice, that part counts twice.
 ///
 /// All sums are zero if what they leave is no more than rounding. The result has the same bits on every run.
-SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b, const Vec3d& up);
+SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b);
 
 }  // namespace innersphere

@@ -1,6 +1,9 @@
 #include "surface/surface_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -34,6 +37,153 @@ bool isClosedSurface(const Surface& surface) {
   return true;
 }
 
+constexpr double kLongest = 3;
+
+double areaOf(const Bounds& box) {
+  const Vec3d d = box.max - box.min;
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+/// Sorts the triangles, so that those of each node follow each other.
+class SurfaceTree::Builder {
+ public:
+  explicit Builder(SurfaceTree& tree);
+  /// Appends the node of triangles [first, end) and all below it.
+  std::uint32_t build(std::uint32_t first, std::uint32_t end);
+  Bounds boundsOf(std::uint32_t first, std::uint32_t end) const;
+  std::uint32_t size() const { return parts_.size(); }
+
+ private:
+  struct Part {
+    std::uint32_t triangle;
+    Bounds box;
+    double middle(int axis) const { return box.min[axis] + box.max[axis]; }
+  };
+  std::uint32_t halve(std::uint32_t first, std::uint32_t end);
+  void addParts(std::uint32_t triangle, const std::vector<Vec3d>& polygon, double most);
+
+  SurfaceTree& tree_;
+  std::vector<Part> parts_;
+  std::vector<Part> best_;
+  std::vector<double> costs_;
+};
+
+SurfaceTree::Builder::Builder(SurfaceTree& tree) : tree_(tree) {
+  double area = 0;
+  const auto at = [&](std::uint32_t v) {
+    return Vec3d{tree.vertices_[v].x, tree.vertices_[v].y, tree.vertices_[v].z};
+  };
+  for (const Triangle& t : tree.triangles_) area += norm(cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]))) / 2;
+  const double most = kLongest * std::sqrt(area / tree.triangles_.size());
+  for (std::uint32_t i = 0; i < tree.triangles_.size(); ++i) {
+    const Triangle& t = tree.triangles_[i];
+    const Vec3d corners[3] = {at(t[0]), at(t[1]), at(t[2])};
+    addParts(i, {corners, corners + 3}, most);
+  }
+  tree.in_parts_.assign(tree.triangles_.size(), false);
+  for (std::size_t k = 1; k < parts_.size(); ++k) {
+    if (parts_[k].triangle == parts_[k - 1].triangle) tree.in_parts_[parts_[k].triangle] = true;
+  }
+}
+
+/// Adds the box of a part of a triangle, or those of both halves of it.
+void SurfaceTree::Builder::addParts(std::uint32_t triangle, const std::vector<Vec3d>& polygon, double most) {
+  Bounds box = nothing();
+  for (const Vec3d& corner : polygon) include({corner, corner}, box);
+  const Vec3d size = box.max - box.min;
+  const int axis = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+  if (size[axis] <= most) {
+    parts_.push_back({triangle, box});
+    return;
+  }
+  const double middle = box.min[axis] + size[axis] / 2;
+  for (const double side : {-1, 1}) {
+    std::vector<Vec3d> half;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3d &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+      const double hp = side * (p[axis] - middle), hq = side * (q[axis] - middle);
+      if (hp >= 0) half.push_back(p);
+      if ((hp < 0) != (hq < 0)) half.push_back(p + hp / (hp - hq) * (q - p));
+    }
+    addParts(triangle, half, most);
+  }
+}
+
+std::uint32_t SurfaceTree::Builder::build(std::uint32_t first, std::uint32_t end) {
+  std::vector<Node>& nodes = tree_.nodes_;
+  const auto index = static_cast<std::uint32_t>(nodes.size());
+  nodes.emplace_back().are_triangles = end - first <= kWidth;
+  std::array<std::uint32_t, kWidth + 1> cuts;
+  if (end - first <= kWidth) {
+    for (std::uint32_t k = 0; k <= kWidth; ++k) cuts[k] = std::min(first + k, end);
+  } else {
+    const std::uint32_t half = halve(first, end);
+    cuts = {first, halve(first, half), half, halve(half, end), end};
+  }
+  for (std::uint32_t k = 0; k < kWidth; ++k) {
+    if (cuts[k] == cuts[k + 1]) continue;
+    std::uint32_t child = parts_[cuts[k]].triangle;
+    if (!nodes[index].are_triangles) {
+      child = build(cuts[k], cuts[k + 1]);
+      nodes[child].parent = index;
+      nodes[child].place = nodes[index].count;
+    }
+    const Bounds box = boundsOf(cuts[k], cuts[k + 1]);
+    Node& node = nodes[index];
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto low = static_cast<float>(box.min[axis]), high = static_cast<float>(box.max[axis]);
+      const float centre = low + (high - low) / 2;
+      node.centre[axis][node.count] = centre;
+      node.half[axis][node.count] = std::max(high - centre, centre - low);
+    }
+    node.children[node.count++] = child;
+  }
+  return index;
+}
+
+/// Sorts triangles [first, end) into two parts, so that the areas of their boxes, times the numbers of
+/// triangles, are least (the surface area heuristic). The first one fills whole nodes. Returns where the
+/// second one begins: at `end` if one node is enough.
+std::uint32_t SurfaceTree::Builder::halve(std::uint32_t first, std::uint32_t end) {
+  if (end - first <= kWidth) return end;
+  const auto at = [&](std::uint32_t i) { return parts_.begin() + static_cast<std::ptrdiff_t>(i); };
+  const std::uint32_t full = (end - first + kWidth - 1) / kWidth;
+  // Neither part has less than this: the tree cannot become a list.
+  const std::uint32_t least_full = std::max(1U, full / 8);
+  const auto boxOf = [&](std::uint32_t k) {
+    return boundsOf(first + k * kWidth, std::min(first + (k + 1) * kWidth, end));
+  };
+  double least = std::numeric_limits<double>::infinity();
+  std::uint32_t cut = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::stable_sort(at(first), at(end),
+                     [&](const Part& a, const Part& b) { return a.middle(axis) < b.middle(axis); });
+    costs_.assign(full, 0);
+    Bounds low = nothing(), high = nothing();
+    for (std::uint32_t k = 0; k + 1 < full; ++k) {
+      include(boxOf(k), low);
+      costs_[k + 1] += areaOf(low) * (k + 1);
+    }
+    for (std::uint32_t k = full; k-- > 1;) {
+      include(boxOf(k), high);
+      costs_[k] += areaOf(high) * (full - k);
+    }
+    const auto best = std::min_element(costs_.begin() + least_full, costs_.end() - (least_full - 1));
+    if (!(*best < least)) continue;
+    least = *best;
+    cut = first + static_cast<std::uint32_t>(best - costs_.begin()) * kWidth;
+    best_.assign(at(first), at(end));
+  }
+  std::copy(best_.begin(), best_.end(), at(first));
+  return cut;
+}
+
+Bounds SurfaceTree::Builder::boundsOf(std::uint32_t first, std::uint32_t end) const {
+  Bounds box = nothing();
+  for (std::uint32_t i = first; i < end; ++i) include(parts_[i].box, box);
+  return box;
+}
+
 SurfaceTree::SurfaceTree(const Surface& surface) {
   if (surface.triangles.empty()) {
     throw Error(ErrorCode::empty_input,
@@ -43,65 +193,51 @@ SurfaceTree::SurfaceTree(const Surface& surface) {
     throw Error(ErrorCode::not_a_solid,
                 "the triangles that the packing carries are not closed; use another estimator");
   }
-  triangles_.reserve(surface.triangles.size());
-  for (const auto& t : surface.triangles) {
-    Triangle& triangle = triangles_.emplace_back();
-    for (int k = 0; k < 3; ++k) {
-      const auto& v = surface.vertices[t[k]];
-      triangle[k] = {v[0], v[1], v[2]};
-    }
-  }
-  const auto count = static_cast<std::uint32_t>(triangles_.size());
-  bounds_ = boundsOf(0, count);
-  build(0, count);
+  vertices_.reserve(surface.vertices.size());
+  for (const auto& v : surface.vertices) vertices_.push_back({v[0], v[1], v[2]});
+  triangles_ = surface.triangles;
+  Builder builder(*this);
+  const std::uint32_t count = builder.size();
+  bounds_ = builder.boundsOf(0, count);
+  builder.build(0, count);
+  link();
+  findParts();
 }
 
-/// Appends the node of triangles [first, end) and all below it.
-std::uint32_t SurfaceTree::build(std::uint32_t first, std::uint32_t end) {
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  const std::uint32_t half = halve(first, end);
-  const std::array<std::uint32_t, kWidth + 1> cuts{first, halve(first, half), half, halve(half, end), end};
-  for (std::size_t k = 0; k < kWidth; ++k) {
-    constexpr double kNone = -1e300;
-    const bool none = cuts[k] == cuts[k + 1];
-    const Bounds box = none ? Bounds{} : boundsOf(cuts[k], cuts[k + 1]);
-    for (int axis = 0; axis < 3; ++axis) {
-      nodes_[index].centre[axis][k] = (box.max[axis] + box.min[axis]) / 2;
-      nodes_[index].half[axis][k] = none ? kNone : (box.max[axis] - box.min[axis]) / 2;
-    }
-    const std::uint32_t count = cuts[k + 1] - cuts[k];
-    const Child child =
-        count > kLeafTriangles ? Child{build(cuts[k], cuts[k + 1]), 0} : Child{cuts[k], count};
-    nodes_[index].children[k] = child;
+void SurfaceTree::link() {
+  first_at_.assign(vertices_.size() + 1, 0);
+  for (const Triangle& t : triangles_) {
+    for (const std::uint32_t v : t) ++first_at_[v + 1];
   }
-  return index;
+  std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
+  std::vector<std::uint32_t> next(first_at_.begin(), first_at_.end() - 1);
+  triangles_at_.resize(first_at_.back());
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+    for (const std::uint32_t v : triangles_[i]) triangles_at_[next[v]++] = i;
+  }
 }
 
-/// Sorts triangles [first, end) into two halves along the longest side of their box, with whole leaves in the
-/// first half. Returns where the second one begins: at `end` if one leaf is enough.
-std::uint32_t SurfaceTree::halve(std::uint32_t first, std::uint32_t end) {
-  if (end - first <= kLeafTriangles) return end;
-  const Bounds box = boundsOf(first, end);
-  const Vec3d size = box.max - box.min;
-  const auto axis = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
-  const auto at = [&](std::uint32_t i) { return triangles_.begin() + static_cast<std::ptrdiff_t>(i); };
-  const auto middle = [&](const Triangle& t) { return t[0][axis] + t[1][axis] + t[2][axis]; };
-  std::stable_sort(at(first), at(end),
-                   [&](const Triangle& a, const Triangle& b) { return middle(a) < middle(b); });
-  const std::uint32_t leaves = (end - first + kLeafTriangles - 1) / kLeafTriangles;
-  return first + (leaves + 1) / 2 * kLeafTriangles;
-}
-
-Bounds SurfaceTree::boundsOf(std::uint32_t first, std::uint32_t end) const {
-  Bounds box = nothing();
-  for (std::uint32_t i = first; i < end; ++i) {
-    for (const Vec3f& v : triangles_[i]) {
-      const Vec3d corner{v.x, v.y, v.z};
-      include({corner, corner}, box);
+void SurfaceTree::findParts() {
+  constexpr std::uint32_t kNone = ~0U;
+  parts_.assign(vertices_.size(), kNone);
+  std::vector<std::uint32_t> open;
+  for (const Triangle& first : triangles_) {
+    if (parts_[first[0]] != kNone) continue;
+    const std::uint32_t part = partCount();
+    vertex_of_part_.push_back(first[0]);
+    parts_[first[0]] = part;
+    open.push_back(first[0]);
+    while (!open.empty()) {
+      const std::uint32_t from = open.back();
+      open.pop_back();
+      forTrianglesAt(from, [&](std::uint32_t t) {
+        for (const std::uint32_t v : triangles_[t]) {
+          if (parts_[v] == kNone) parts_[v] = part, open.push_back(v);
+        }
+      });
     }
   }
-  return box;
+  if (partCount() == 1) parts_ = {};
 }
 
 }  // namespace innersphere

@@ -12,43 +12,67 @@ namespace innersphere {
 /// Returns whether each edge is run along as often in one direction as in the other.
 bool isClosedSurface(const Surface& surface);
 
-/// Holds the triangles of a surface, in the order of the leaves of a tree of boxes.
+/// Holds a closed surface: its triangles, in the order of a tree of boxes, and which of them meet in a
+/// vertex.
 class SurfaceTree {
  public:
+  using Triangle = std::array<std::uint32_t, 3>;  ///< indices of vertices
+
   /// Throws Error: empty_input if there are no triangles, not_a_solid if they are not closed: an edge is not
   /// run along as often in one direction as in the other.
   explicit SurfaceTree(const Surface& surface);
 
-  using Triangle = std::array<Vec3f, 3>;
-  static constexpr std::uint32_t kLeafTriangles = 4;
+  /// One number of each of a node's children lies side by side: one instruction looks at all of them.
+  static constexpr std::uint32_t kWidth = 4;
+  using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
 
-  /// One number of each of a node's children lies side by side: one instruction looks at several of them.
-  static constexpr std::size_t kWidth = 4;
-  using Lanes = double __attribute__((vector_size(kWidth * sizeof(double))));
-
-  struct Child {
-    std::uint32_t first = 0;  ///< triangle of a leaf, or number of a node
-    std::uint32_t count = 0;  ///< triangles of a leaf, or 0
-    bool isLeaf() const { return count > 0; }
-  };
   struct Node {
-    Lanes centre[3], half[3];  ///< of the children's boxes; of a child that is none half is below zero
-    std::array<Child, kWidth> children;
+    Lanes centre[3]{}, half[3]{};  ///< of the children's boxes
+    std::array<std::uint32_t, kWidth> children{};
+    std::uint32_t count = 0;              ///< of the children
+    bool are_triangles = false;           ///< or nodes
+    std::uint32_t parent = 0, place = 0;  ///< whose child it is, and which; not for the first node
   };
 
   /// The root is the first one.
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
+  const std::vector<Vec3f>& vertices() const { return vertices_; }
   const Bounds& bounds() const { return bounds_; }
 
- private:
-  std::uint32_t build(std::uint32_t first, std::uint32_t end);
-  std::uint32_t halve(std::uint32_t first, std::uint32_t end);
-  Bounds boundsOf(std::uint32_t first, std::uint32_t end) const;
+  /// Calls f(triangle) for those that have the vertex.
+  template <typename F>
+  void forTrianglesAt(std::uint32_t vertex, const F& f) const {
+    for (std::uint32_t i = first_at_[vertex]; i < first_at_[vertex + 1]; ++i) f(triangles_at_[i]);
+  }
 
+  bool isInParts(std::uint32_t triangle) const { return in_parts_[triangle]; }
+
+  /// Parts of the surface that have no vertex in common.
+  std::uint32_t partCount() const { return static_cast<std::uint32_t>(vertex_of_part_.size()); }
+  std::uint32_t vertexOfPart(std::uint32_t part) const { return vertex_of_part_[part]; }
+  std::uint32_t partOf(std::uint32_t vertex) const { return parts_.empty() ? 0 : parts_[vertex]; }
+
+ private:
+  class Builder;
+  void link();
+  void findParts();
+
+  std::vector<Vec3f> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;
+  std::vector<std::uint32_t> first_at_, triangles_at_;
+  std::vector<std::uint32_t> vertex_of_part_, parts_;  ///< parts_ is empty if there is one
   Bounds bounds_;
+  std::vector<bool> in_parts_;
 };
+
+inline SurfaceTree::Lanes lesser(SurfaceTree::Lanes a, SurfaceTree::Lanes b) {
+  return a < b ? a : b;
+}
+
+inline SurfaceTree::Lanes larger(SurfaceTree::Lanes a, SurfaceTree::Lanes b) {
+  return a > b ? a : b;
+}
 
 }  // namespace innersphere

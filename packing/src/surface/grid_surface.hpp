@@ -1,0 +1,141 @@
+// Declares a surface that stands somewhere, with its vertices rounded to a grid.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "common/mat3.hpp"
+#include "surface/sides.hpp"
+#include "surface/surface_tree.hpp"
+
+namespace innersphere {
+
+/// Turns, scales and moves: x -> matrix * x + translation. The matrix is a rotation times a number above
+/// zero.
+struct Similarity {
+  core::Mat3<double> matrix;
+  Vec3d translation;
+
+  double scale() const;
+  Similarity inverse() const;
+  Vec3d operator()(const Vec3d& x) const { return matrix * x + translation; }
+};
+
+/// Returns first b, then a.
+Similarity after(const Similarity& a, const Similarity& b);
+
+/// Holds the boxes of a node's children.
+struct LaneBoxes {
+  SurfaceTree::Lanes centre[3], half[3];
+};
+
+/// Here the other surface crosses an edge of a triangle.
+struct Crossing {
+  Vec3d at;
+  double part;         ///< of the edge, from its first corner
+  int edge;            ///< from this corner to the next
+  int change;          ///< of the winding number in the other solid
+  std::uint32_t next;  ///< of the same triangle
+};
+
+/// In this part of a line a triangle meets one of the other surface. What is in the other solid lies to the
+/// left, seen from outside of the triangle's own one.
+struct Segment {
+  Vec3d from, to;
+  std::uint32_t next;  ///< of the same triangle
+};
+
+/// Holds one of two surfaces, in the frame of the first one, in cells of a grid. Vertices, boxes and
+/// triangles are placed when they are first asked for. Memory is kept from query to query.
+class GridSurface {
+ public:
+  using Index = std::uint32_t;
+  static constexpr Index kNone = std::numeric_limits<Index>::max();
+
+  /// This is a triangle, and where the other surface meets it.
+  struct Triangle : GridTriangle {
+    SurfaceTree::Triangle vertices;
+    Index first_segment = kNone, first_crossing = kNone;
+    bool isCut() const { return first_segment != kNone; }
+  };
+
+  /// Begins a query. `placed`: in the frame of the first surface; `in_other`: in that of the other one;
+  /// `cells` of the grid for a unit of length; `moved`: what the points of the other surface are asked for.
+  void begin(const SurfaceTree& tree, const Similarity& placed, const Similarity& in_other, double cells,
+             Moved moved);
+
+  const SurfaceTree& tree() const { return *tree_; }
+  /// Returns the place of a vertex on the grid.
+  const Vec3d& vertex(Index v) {
+    if (vertices_[v].query != query_) place(v);
+    return vertices_[v].at;
+  }
+  /// Returns the place of a triangle among those that were asked for.
+  Index find(Index triangle) {
+    if (marks_[triangle].query != query_) placeTriangle(triangle);
+    return marks_[triangle].place;
+  }
+  /// Returns its place if it was asked for, or kNone.
+  Index found(Index triangle) const {
+    return marks_[triangle].query == query_ ? marks_[triangle].place : kNone;
+  }
+  Triangle& at(Index place) { return triangles_[place]; }
+  std::size_t foundCount() const { return triangles_.size(); }
+
+  /// Returns boxes in the frame of the other surface.
+  const LaneBoxes& boxesInOther(Index node) {
+    if (boxes_[node].query != query_) placeBoxes(node);
+    return boxes_[node].boxes;
+  }
+
+  void addSegment(Triangle& t, const Vec3d& from, const Vec3d& to) {
+    segments_.push_back({from, to, t.first_segment});
+    t.first_segment = static_cast<Index>(segments_.size() - 1);
+  }
+  void addCrossing(Triangle& t, const Vec3d& at, double part, int edge, int change) {
+    crossings_.push_back({at, part, edge, change, t.first_crossing});
+    t.first_crossing = static_cast<Index>(crossings_.size() - 1);
+  }
+  const std::vector<Segment>& segments() const { return segments_; }
+  const std::vector<Crossing>& crossings() const { return crossings_; }
+
+  /// Returns how often the surface encloses a point of the other one.
+  int windingAt(const Vec3d& point);
+
+ private:
+  struct PlacedVertex {
+    Index query = 0;  ///< in which it was placed
+    Vec3d at;
+  };
+  struct PlacedBoxes {
+    Index query = 0;
+    LaneBoxes boxes;
+  };
+  struct Mark {
+    Index query = 0, place;
+    Index asked = 0;  ///< the last point for which it was looked at
+  };
+
+  void place(Index vertex);
+  void placeTriangle(Index triangle);
+  void placeBoxes(Index node);
+
+  const SurfaceTree* tree_ = nullptr;
+  Similarity to_grid_;
+  core::Mat3<float> matrix_, absolute_;  ///< to the other surface
+  Vec3f translation_;
+  float slack_, grid_slack_;  ///< what rounding may do to places there, and where the grid is
+  double cells_;
+  Moved moved_;
+  Index query_ = 0, asked_ = 0;
+  std::vector<PlacedVertex> vertices_;
+  std::vector<PlacedBoxes> boxes_;
+  std::vector<Mark> marks_;
+  std::vector<Triangle> triangles_;
+  std::vector<Segment> segments_;
+  std::vector<Crossing> crossings_;
+  std::vector<Index> open_;
+};
+
+}  // namespace innersphere
