@@ -118,7 +118,11 @@ TEST(PackerInvariance, FarAwayAndInMillimetresTheSamePacking) {
     const Packing packing = measured(*makeSolid(mesh, "torus"));
     return expectedError(packing.overlap_errors.prefixes.back().volume_true, 0.1).mean;
   };
-  EXPECT_NEAR(errorOf(placed(skewedTorus(), 1e-3, 30)), errorOf(skewedTorus()), 1e-4);
+  const double error = errorOf(skewedTorus());
+  EXPECT_EQ(errorOf(placed(skewedTorus(), 0.5, 0)), error);
+  // Where numbers are rounded otherwise, the search for a pose may end a step sooner: of the 19 poses at this
+  // depth one is another then.
+  EXPECT_NEAR(errorOf(placed(skewedTorus(), 1e-3, 30)), error, 0.02 * error);
 }
 
 // Double precision ends somewhere, too.
