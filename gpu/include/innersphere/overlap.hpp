@@ -24,7 +24,8 @@ struct Overlap {
   Vec3d area{};
   double stiffness = 0;          ///< The sum of pi a^2 [m^2]: how fast the force grows with depth.
   double energy = 0;             ///< The potential of `force` for unit stiffness [m^4].
-  std::uint64_t pair_count = 0;  ///< The number of overlapping pairs of spheres.
+  /// The number of overlapping pairs of spheres; with Estimator::surface, of pairs of triangles that meet.
+  std::uint64_t pair_count = 0;
 };
 
 /// Names a pair of overlapping spheres, as indices into the two packings.

@@ -37,7 +37,10 @@ bool isClosedSurface(const Surface& surface) {
   return true;
 }
 
-constexpr double kLongest = 3;
+/// Boxes are no longer than this, in sides of a square of a triangle's mean area: long triangles are in
+/// several, for one box around them is mostly empty. Nor are they shorter than this part of what triangles
+/// are long on average: where all are needles, that bounds the number of boxes.
+constexpr double kLongest = 3, kShortest = 1.0 / 8;
 
 double areaOf(const Bounds& box) {
   const Vec3d d = box.max - box.min;
@@ -51,7 +54,7 @@ class SurfaceTree::Builder {
   /// Appends the node of triangles [first, end) and all below it.
   std::uint32_t build(std::uint32_t first, std::uint32_t end);
   Bounds boundsOf(std::uint32_t first, std::uint32_t end) const;
-  std::uint32_t size() const { return parts_.size(); }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(parts_.size()); }
 
  private:
   struct Part {
@@ -69,12 +72,17 @@ class SurfaceTree::Builder {
 };
 
 SurfaceTree::Builder::Builder(SurfaceTree& tree) : tree_(tree) {
-  double area = 0;
   const auto at = [&](std::uint32_t v) {
     return Vec3d{tree.vertices_[v].x, tree.vertices_[v].y, tree.vertices_[v].z};
   };
-  for (const Triangle& t : tree.triangles_) area += norm(cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]))) / 2;
-  const double most = kLongest * std::sqrt(area / tree.triangles_.size());
+  double area = 0, length = 0;
+  for (const Triangle& t : tree.triangles_) {
+    const Vec3d u = at(t[1]) - at(t[0]), v = at(t[2]) - at(t[0]);
+    area += norm(cross(u, v)) / 2;
+    length += std::max(largest(u), largest(v));
+  }
+  const auto count = static_cast<double>(tree.triangles_.size());
+  const double most = std::max(kLongest * std::sqrt(area / count), kShortest * length / count);
   for (std::uint32_t i = 0; i < tree.triangles_.size(); ++i) {
     const Triangle& t = tree.triangles_[i];
     const Vec3d corners[3] = {at(t[0]), at(t[1]), at(t[2])};

@@ -364,7 +364,7 @@ want: "touch" (pair_count is 0 or 1, all else is zero), "volume" (volume, centro
     Less costs less.
 estimator: "volume_true" (radii whose volumes sum to the solid's), "raw" (those of the spheres: volumes are low) or
     "surface" (the triangles that both packings carry: exact, but slower, and without a margin; spheres give only
-    pair_count and "touch").
+    "touch").
 margin: distance up to which spheres count as overlapping [m], at least 0. All spheres of A grow by it.
 out: None, or an array of float64 in C's order of the shape of the poses and 16 columns, which is written to and returned:
     the fields below, one after the other, in the last column the bits of pair_count. It may be on a CUDA device
@@ -383,7 +383,7 @@ torque      of that force on B about the translation of pose_b [m^4]
 area        minus the gradient of volume by the position of B [m^2]: along the normal, as long as the contact is large
 stiffness   by which the force grows with depth [m^2]
 energy      potential of the force for unit stiffness [m^4]
-pair_count  overlapping pairs of spheres, uint64
+pair_count  overlapping pairs of spheres, or of triangles that meet ("surface"), uint64
 
 With estimator="surface" the law of force is another one: energy is the volume, force is area, torque is minus the
 gradient of the volume by a rotation about the translation of pose_b [m^3], and stiffness is the area of B's surface
