@@ -13,27 +13,26 @@ namespace {
 
 /// A body of revolution about z: (distance from the axis, z) from one place on the axis to another,
 /// counter-clockwise around the cross section.
-Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile) {
-  constexpr std::uint32_t kAround = 48;
+Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile, std::uint32_t around = 48) {
   const auto rings = static_cast<std::uint32_t>(profile.size() - 2);
   Mesh mesh;
   for (std::uint32_t k = 1; k <= rings; ++k) {
-    for (std::uint32_t i = 0; i < kAround; ++i) {
-      const double angle = 2 * M_PI * i / kAround;
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const double angle = 2 * M_PI * i / around;
       mesh.vertices.push_back(
           {profile[k][0] * std::cos(angle), profile[k][0] * std::sin(angle), profile[k][1]});
     }
   }
   mesh.vertices.push_back({0, 0, profile.front()[1]});
   mesh.vertices.push_back({0, 0, profile.back()[1]});
-  const std::uint32_t first = rings * kAround, last = first - kAround;
-  for (std::uint32_t i = 0; i < kAround; ++i) {
-    const std::uint32_t next = (i + 1) % kAround;
+  const std::uint32_t first = rings * around, last = first - around;
+  for (std::uint32_t i = 0; i < around; ++i) {
+    const std::uint32_t next = (i + 1) % around;
     mesh.triangles.push_back({first, next, i});
     mesh.triangles.push_back({last + i, last + next, first + 1});
-    for (std::uint32_t low = 0; low < last; low += kAround) {
-      mesh.triangles.push_back({low + i, low + next, low + kAround + next});
-      mesh.triangles.push_back({low + i, low + kAround + next, low + kAround + i});
+    for (std::uint32_t low = 0; low < last; low += around) {
+      mesh.triangles.push_back({low + i, low + next, low + around + next});
+      mesh.triangles.push_back({low + i, low + around + next, low + around + i});
     }
   }
   return mesh;
@@ -91,14 +90,14 @@ std::unique_ptr<Solid> makeCow() {
   return makeSolid(makeDistanceSolid("cow", distance, bounds, 192)->surface(), "cow");
 }
 
-Mesh cupMesh() {
+Mesh cupMesh(std::uint32_t around) {
   constexpr double kRadius = 0.05, kHeight = 0.1, kWall = 0.001;
   std::vector<std::array<double, 2>> profile{{0, 0}, {kRadius, 0}};
   for (int i = 1; i <= 10; ++i) profile.push_back({kRadius, kHeight * i / 10});
   for (int i = 10; i >= 1; --i) profile.push_back({kRadius - kWall, kWall + (kHeight - kWall) * i / 10});
   profile.push_back({kRadius - kWall, kWall});
   profile.push_back({0, kWall});
-  return turnedMesh(profile);
+  return turnedMesh(profile, around);
 }
 
 Mesh hornMesh() {

@@ -155,8 +155,9 @@ class PatchContactPoints {
     corners.clear();
     if (rises_a != rises_b) probe_.corners(sample.index, points, normal, rises_a, scratch_.vertices, corners);
     EdgeContact crossing;
-    const bool crosses = points.areFlat() && points.normal_a.dot(points.normal_b) < kAlignedOnFacesCosine &&
-                         addCrossing(points, crossing);
+    const bool lie = points.normal_a.dot(points.normal_b) > kAlignedOnFacesCosine;
+    const bool crosses = points.areFlat() && !lie && addCrossing(points, Kind::crossing, crossing);
+    if (points.areFlat() && lie && probe_.crossesOnFaces()) addCrossing(points, Kind::corner, crossing);
     if (crosses && crossing.is_alone) corners.clear();
     for (const EdgeContact& corner : corners) addCorner(corner, rises_a);
     bool has_corners = !corners.empty();
@@ -173,7 +174,8 @@ class PatchContactPoints {
   /// For a sample whose line leaves A by its side: an edge or a corner of A beside it bears.
   void addBeside(const ProbedSample& sample) {
     EdgeContact crossing;
-    if (!sample.points.areFlat() || !addCrossing(sample.points, crossing)) addPeaks(sample, true);
+    if (!sample.points.areFlat() || !addCrossing(sample.points, Kind::crossing, crossing))
+      addPeaks(sample, true);
   }
 
   /// For the same, where A is through a mesh.
@@ -183,10 +185,9 @@ class PatchContactPoints {
     for (const EdgeContact& tip : scratch_.corners) addCorner(tip, true);
   }
 
-  bool addCrossing(const OpposedPoints& points, EdgeContact& crossing) {
+  bool addCrossing(const OpposedPoints& points, WeightedPoint::Kind kind, EdgeContact& crossing) {
     return probe_.crossing(points, patch_.normal, crossing) &&
-           (isFound(crossing.id) ||
-            add(crossing.points, crossing.points.normal_a, crossing.id, Kind::crossing));
+           (isFound(crossing.id) || add(crossing.points, crossing.points.normal_a, crossing.id, kind));
   }
 
   /// Each point stands for an equal part of the patch.

@@ -6,6 +6,14 @@
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Whether contact points on the two sides of a solid are so close that Bullet would take them for one.
+bool isThin(const PackingShape::Impl& shape) {
+  return shape.halfThickness() < gContactBreakingThreshold * shape.size;
+}
+
+}  // namespace
 
 ContactSettings::ContactSettings(const ContactOptions& options, const PackingShape& a,
                                  const btCollisionShape& b, btScalar needed)
@@ -23,11 +31,12 @@ ContactSettings::ContactSettings(const ContactOptions& options, const PackingSha
     estimator = options.estimator;
     return;
   }
-  // Other packings do not see feelers.
-  const btScalar inset = packing_b == nullptr ? prefix_a->feelers().inset : prefix_a->inset();
+  const btScalar inset = packing_b == nullptr ? prefix_a->feelers().inset : prefix_a->searchInset();
   inset_a = inset * a.getLocalScaling().x();
   search_margin_a = separation + inset_a;
-  if (packing_b != nullptr) search_margin_b = prefix_b->inset() * b.getLocalScaling().x();
+  if (packing_b == nullptr) return;
+  search_margin_b = prefix_b->searchInset() * b.getLocalScaling().x();
+  thin = isThin(a.impl()) || isThin(packing_b->impl());
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -24,6 +24,7 @@ struct ContactSettings {
   Estimator estimator = Estimator::raw;  ///< radii of the spheres
   btScalar spacing;                      ///< points closer to each other are one [m]
   btScalar separation;                   ///< surfaces further apart than this have no contact [m]
+  bool thin = false;                     ///< of packings: a body is so thin that faces end near all points
   btScalar inset_a = 0;                  ///< how far spheres of A may end inside of its surface [m]
   btScalar search_margin_a = 0;          ///< how far beyond their radii spheres of A search for contacts [m]
   btScalar search_margin_b = 0;

@@ -2,15 +2,13 @@
 
 #include <cmath>
 
-#include "common/contact_tolerances.hpp"
-
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// Whether both faces of an edge fall away from it, seen along `direction` (unit, out of the solid).
-bool fallsAway(const SharpEdges::Edge& edge, const btVector3& direction) {
-  return edge.inwards[0].dot(direction) < -kFallingSine && edge.inwards[1].dot(direction) < -kFallingSine;
+bool fallsAway(const SharpEdges::Edge& edge, const btVector3& direction, btScalar sine) {
+  return edge.inwards[0].dot(direction) < -sine && edge.inwards[1].dot(direction) < -sine;
 }
 
 bool isOn(btScalar share) {
@@ -20,10 +18,12 @@ bool isOn(btScalar share) {
 /// Two edges, each looked for from one of the opposed points.
 class EdgePair {
  public:
-  EdgePair(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& points, const btVector3& direction)
+  EdgePair(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& points, const btVector3& direction,
+           btScalar falling)
       : a_(a),
         b_(b),
         points_(points),
+        falling_(falling),
         out_of_a_(points.normal_a + points.normal_b + direction),
         start_a_(lerp(points.on_a, a.middle(points.triangle_a), kStartInside)),
         start_b_(lerp(points.on_b, b.middle(points.triangle_b), kStartInside)) {}
@@ -65,7 +65,7 @@ class EdgePair {
 
   /// Both solids have nothing as far out nearby.
   bool isOutermost() const {
-    if (!fallsAway(edge_a_, normal_) || !fallsAway(edge_b_, -normal_)) return false;
+    if (!fallsAway(edge_a_, normal_, falling_) || !fallsAway(edge_b_, -normal_, falling_)) return false;
     // Edges that are far apart cross, too.
     const btScalar length = btSqrt(btMin(edge_a_.along.length2(), edge_b_.along.length2()));
     const btScalar depth = (on_a() - on_b()).dot(normal_);
@@ -76,6 +76,7 @@ class EdgePair {
   const SharpEdges& a_;
   const SharpEdges& b_;
   const OpposedPoints& points_;
+  const btScalar falling_;
   const btVector3 out_of_a_;  ///< about
   const btVector3 start_a_, start_b_;
   SharpEdges::Edge edge_a_, edge_b_;
@@ -86,8 +87,8 @@ class EdgePair {
 }  // namespace
 
 bool crossEdges(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& points,
-                const btVector3& direction, EdgeContact& crossing) {
-  EdgePair pair(a, b, points, direction);
+                const btVector3& direction, EdgeContact& crossing, btScalar falling) {
+  EdgePair pair(a, b, points, direction, falling);
   // To where the contact gets deeper; or, if the points lie between the edges, to where each solid reaches
   // further.
   const btVector3 deeper = points.normal_b - points.normal_a;

@@ -134,7 +134,8 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
 
 bool PackingProbe::crossing(const OpposedPoints& points, const btVector3& direction,
                             EdgeContact& crossing) const {
-  return crossEdges({a_, {0, 0, 0}}, {b_, apart()}, points, direction, crossing);
+  return crossEdges({a_, {0, 0, 0}}, {b_, apart()}, points, direction, crossing,
+                    thin_ ? kLeaning : kFallingSine);
 }
 
 FaceExtents::EdgeDistances PackingProbe::edgeDistances(const OpposedPoints& points,

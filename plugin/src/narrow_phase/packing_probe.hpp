@@ -16,8 +16,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExtents, public ContactSpheres {
  public:
   PackingProbe(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
-               std::size_t count_a)
-      : a_(a), b_(b), contacts_(contacts), count_a_(count_a) {}
+               std::size_t count_a, bool thin = false)
+      : a_(a), b_(b), contacts_(contacts), count_a_(count_a), thin_(thin) {}
 
   /// Probes a sample for the first time: towards the nearest point of the other surface, or, where the
   /// surfaces do not oppose each other there, in the direction of the patch. Where both bend, and the nearest
@@ -39,9 +39,13 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
+  bool crossesOnFaces() const override { return thin_; }
   EdgeDistances edgeDistances(const OpposedPoints& points, const btVector3& towards) const override;
   std::uint64_t id(std::size_t index) const override;
   Protrusion protrusion(std::size_t index, const btVector3& normal) const override;
+  bool isOfPacking(std::size_t index) const override {
+    return !(index < count_a_ ? a_ : b_).isFeeler(contacts_[index].sphere);
+  }
 
  private:
   btVector3 apart() const { return b_.origin() - a_.origin(); }
@@ -57,6 +61,7 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
   const PlacedPacking& b_;
   const std::vector<SphereContact>& contacts_;
   std::size_t count_a_;
+  bool thin_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -50,7 +50,10 @@ void appendHalves(const QueryResult::Ranges<SphereContact>& ranges, std::size_t 
 struct PackingVsPacking::Bodies {
   Bodies(const PackingVsPacking& pair, const ContactSettings& measure)
       : a(*pair.a_, pair.now_.a, Estimator::raw, measure.search_margin_a, measure.prefix_a),
-        b(*pair.b_, pair.now_.b, Estimator::raw, measure.search_margin_b, measure.prefix_b) {}
+        b(*pair.b_, pair.now_.b, Estimator::raw, measure.search_margin_b, measure.prefix_b) {
+    a.addSearchFeelers();
+    b.addSearchFeelers();
+  }
   PlacedPacking a;
   PlacedPacking b;
 };
@@ -99,6 +102,7 @@ PairQuery PackingVsPacking::makeQuery(SearchPass pass, const ContactSettings& me
   if (isOfSurfaces(pass)) {
     query.a = &measure.prefix_a->searchModel();
     query.b = &measure.prefix_b->searchModel();
+    query.prefix_a = query.prefix_b = 0;  // all
     query.margin += pass == SearchPass::nearby ? halfThickness() : measure.separation;
   }
   if (pass == SearchPass::deep)
@@ -201,7 +205,7 @@ void PackingVsPacking::selectMoreSamples(const Bodies& bodies, const std::vector
 
 /// Whether surfaces are near each other at any of the samples.
 bool PackingVsPacking::evaluateDepths(const Bodies& bodies) {
-  const PackingProbe probe(bodies.a, bodies.b, contacts_, count_a_);
+  const PackingProbe probe(bodies.a, bodies.b, contacts_, count_a_, search_->thin);
   memory.carryTo(now_, *a_, search_->spacing);
   return refinePatches(memory.samples, probe, *search_, step_, memory.patches);
 }

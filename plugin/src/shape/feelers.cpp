@@ -167,6 +167,7 @@ Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
     // Where numbers are too large to be told apart, it would be chosen again and again.
     if (!(place.at.distance(centre(ball)) - btScalar(ball.radius) < place.gap)) break;
     feelers.balls.push_back(ball);
+    feelers.largest_radius = btMax(feelers.largest_radius, btScalar(ball.radius));
     feelers.triangles.push_back(place.triangle);
     feelers.spheres.push_back(nearestSphere(ball, packing, count));
     gaps.add(ball);

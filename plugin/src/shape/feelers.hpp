@@ -17,6 +17,7 @@ struct Feelers {
   std::vector<Sphere> balls;
   std::vector<std::uint32_t> triangles;  ///< that they touch
   std::vector<std::uint32_t> spheres;    ///< that they are nearest to
+  btScalar largest_radius = 0;           ///< of the balls: half as thick as the solid is there [m]
   btScalar inset = 0;  ///< how far spheres and balls together may end inside of the surface [m]
 };
 

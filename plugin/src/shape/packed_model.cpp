@@ -96,6 +96,17 @@ const Feelers& Prefix::feelers() const {
   });
 }
 
+const Feelers* Prefix::searchFeelers() const {
+  // Spheres on a grid do not tell how thick a solid is, but balls do.
+  const bool reach_through = inset() > largest_radius && inset() > feelers().largest_radius;
+  return reach_through ? &feelers() : nullptr;
+}
+
+btScalar Prefix::searchInset() const {
+  const Feelers* const more = searchFeelers();
+  return more == nullptr ? inset() : more->inset;
+}
+
 const SphereBvh& Prefix::feelingTree() const {
   const Feelers& more = feelers();
   if (more.balls.empty()) return tree();
@@ -109,8 +120,12 @@ const CollisionModel& Prefix::searchModel() const {
     auto first = std::make_shared<Packing>();
     first->order = model_.packing().order;
     first->spheres.assign(all.begin(), all.begin() + std::ptrdiff_t(count));
+    if (const Feelers* const more = searchFeelers()) {
+      first->order = SphereOrder::coverage;  // radii do not fall
+      first->spheres.insert(first->spheres.end(), more->balls.begin(), more->balls.end());
+    }
+    const std::vector<Sphere> enlarged = searchSpheres(model_.packing().surface, first->spheres);
     auto model = std::make_unique<CollisionModel>(std::move(first));
-    const std::vector<Sphere> enlarged = searchSpheres(model_.packing(), count);
     model->update(enlarged.data(), enlarged.size());
     return model;
   });

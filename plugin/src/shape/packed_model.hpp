@@ -34,11 +34,16 @@ class Prefix {
   /// Returns the balls that feel where no sphere is near the surface: none where spheres are near it
   /// everywhere. Call it only if the packing has a surface.
   const Feelers& feelers() const;
+  /// Returns the feelers if searches among packings need them, too, else null: in a solid that is thinner
+  /// than its gaps spheres would be enlarged through walls, and lines from them not lead to where walls meet.
+  const Feelers* searchFeelers() const;
+  /// Returns how far what searches among packings use may end inside of the surface.
+  btScalar searchInset() const;
   /// Returns the tree of the spheres and, counted on from there, the feelers.
   const SphereBvh& feelingTree() const;
 
-  /// Returns the model of the spheres enlarged, see searchSpheres(), in their order. Call it only if the
-  /// packing has a surface.
+  /// Returns the model of the spheres, then searchFeelers(), enlarged, see searchSpheres(). Call it only if
+  /// the packing has a surface.
   const CollisionModel& searchModel() const;
 
   /// Tells the log, once, if parts of the surface have no sphere near them. For spheres that a user chose.

@@ -30,8 +30,8 @@ using Piece = std::array<CoveredPlace, 3>;  ///< a triangle
 /// Enlarges spheres, piece by piece of the surface.
 class Cover {
  public:
-  Cover(const std::vector<Sphere>& spheres, std::size_t count, btScalar slack)
-      : spheres_(spheres), tree_(spheres, count), slack_(slack), excess_(count, 0) {}
+  Cover(const std::vector<Sphere>& spheres, btScalar slack)
+      : spheres_(spheres), tree_(spheres, spheres.size()), slack_(slack), excess_(spheres.size(), 0) {}
 
   CoveredPlace placeAt(const btVector3& at);
   /// Enlarges a sphere until it holds the piece, or does that with both halves of the piece.
@@ -121,17 +121,15 @@ void Cover::closeWideGaps() {
 
 }  // namespace
 
-std::vector<Sphere> searchSpheres(const Packing& packing, std::size_t count) {
-  const Surface& surface = packing.surface;
-  Cover cover(packing.spheres, count, kSlack * diagonalOf(surface));
+std::vector<Sphere> searchSpheres(const Surface& surface, std::vector<Sphere> spheres) {
+  Cover cover(spheres, kSlack * diagonalOf(surface));
   std::vector<CoveredPlace> corners;
   corners.reserve(surface.vertices.size());
   for (const auto& vertex : surface.vertices) corners.push_back(cover.placeAt(toBullet(vertex)));
   for (const auto& t : surface.triangles) cover.add({corners[t[0]], corners[t[1]], corners[t[2]]});
   cover.closeWideGaps();
-  std::vector<Sphere> enlarged(packing.spheres.begin(), packing.spheres.begin() + std::ptrdiff_t(count));
-  for (std::size_t i = 0; i < count; ++i) enlarged[i].radius += static_cast<float>(cover.excess(i));
-  return enlarged;
+  for (std::size_t i = 0; i < spheres.size(); ++i) spheres[i].radius += static_cast<float>(cover.excess(i));
+  return spheres;
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

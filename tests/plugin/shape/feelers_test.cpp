@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "shape/packed_model.hpp"
 #include "test_packings.hpp"
 
 namespace innersphere::test {
@@ -99,6 +101,20 @@ TEST(PlaceFeelers, PlacesNoneWhereSpheresAreNearEverywhere) {
   const Feelers feelers = placeFeelers(box, 64, btScalar(0.017), surface);  // 1 % of sqrt(3) m
   EXPECT_TRUE(feelers.balls.empty());
   EXPECT_EQ(feelers.inset, btScalar(0.017));
+}
+
+/// How many feelers searches among packings need beside the spheres.
+std::size_t searchFeelersOf(const Packing& packing) {
+  const auto model =
+      PackedModel::of(std::make_shared<CollisionModel>(std::make_shared<const Packing>(packing)));
+  const Feelers* const more = model->prefix(packing.spheres.size()).searchFeelers();
+  return more == nullptr ? 0 : more->balls.size();
+}
+
+TEST(SearchFeelers, AreThoseOfSolidsThinnerThanTheirGaps) {
+  EXPECT_GT(searchFeelersOf(latticeBox({1, 1, 0.01}, 1)), 200U);
+  EXPECT_EQ(searchFeelersOf(latticeBox({1, 1, 1}, 1)), 0U) << "gaps in the corners";
+  EXPECT_EQ(searchFeelersOf(latticeBox({4, 4, 1}, 16)), 0U) << "small spheres, far apart";
 }
 
 }  // namespace

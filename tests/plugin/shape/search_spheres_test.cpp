@@ -73,7 +73,8 @@ const Packing& packed(const std::string& solid) {
 struct Enlarged {
   Enlarged(const std::string& solid, std::size_t n) : count(n), packing(packed(solid)) {
     count = std::min(count, packing.spheres.size());
-    spheres = searchSpheres(packing, count);
+    spheres = searchSpheres(packing.surface,
+                            {packing.spheres.begin(), packing.spheres.begin() + std::ptrdiff_t(count)});
     Point min{1e9, 1e9, 1e9}, max{-1e9, -1e9, -1e9};
     for (const auto& v : packing.surface.vertices) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -214,7 +215,8 @@ TEST(SearchSpheresOfTwoCubes, AreEnlargedEachToItsOwnCorners) {
   packing.spheres = {{0, 0, 0, 0.5f}, {2, 0, 0, 0.1f}, {0, 0, 0, 0.05f}};
   addCube(0, 0.5, packing.surface);
   addCube(2, 0.1, packing.surface);
-  const std::vector<Sphere> enlarged = searchSpheres(packing, 3);
+  const std::vector<Sphere> enlarged =
+      searchSpheres(packing.surface, {packing.spheres.begin(), packing.spheres.begin() + 3});
   EXPECT_NEAR(enlarged[0].radius, 0.5 * std::sqrt(3), 1e-5);
   EXPECT_NEAR(enlarged[1].radius, 0.1 * std::sqrt(3), 1e-5);
   EXPECT_EQ(enlarged[2].radius, 0.05f);  // nearest to none
@@ -222,7 +224,7 @@ TEST(SearchSpheresOfTwoCubes, AreEnlargedEachToItsOwnCorners) {
 
 TEST(SearchSpheresWithWideGaps, AreAllEnlargedAlike) {
   const Packing packing = latticeBox({4, 4, 1}, 8);
-  const std::vector<Sphere> enlarged = searchSpheres(packing, packing.spheres.size());
+  const std::vector<Sphere> enlarged = searchSpheres(packing.surface, packing.spheres);
   const double r = packing.spheres[0].radius;
   // The corner is as far from the sphere next to it as that is from its cell's: (1/4, 1/4, 1/16).
   for (const Sphere& s : enlarged) EXPECT_NEAR(s.radius, std::hypot(0.25, 0.25, 0.0625), 1e-5);
@@ -235,7 +237,8 @@ TEST(SearchSpheresFarAway, EndWhereNumbersAreTooLarge) {
   packing.spheres = {{1e7f, 1e7f, 1e7f, 1}, {1e7f + 8, 1e7f, 1e7f, 1}};
   packing.surface.vertices = {{1e7f, 1e7f, 1e7f + 2}, {1e7f + 8, 1e7f, 1e7f + 2}, {1e7f, 1e7f + 1, 1e7f}};
   packing.surface.triangles = {{0, 1, 2}};
-  const std::vector<Sphere> enlarged = searchSpheres(packing, 2);
+  const std::vector<Sphere> enlarged =
+      searchSpheres(packing.surface, {packing.spheres.begin(), packing.spheres.begin() + 2});
   for (const auto& v : packing.surface.vertices) EXPECT_LT(leastGap({v[0], v[1], v[2]}, enlarged, 2), 1);
 }
 
