@@ -39,6 +39,7 @@ SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b) {
   for (const Vec3d& corner : {box_a.min, box_a.max, box_b.min, box_b.max}) {
     for (const double x : corner) reach = std::max(reach, std::abs(x));
   }
+  if (!(reach > 0)) return {};
   const double cells = std::exp2(kGridBits - 1 - std::ilogb(reach));
   static thread_local GridSurface on_grid_a, on_grid_b;
   on_grid_a.begin(a.tree, identity, b_to_a.inverse(), cells, Moved::point);
