@@ -53,6 +53,7 @@ void GridSurface::begin(const SurfaceTree& tree, const Similarity& placed, const
   grid_slack_ = static_cast<float>(kSingleRounding * (moved == Moved::point ? own_reach : reach));
   cells_ = cells;
   moved_ = moved;
+  asked_ = 0;
   if (++query_ == 0) {
     vertices_.clear();
     boxes_.clear();
@@ -74,8 +75,7 @@ void GridSurface::place(Index v) {
 }
 
 void GridSurface::placeTriangle(Index triangle) {
-  marks_[triangle].query = query_;
-  marks_[triangle].place = static_cast<Index>(triangles_.size());
+  marks_[triangle] = {query_, static_cast<Index>(triangles_.size()), 0};
   const SurfaceTree::Triangle& v = tree_->triangles()[triangle];
   triangles_.push_back({GridTriangle(vertex(v[0]), vertex(v[1]), vertex(v[2])), v});
 }

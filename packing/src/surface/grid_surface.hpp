@@ -113,8 +113,8 @@ class GridSurface {
     LaneBoxes boxes;
   };
   struct Mark {
-    Index query = 0, place;
-    Index asked = 0;  ///< the last point for which it was looked at
+    Index query = 0, place = 0;
+    Index asked = 0;  ///< number of the last point for which it was looked at
   };
 
   void place(Index vertex);
