@@ -224,20 +224,6 @@ void PlacedMesh::move(const Vec3d& by) {
   for (Vec3d& c : corners) c = c + by;
 }
 
-double PlacedMesh::distance(const Vec3d& place) const {
-  double least = kFar;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const double s = meet(place, normals[t], *this, t);
-    if (s != kFar) least = std::min(least, std::fabs(s));
-  }
-  for (const Edge& e : edges) {
-    const Vec3d &p = corners[e.from], way = corners[e.to] - p;
-    least =
-        std::min(least, norm(place - p - std::clamp(dot(place - p, way) / dot(way, way), 0.0, 1.0) * way));
-  }
-  return least;
-}
-
 std::optional<Touch> firstTouch(const PlacedMesh& a, const PlacedMesh& b, const Vec3d& direction) {
   Touch first{kFar, {}};
   const auto take = [&](double way, const Vec3d& normal) {

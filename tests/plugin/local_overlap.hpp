@@ -16,8 +16,6 @@ namespace innersphere::test {
 struct PlacedMesh {
   PlacedMesh(const Surface& surface, const btTransform& at);
   void move(const Vec3d& by);
-  /// From its surface.
-  double distance(const Vec3d& place) const;
 
   struct Edge {
     int from, to;

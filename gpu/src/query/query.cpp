@@ -98,7 +98,7 @@ struct QueryContext::Impl {
     if (count >> 32) throw Error(ErrorCode::bad_argument, "a batch has at most 2^32 - 1 queries; split it");
     prepare(queries, count, estimatorOfSpheres(query_options));
     for_surfaces.keep(queries, count, query_options);
-    if (needsNoSpheres(query_options)) prepared.clear();
+    if (needsNoSpheres(query_options)) prepared.clear();  // they have been checked
     QueryBackend& backend = choose(query_options.want);
     backend.start(prepared, query_options.want);
     under_way = &backend;

@@ -90,7 +90,7 @@ void GridSurface::placeBoxes(Index index) {
     boxes.half[k] = size[0] * node.half[0] + size[1] * node.half[1] + size[2] * node.half[2] + slack_;
   }
   if (!node.are_triangles) return;
-  // Those around the triangles are smaller, unless these are in parts.
+  // Those around whole triangles are smaller, unless these are in several.
   Lanes corners[3][3];
   for (Index i = 0; i < SurfaceTree::kWidth; ++i) {
     const SurfaceTree::Triangle& t = tree_->triangles()[node.children[std::min(i, node.count - 1)]];
@@ -136,7 +136,7 @@ int GridSurface::windingAt(const Vec3d& point) {
         open_.push_back(node.children[k]);
         continue;
       }
-      // A triangle that is in parts counts once.
+      // A triangle that is in several boxes counts once.
       const Index place = find(node.children[k]);
       if (std::exchange(marks_[node.children[k]].asked, asked_) == asked_) continue;
       winding += windingBelow(triangles_[place], point, moved_);

@@ -1,7 +1,6 @@
 #include "surface/sides.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
 
@@ -46,10 +45,12 @@ WideVector exactNormal(const GridTriangle& t) {
   return cross(wide(t.corners[1] - t.corners[0]), wide(t.corners[2] - t.corners[0]));
 }
 
-bool isAboveExactly(const Vec3d& point, const GridTriangle& t, Moved moved) {
+/// Returns whether a point is above a triangle, from its height, which is known but for `bound`.
+bool isAbove(double height, double bound, const Vec3d& point, const GridTriangle& t, Moved moved) {
+  if (std::abs(height) > bound) return height > 0;
   const WideVector normal = exactNormal(t);
-  const Wide height = dot(normal, wide(point - t.corners[0]));
-  if (height != 0) return height > 0;
+  const Wide exact = dot(normal, wide(point - t.corners[0]));
+  if (exact != 0) return exact > 0;
   return (signAlongMove(normal) > 0) == (moved == Moved::point);
 }
 
@@ -67,8 +68,7 @@ bool isLeft(const Vec3d& a, const Vec3d& b, const Vec3d& point, Moved moved) {
 
 /// Returns the sign of the normal's z.
 int facing(const GridTriangle& t) {
-  const Vec3d u = t.corners[1] - t.corners[0], v = t.corners[2] - t.corners[0];
-  if (std::abs(t.normal.z) > kRounding2 * largest(u) * largest(v)) return t.normal.z > 0 ? 1 : -1;
+  if (std::abs(t.normal.z) > t.rounding) return t.normal.z > 0 ? 1 : -1;
   const Wide z = exactNormal(t).z;
   return z == 0 ? 0 : z > 0 ? 1 : -1;
 }
@@ -90,8 +90,7 @@ Corners cornersAbove(const GridTriangle& plane, const GridTriangle& triangle, Mo
   for (int k = 0; k < 3; ++k) {
     const double height = dot(plane.normal, triangle.corners[k] - plane.corners[0]);
     corners.heights[k] = height;
-    corners.above[k] =
-        std::abs(height) > bound ? height > 0 : isAboveExactly(triangle.corners[k], plane, moved);
+    corners.above[k] = isAbove(height, bound, triangle.corners[k], plane, moved);
   }
   const bool* above = corners.above;
   if (above[0] == above[1]) {
@@ -130,10 +129,8 @@ int windingBelow(const GridTriangle& triangle, const Vec3d& point, Moved moved) 
   const int side = facing(triangle);
   if (side == 0 || (side > 0) != left) return 0;
   const Vec3d to = point - c[0];
-  const double height = dot(triangle.normal, to);
-  const bool above = std::abs(height) > triangle.rounding * largest(to)
-                         ? height > 0
-                         : isAboveExactly(point, triangle, moved);
+  const bool above =
+      isAbove(dot(triangle.normal, to), triangle.rounding * largest(to), point, triangle, moved);
   return above == (side > 0) ? 0 : side;
 }
 

@@ -31,6 +31,8 @@ struct Corners {
   bool above[3];      ///< exact
   int alone;          ///< this one lies on its own side, -1 if all lie on one
 
+  /// Returns the edge that leads from the corner that is alone, or to it. Edge k leads from corner k to the
+  /// next.
   int edge(bool from_alone) const { return from_alone ? alone : (alone + 2) % 3; }
 };
 

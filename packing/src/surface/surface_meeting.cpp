@@ -84,12 +84,12 @@ void meet(GridSurface& a, Index of_a, GridSurface& b, Index of_b) {
 
 void findMeeting(GridSurface& a, GridSurface& b) {
   using Pair = std::pair<Index, Index>;
-  static thread_local std::vector<Pair> open, in_parts;
+  static thread_local std::vector<Pair> open, repeated;
   open.assign(1, {0, 0});
-  in_parts.clear();
+  repeated.clear();
   const auto meetTriangles = [&](Index t, Index u) {
-    if (a.tree().isInParts(t) || b.tree().isInParts(u)) {
-      in_parts.emplace_back(t, u);
+    if (a.tree().isInSeveralBoxes(t) || b.tree().isInSeveralBoxes(u)) {
+      repeated.emplace_back(t, u);
     } else {
       meet(a, t, b, u);
     }
@@ -120,10 +120,10 @@ void findMeeting(GridSurface& a, GridSurface& b) {
       });
     });
   }
-  // Several of their parts have been found, but they meet once.
-  std::sort(in_parts.begin(), in_parts.end());
-  const auto end = std::unique(in_parts.begin(), in_parts.end());
-  for (auto pair = in_parts.begin(); pair != end; ++pair) meet(a, pair->first, b, pair->second);
+  // Several of their boxes meet, but they do once.
+  std::sort(repeated.begin(), repeated.end());
+  const auto end = std::unique(repeated.begin(), repeated.end());
+  for (auto pair = repeated.begin(); pair != end; ++pair) meet(a, pair->first, b, pair->second);
 }
 
 }  // namespace innersphere

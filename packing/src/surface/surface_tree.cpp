@@ -12,6 +12,20 @@
 
 namespace innersphere {
 
+namespace {
+
+/// Boxes are no longer than this, in sides of a square of a triangle's mean area: long triangles are in
+/// several, for one box around them is mostly empty. Nor are they shorter than this part of what triangles
+/// are long on average: where all are needles, that bounds the number of boxes.
+constexpr double kLongest = 3, kShortest = 1.0 / 8;
+
+double areaOf(const Bounds& box) {
+  const Vec3d d = box.max - box.min;
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+}  // namespace
+
 bool isClosedSurface(const Surface& surface) {
   struct HalfEdge {
     std::uint32_t low, high;
@@ -35,16 +49,6 @@ bool isClosedSurface(const Surface& surface) {
     if (last && surplus != 0) return false;
   }
   return true;
-}
-
-/// Boxes are no longer than this, in sides of a square of a triangle's mean area: long triangles are in
-/// several, for one box around them is mostly empty. Nor are they shorter than this part of what triangles
-/// are long on average: where all are needles, that bounds the number of boxes.
-constexpr double kLongest = 3, kShortest = 1.0 / 8;
-
-double areaOf(const Bounds& box) {
-  const Vec3d d = box.max - box.min;
-  return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
 /// Sorts the triangles, so that those of each node follow each other.
@@ -88,9 +92,9 @@ SurfaceTree::Builder::Builder(SurfaceTree& tree) : tree_(tree) {
     const Vec3d corners[3] = {at(t[0]), at(t[1]), at(t[2])};
     addParts(i, {corners, corners + 3}, most);
   }
-  tree.in_parts_.assign(tree.triangles_.size(), false);
+  tree.in_several_boxes_.assign(tree.triangles_.size(), false);
   for (std::size_t k = 1; k < parts_.size(); ++k) {
-    if (parts_[k].triangle == parts_[k - 1].triangle) tree.in_parts_[parts_[k].triangle] = true;
+    if (parts_[k].triangle == parts_[k - 1].triangle) tree.in_several_boxes_[parts_[k].triangle] = true;
   }
 }
 

@@ -46,7 +46,8 @@ class SurfaceTree {
     for (std::uint32_t i = first_at_[vertex]; i < first_at_[vertex + 1]; ++i) f(triangles_at_[i]);
   }
 
-  bool isInParts(std::uint32_t triangle) const { return in_parts_[triangle]; }
+  /// Returns whether a triangle is the child of several nodes: a long one is in several boxes.
+  bool isInSeveralBoxes(std::uint32_t triangle) const { return in_several_boxes_[triangle]; }
 
   /// Parts of the surface that have no vertex in common.
   std::uint32_t partCount() const { return static_cast<std::uint32_t>(vertex_of_part_.size()); }
@@ -64,7 +65,7 @@ class SurfaceTree {
   std::vector<std::uint32_t> first_at_, triangles_at_;
   std::vector<std::uint32_t> vertex_of_part_, parts_;  ///< parts_ is empty if there is one
   Bounds bounds_;
-  std::vector<bool> in_parts_;
+  std::vector<bool> in_several_boxes_;
 };
 
 inline SurfaceTree::Lanes lesser(SurfaceTree::Lanes a, SurfaceTree::Lanes b) {

@@ -1,5 +1,6 @@
 // Overlaps by triangles of solids made of cubes: in a lattice, where all faces, edges and corners coincide,
 // their volume is counted; in other places it is that of cubes cut by the planes of cubes.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
