@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 #include <random>
+#include <utility>
 
 #include "innersphere/batched_dispatcher.hpp"
 #include "timing.hpp"
@@ -60,6 +61,11 @@ BinOfBodies::BinOfBodies(const BinOptions& options)
 BinOfBodies::~BinOfBodies() {
   for (const auto& body : bodies_) world_.removeRigidBody(body.get());
   for (const auto& wall : walls_) world_.removeRigidBody(wall.get());
+}
+
+void BinOfBodies::solveWith(std::shared_ptr<btConstraintSolver> solver) {
+  world_.setConstraintSolver(solver.get());
+  solver_ = std::move(solver);
 }
 
 StepTime BinOfBodies::step(double dt) {

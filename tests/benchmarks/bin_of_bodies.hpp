@@ -50,6 +50,8 @@ class BinOfBodies {
 
   /// Not to: the solver gets all bodies at once, and Bullet looks for no islands.
   void splitIslands(bool split) { world_.getSimulationIslandManager()->setSplitIslands(split); }
+  /// The world's solver from now on.
+  void solveWith(std::shared_ptr<btConstraintSolver> solver);
   StepTime step(double dt);
   std::vector<BodyState> state() const;
   void setState(const std::vector<BodyState>& state);
