@@ -75,8 +75,8 @@ class TrueOverlap {
       Point corners[3];
       double heights[3];
       for (int k = 0; k < 3; ++k) {
-        const Vec3f& v = tree_->vertices()[triangle[k]];
-        corners[k] = scale_ * Point(v.x, v.y, v.z) + shift_ - height * normal;
+        const SurfaceTree::Lanes& v = tree_->vertices()[triangle[k]];
+        corners[k] = scale_ * Point(v[0], v[1], v[2]) + shift_ - height * normal;
         heights[k] = normal.dot(corners[k]);
       }
       Point polygon[4];

@@ -11,6 +11,20 @@ namespace {
 
 using Index = GridSurface::Index;
 
+/// Holds sums over a part of a plane, times how often the other solid encloses it, all relative to the length
+/// of the normal.
+struct PlanePart {
+  double area = 0;       ///< twice
+  double magnitude = 0;  ///< the sum of absolute values in `area`
+  Vec3d middle{};        ///< six times the integral of the places
+};
+
+/// Returns the axis along which a vector reaches farthest.
+int largestAxis(const Vec3d& v) {
+  const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
+  return x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
+}
+
 /// Brings winding numbers in the other solid from vertex to vertex, as far as triangles are in it.
 class Enclosure {
  public:
@@ -30,7 +44,7 @@ class Enclosure {
   void passThrough(Index triangle, int winding);
   int windingAlong(const GridSurface::Triangle& t, int from, int to) const;
   void addCut(const GridSurface::Triangle& t);
-  void add(const Vec3d& a, const Vec3d& b, const Vec3d& c, double winding, const Vec3d& outwards);
+  void add(const Vec3d& place, const PlanePart& part, const Vec3d& normal);
 
   GridSurface* own_ = nullptr;
   GridSurface* other_ = nullptr;
@@ -42,7 +56,6 @@ class Enclosure {
   std::vector<Index> added_in_;  ///< the query in which a triangle was added as a whole
   std::vector<Index> open_;      ///< vertices from which to go on
   std::vector<char> is_cut_;     ///< of the parts of the surface
-  std::vector<const Crossing*> along_;
 };
 
 EnclosedSums Enclosure::sum(GridSurface& own, GridSurface& other, const Vec3d& origin, bool volume_only) {
@@ -62,18 +75,18 @@ EnclosedSums Enclosure::sum(GridSurface& own, GridSurface& other, const Vec3d& o
   return sums_;
 }
 
-/// Adds a triangle. It faces where `outwards` leads to, or it is taken away.
-void Enclosure::add(const Vec3d& a, const Vec3d& b, const Vec3d& c, double winding, const Vec3d& outwards) {
-  const Vec3d normal = winding * cross(b - a, c - a), from = a - origin_;
-  const double cone = dot(from, normal);
-  const Vec3d middle = from + (b - origin_) + (c - origin_);
-  sums_.volume += cone;
-  sums_.magnitude += std::abs(from.x * normal.x) + std::abs(from.y * normal.y) + std::abs(from.z * normal.z);
-  sums_.moment = sums_.moment + cone * middle;
+/// Adds a part of a plane through a place.
+void Enclosure::add(const Vec3d& place, const PlanePart& part, const Vec3d& normal) {
+  const Vec3d from = place - origin_;
+  const double height = dot(from, normal);
+  sums_.volume += part.area * height;
+  sums_.magnitude += part.magnitude * (std::abs(from.x * normal.x) + std::abs(from.y * normal.y) +
+                                       std::abs(from.z * normal.z));
+  sums_.moment = sums_.moment + height * part.middle;
   if (volume_only_) return;
-  sums_.area = sums_.area + normal;
-  sums_.turning = sums_.turning + cross(middle, normal);
-  sums_.wetted += std::copysign(norm(normal), dot(normal, outwards));
+  sums_.area = sums_.area + part.area * normal;
+  sums_.turning = sums_.turning + cross(part.middle, normal);
+  sums_.wetted += part.area * norm(normal);
 }
 
 void Enclosure::addAll() {
@@ -136,7 +149,8 @@ void Enclosure::passThrough(Index triangle, int winding) {
   const Vec3d outwards = cross(b - a, c - a);
   // Where all corners lie on a line, the other surface crosses edges and does not meet the triangle.
   if (outwards == Vec3d{}) return;
-  add(a, b, c, winding, outwards);
+  const auto area = static_cast<double>(winding);
+  add(a, {area, std::abs(area), area * ((a - origin_) + (b - origin_) + (c - origin_))}, outwards);
   for (const Index to : v) set(to, winding);
 }
 
@@ -152,32 +166,43 @@ int Enclosure::windingAlong(const GridSurface::Triangle& t, int from, int to) co
 }
 
 /// Adds what is enclosed of a triangle that is cut. The border of this consists of segments, and of parts of
-/// the edges: with one corner in common each of them makes a triangle, to be added or taken away.
+/// the edges: with one corner in common each of them makes a triangle, to be added or taken away. All lie in
+/// one plane, so that one component of their normals is enough.
 void Enclosure::addCut(const GridSurface::Triangle& t) {
   const Vec3d& apex = own_->segments()[t.first_segment].from;
+  const int k = largestAxis(t.normal), i = Corners::next(k), j = Corners::previous(k);
+  if (t.normal[k] == 0) return;
+  const double unit = 1 / t.normal[k];
+  PlanePart sum;
   const auto addBorder = [&](const Vec3d& from, const Vec3d& to, int winding) {
-    if (winding != 0) add(apex, from, to, winding, t.normal);
+    if (winding == 0) return;
+    const double part = unit * winding *
+                        ((from[i] - apex[i]) * (to[j] - apex[j]) - (from[j] - apex[j]) * (to[i] - apex[i]));
+    sum.area += part;
+    sum.magnitude += std::abs(part);
+    sum.middle = sum.middle + part * ((from - origin_) + (to - origin_));
   };
-  for (Index i = t.first_segment; i != GridSurface::kNone; i = own_->segments()[i].next)
-    addBorder(own_->segments()[i].from, own_->segments()[i].to, 1);
-  for (int edge = 0; edge < 3; ++edge) {
-    along_.clear();
-    for (Index i = t.first_crossing; i != GridSurface::kNone; i = own_->crossings()[i].next) {
-      if (own_->crossings()[i].edge == edge) along_.push_back(&own_->crossings()[i]);
+  for (Index s = t.first_segment; s != GridSurface::kNone; s = own_->segments()[s].next)
+    addBorder(own_->segments()[s].from, own_->segments()[s].to, 1);
+  // From a place on each edge, winding numbers are those of its corners, but for what changes in between.
+  const Vec3d* places[3] = {};
+  for (Index c = t.first_crossing; c != GridSurface::kNone; c = own_->crossings()[c].next) {
+    const Crossing& crossing = own_->crossings()[c];
+    const Vec3d*& place = places[crossing.edge];
+    if (place == nullptr) {
+      place = &crossing.at;
+    } else {
+      addBorder(crossing.at, *place, crossing.change);
     }
-    std::sort(along_.begin(), along_.end(),
-              [](const Crossing* a, const Crossing* b) { return a->part < b->part; });
-    const int next = (edge + 1) % 3;
-    int winding = vertices_[t.vertices[edge]].winding;
-    const Vec3d* from = &t.corners[edge];
-    for (const Crossing* crossing : along_) {
-      addBorder(*from, crossing->at, winding);
-      winding += crossing->change;
-      from = &crossing->at;
-    }
-    assert(winding == vertices_[t.vertices[next]].winding);
-    addBorder(*from, t.corners[next], winding);
   }
+  for (int edge = 0; edge < 3; ++edge) {
+    const int next = Corners::next(edge);
+    const Vec3d& place = places[edge] != nullptr ? *places[edge] : t.corners[next];
+    addBorder(t.corners[edge], place, vertices_[t.vertices[edge]].winding);
+    if (places[edge] != nullptr) addBorder(place, t.corners[next], vertices_[t.vertices[next]].winding);
+  }
+  sum.middle = sum.middle + sum.area * (apex - origin_);
+  add(apex, sum, t.normal);
 }
 
 }  // namespace

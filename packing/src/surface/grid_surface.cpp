@@ -1,6 +1,7 @@
 #include "surface/grid_surface.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -11,9 +12,27 @@ namespace innersphere {
 namespace {
 
 using Lanes = SurfaceTree::Lanes;
+using LaneInts = SurfaceTree::LaneInts;
 
-/// What rounding to single precision may do to a place, by the largest coordinate.
-constexpr double kSingleRounding = 2e-6;
+/// Both sides of what is behind the end of any coarse grid.
+constexpr std::int32_t kNoBox = -16384 * 0x10001;
+
+/// Returns the numbers with their halves exchanged.
+LaneInts exchanged(LaneInts x) {
+  return (x << 16) | ((x >> 16) & 0xffff);
+}
+
+/// Returns as columns the first three of each place's coordinates.
+void asColumns(const Lanes (&places)[4], Lanes (&columns)[3]) {
+  using Four = LaneInts;
+  const Lanes a = __builtin_shuffle(places[0], places[1], Four{0, 4, 1, 5}),
+              b = __builtin_shuffle(places[2], places[3], Four{0, 4, 1, 5}),
+              c = __builtin_shuffle(places[0], places[1], Four{2, 6, 3, 7}),
+              d = __builtin_shuffle(places[2], places[3], Four{2, 6, 3, 7});
+  columns[0] = __builtin_shuffle(a, b, Four{0, 1, 4, 5});
+  columns[1] = __builtin_shuffle(a, b, Four{2, 3, 6, 7});
+  columns[2] = __builtin_shuffle(c, d, Four{0, 1, 4, 5});
+}
 
 /// Returns the nearest whole number. Numbers are less than 2^51.
 double rounded(double x) {
@@ -37,20 +56,21 @@ Similarity after(const Similarity& a, const Similarity& b) {
   return {core::product(a.matrix, b.matrix), a(b.translation)};
 }
 
-void GridSurface::begin(const SurfaceTree& tree, const Similarity& placed, const Similarity& in_other,
-                        double cells, Moved moved) {
+void GridSurface::begin(const SurfaceTree& tree, const SurfaceTree& other, const Similarity& placed,
+                        const Similarity& in_other, double cells, Moved moved) {
   tree_ = &tree;
   to_grid_ = {core::scaled(placed.matrix, cells), cells * placed.translation};
+  other_ = &other;
+  const SurfaceTree::CoarseGrid& grid = other.grid();
   for (int i = 0; i < 9; ++i) {
-    matrix_.m[i] = static_cast<float>(in_other.matrix.m[i]);
+    matrix_.m[i] = static_cast<float>(grid.per * in_other.matrix.m[i]);
     absolute_.m[i] = std::abs(matrix_.m[i]);
   }
-  const Vec3d& t = in_other.translation;
+  const Vec3d t = grid.per * (in_other.translation - grid.middle);
   translation_ = {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z)};
   const double own_reach = std::max(largest(tree.bounds().min), largest(tree.bounds().max));
-  const double reach = std::max(in_other.scale() * own_reach, largest(t));
-  slack_ = static_cast<float>(kSingleRounding * reach);
-  grid_slack_ = static_cast<float>(kSingleRounding * (moved == Moved::point ? own_reach : reach));
+  slack_ =
+      static_cast<float>(kSingleRounding * std::max(grid.per * in_other.scale() * own_reach, largest(t)));
   cells_ = cells;
   moved_ = moved;
   asked_ = 0;
@@ -69,8 +89,8 @@ void GridSurface::begin(const SurfaceTree& tree, const Similarity& placed, const
 }
 
 void GridSurface::place(Index v) {
-  const Vec3f& p = tree_->vertices()[v];
-  const Vec3d at = to_grid_({p.x, p.y, p.z});
+  const Lanes& p = tree_->vertices()[v];
+  const Vec3d at = to_grid_({p[0], p[1], p[2]});
   vertices_[v] = {query_, {rounded(at.x), rounded(at.y), rounded(at.z)}};
 }
 
@@ -82,63 +102,75 @@ void GridSurface::placeTriangle(Index triangle) {
 
 void GridSurface::placeBoxes(Index index) {
   boxes_[index].query = query_;
-  LaneBoxes& boxes = boxes_[index].boxes;
   const SurfaceTree::Node& node = tree_->nodes()[index];
-  for (int k = 0; k < 3; ++k) {
-    const float *m = matrix_.m + 3 * k, *size = absolute_.m + 3 * k;
-    boxes.centre[k] = m[0] * node.centre[0] + m[1] * node.centre[1] + m[2] * node.centre[2] + translation_[k];
-    boxes.half[k] = size[0] * node.half[0] + size[1] * node.half[1] + size[2] * node.half[2] + slack_;
+  Lanes low[3], high[3];
+  if (!node.are_triangles || node.are_parts) {
+    for (int k = 0; k < 3; ++k) {
+      const float *m = matrix_.m + 3 * k, *size = absolute_.m + 3 * k;
+      const Lanes centre =
+          m[0] * node.centre[0] + m[1] * node.centre[1] + m[2] * node.centre[2] + translation_[k];
+      const Lanes half = size[0] * node.half[0] + size[1] * node.half[1] + size[2] * node.half[2];
+      low[k] = centre - half;
+      high[k] = centre + half;
+    }
+  } else {
+    for (int k = 0; k < 3; ++k) high[k] = Lanes{} + std::numeric_limits<float>::infinity(), low[k] = -high[k];
   }
-  if (!node.are_triangles) return;
-  // Those around whole triangles are smaller, unless these are in several.
-  Lanes corners[3][3];
-  for (Index i = 0; i < SurfaceTree::kWidth; ++i) {
-    const SurfaceTree::Triangle& t = tree_->triangles()[node.children[std::min(i, node.count - 1)]];
+  if (node.are_triangles) {
+    // Those around whole triangles are smaller, unless these are in several.
+    Lanes corners[3][3];
     for (int c = 0; c < 3; ++c) {
-      for (int k = 0; k < 3; ++k) corners[c][k][i] = tree_->vertices()[t[c]][k];
+      Lanes places[SurfaceTree::kWidth];
+      for (Index i = 0; i < SurfaceTree::kWidth; ++i)
+        places[i] = tree_->vertices()[tree_->triangles()[node.children[i]][c]];
+      asColumns(places, corners[c]);
+    }
+    for (int k = 0; k < 3; ++k) {
+      const float* m = matrix_.m + 3 * k;
+      Lanes along[3];
+      for (int c = 0; c < 3; ++c)
+        along[c] = m[0] * corners[c][0] + m[1] * corners[c][1] + m[2] * corners[c][2] + translation_[k];
+      low[k] = larger(low[k], lesser(lesser(along[0], along[1]), along[2]));
+      high[k] = lesser(high[k], larger(larger(along[0], along[1]), along[2]));
     }
   }
+  const bool is_first = moved_ == Moved::point;
+  LaneInts* sides = boxes_[index].boxes.sides;
   for (int k = 0; k < 3; ++k) {
-    const float* m = matrix_.m + 3 * k;
-    Lanes along[3];
-    for (int c = 0; c < 3; ++c)
-      along[c] = m[0] * corners[c][0] + m[1] * corners[c][1] + m[2] * corners[c][2] + translation_[k];
-    const Lanes low = lesser(lesser(along[0], along[1]), along[2]) - slack_,
-                high = larger(larger(along[0], along[1]), along[2]) + slack_;
-    const Lanes from = larger(low, boxes.centre[k] - boxes.half[k]),
-                to = lesser(high, boxes.centre[k] + boxes.half[k]);
-    boxes.centre[k] = (to + from) / 2;
-    boxes.half[k] = (to - from) / 2;
+    const LaneInts there = other_->grid().sides(high[k] + slack_, slack_ - low[k]);
+    sides[k] = is_first ? node.sides[k] : exchanged(there);
+    sides[3 + k] = is_first ? there : exchanged(node.sides[k]);
   }
+  for (Index i = node.count; i < SurfaceTree::kWidth; ++i) sides[0][i] = sides[3][i] = kNoBox;
 }
 
 int GridSurface::windingAt(const Vec3d& point) {
   ++asked_;
   int winding = 0;
-  // Boxes are those of the frame in which the grid is.
+  // What is above the point, in the frame of the first surface.
   const bool is_first = moved_ == Moved::point;
-  const Vec3d at = (1 / cells_) * point;
-  const auto x = static_cast<float>(at.x), y = static_cast<float>(at.y), z = static_cast<float>(at.z);
-  const Lanes slack = Lanes{} + grid_slack_ + static_cast<float>(kSingleRounding * largest(at));
+  const SurfaceTree::CoarseGrid& grid = (is_first ? tree_ : other_)->grid();
+  const Vec3d at = grid.per * ((1 / cells_) * point - grid.middle);
+  LaneBoxes above;
+  for (int k = 0; k < 3; ++k) {
+    const Lanes here = Lanes{} + static_cast<float>(at[k]);
+    above.sides[k] = grid.sides(k < 2 ? here : Lanes{} + grid.end, -here);
+    if (is_first) above.sides[k] = exchanged(above.sides[k]);
+  }
   open_.assign(1, 0);
   while (!open_.empty()) {
     const Index index = open_.back();
     open_.pop_back();
     const SurfaceTree::Node& node = tree_->nodes()[index];
-    const Lanes* centre = is_first ? node.centre : boxesInOther(index).centre;
-    const Lanes* half = is_first ? node.half : boxesInOther(index).half;
-    const auto meets = (centre[0] - half[0] <= x + slack) & (centre[0] + half[0] >= x - slack) &
-                       (centre[1] - half[1] <= y + slack) & (centre[1] + half[1] >= y - slack) &
-                       (centre[2] + half[2] >= z - slack);
-    for (Index k = 0; k < node.count; ++k) {
-      if (meets[k] == 0) continue;
+    for (Index met = boxes(index).meeting(above, 0, 3); met != 0; met &= met - 1) {
+      const Index child = node.children[std::countr_zero(met)];
       if (!node.are_triangles) {
-        open_.push_back(node.children[k]);
+        open_.push_back(child);
         continue;
       }
       // A triangle that is in several boxes counts once.
-      const Index place = find(node.children[k]);
-      if (std::exchange(marks_[node.children[k]].asked, asked_) == asked_) continue;
+      const Index place = find(child);
+      if (std::exchange(marks_[child].asked, asked_) == asked_) continue;
       winding += windingBelow(triangles_[place], point, moved_);
     }
   }

@@ -1,6 +1,10 @@
 // Declares a surface that stands somewhere, with its vertices rounded to a grid.
 #pragma once
 
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
+
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -25,10 +29,34 @@ struct Similarity {
 /// Returns first b, then a.
 Similarity after(const Similarity& a, const Similarity& b);
 
-/// Holds the boxes of a node's children.
+/// Holds the boxes of a node's children: on the coarse grid of the first surface, then on that of the second
+/// one. Half of a number is the high side, half minus the low one, in an order that differs between the
+/// surfaces: boxes of both meet if the sums of all halves are not negative.
 struct LaneBoxes {
-  SurfaceTree::Lanes centre[3], half[3];
+  using LaneInts = SurfaceTree::LaneInts;
+  LaneInts sides[6];
+  /// Returns which of the boxes meet one of the other surface, a bit for each.
+  std::uint32_t meeting(const LaneBoxes& other, std::uint32_t child, int axes = 6) const;
 };
+
+inline std::uint32_t LaneBoxes::meeting(const LaneBoxes& other, std::uint32_t child, int axes) const {
+  using Halves = std::int16_t __attribute__((vector_size(sizeof(LaneInts))));
+  Halves gaps{};
+  for (int k = 0; k < axes; ++k) {
+    const LaneInts same = LaneInts{} + other.sides[k][child];
+    gaps |= reinterpret_cast<Halves>(sides[k]) + reinterpret_cast<Halves>(same);
+  }
+  // A gap is a sign.
+  LaneInts gap = reinterpret_cast<LaneInts>(gaps);
+  gap |= gap << 16;
+#ifdef __SSE2__
+  return ~static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(gap))) & 15;
+#else
+  std::uint32_t bits = 0;
+  for (std::uint32_t i = 0; i < SurfaceTree::kWidth; ++i) bits |= std::uint32_t{gap[i] >= 0} << i;
+  return bits;
+#endif
+}
 
 /// Here the other surface crosses an edge of a triangle.
 struct Crossing {
@@ -62,8 +90,8 @@ class GridSurface {
 
   /// Begins a query. `placed`: in the frame of the first surface; `in_other`: in that of the other one;
   /// `cells` of the grid for a unit of length; `moved`: what the points of the other surface are asked for.
-  void begin(const SurfaceTree& tree, const Similarity& placed, const Similarity& in_other, double cells,
-             Moved moved);
+  void begin(const SurfaceTree& tree, const SurfaceTree& other, const Similarity& placed,
+             const Similarity& in_other, double cells, Moved moved);
 
   const SurfaceTree& tree() const { return *tree_; }
   /// Returns the place of a vertex on the grid.
@@ -83,8 +111,8 @@ class GridSurface {
   Triangle& at(Index place) { return triangles_[place]; }
   std::size_t foundCount() const { return triangles_.size(); }
 
-  /// Returns boxes in the frame of the other surface.
-  const LaneBoxes& boxesInOther(Index node) {
+  /// Returns the boxes of a node's children.
+  const LaneBoxes& boxes(Index node) {
     if (boxes_[node].query != query_) placeBoxes(node);
     return boxes_[node].boxes;
   }
@@ -121,11 +149,11 @@ class GridSurface {
   void placeTriangle(Index triangle);
   void placeBoxes(Index node);
 
-  const SurfaceTree* tree_ = nullptr;
+  const SurfaceTree *tree_ = nullptr, *other_ = nullptr;
   Similarity to_grid_;
-  core::Mat3<float> matrix_, absolute_;  ///< to the other surface
+  core::Mat3<float> matrix_, absolute_;  ///< to the other surface's coarse grid
   Vec3f translation_;
-  float slack_, grid_slack_;  ///< what rounding may do to places there, and where the grid is
+  float slack_;  ///< what rounding may do to places there
   double cells_;
   Moved moved_;
   Index query_ = 0, asked_ = 0;

@@ -42,8 +42,8 @@ SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b) {
   if (!(reach > 0)) return {};
   const double cells = std::exp2(kGridBits - 1 - std::ilogb(reach));
   static thread_local GridSurface on_grid_a, on_grid_b;
-  on_grid_a.begin(a.tree, identity, b_to_a.inverse(), cells, Moved::point);
-  on_grid_b.begin(b.tree, b_to_a, b_to_a, cells, Moved::triangle);
+  on_grid_a.begin(a.tree, b.tree, identity, b_to_a.inverse(), cells, Moved::point);
+  on_grid_b.begin(b.tree, a.tree, b_to_a, b_to_a, cells, Moved::triangle);
   findMeeting(on_grid_a, on_grid_b);
 
   const std::vector<Segment>& meeting = on_grid_a.segments();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "surface/box.hpp"
 
@@ -12,7 +13,8 @@ namespace {
 
 /// Half the distance from 1 to the next number.
 constexpr double kUnit = 0x1p-53;
-/// Bounds of rounding: of a sum of three products of differences, and of one difference of two products.
+/// Bounds of rounding: of a sum of three products of differences, and of one difference of two products. That of a
+/// height is 2 * kGridBits times as large as
 constexpr double kRounding3 = 32 * kUnit, kRounding2 = 4 * kUnit;
 
 using Wide = __int128;
@@ -45,15 +47,6 @@ WideVector exactNormal(const GridTriangle& t) {
   return cross(wide(t.corners[1] - t.corners[0]), wide(t.corners[2] - t.corners[0]));
 }
 
-/// Returns whether a point is above a triangle, from its height, which is known but for `bound`.
-bool isAbove(double height, double bound, const Vec3d& point, const GridTriangle& t, Moved moved) {
-  if (std::abs(height) > bound) return height > 0;
-  const WideVector normal = exactNormal(t);
-  const Wide exact = dot(normal, wide(point - t.corners[0]));
-  if (exact != 0) return exact > 0;
-  return (signAlongMove(normal) > 0) == (moved == Moved::point);
-}
-
 /// Returns whether a point is to the left of the way from a to b, seen from above.
 bool isLeft(const Vec3d& a, const Vec3d& b, const Vec3d& point, Moved moved) {
   const Vec3d along = b - a, to = point - a;
@@ -79,47 +72,38 @@ GridTriangle::GridTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) : cor
   const Vec3d to_b = b - a, to_c = c - a;
   const double size_b = largest(to_b), size_c = largest(to_c);
   normal = innersphere::cross(to_b, to_c);
+  offset = dot(normal, a);
   size = std::max(size_b, size_c);
-  rounding = kRounding3 * size_b * size_c;
+  rounding = kRounding2 * size_b * size_c;
 }
 
-Corners cornersAbove(const GridTriangle& plane, const GridTriangle& triangle, Moved moved) {
-  const Vec3d first = triangle.corners[0] - plane.corners[0];
-  const double bound = plane.rounding * (largest(first) + triangle.size);
-  Corners corners;
-  for (int k = 0; k < 3; ++k) {
-    const double height = dot(plane.normal, triangle.corners[k] - plane.corners[0]);
-    corners.heights[k] = height;
-    corners.above[k] = isAbove(height, bound, triangle.corners[k], plane, moved);
-  }
-  const bool* above = corners.above;
-  if (above[0] == above[1]) {
-    corners.alone = above[0] == above[2] ? -1 : 2;
-  } else {
-    corners.alone = above[2] == above[1] ? 0 : 1;
-  }
-  return corners;
+bool GridTriangle::isAbove(const Vec3d& point, Moved moved) const {
+  const WideVector exact_normal = exactNormal(*this);
+  const Wide exact = dot(exact_normal, wide(point - corners[0]));
+  if (exact != 0) return exact > 0;
+  return (signAlongMove(exact_normal) > 0) == (moved == Moved::point);
 }
 
 EdgeOrder::EdgeOrder(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t)
-    : t_(t), u_(u), at_u_(at_u), at_t_(at_t) {
+    : t_(t), u_(u), at_u_(at_u), at_t_(at_t), alone_(t.corners[at_u.alone]) {
+  const Vec3d to_alone = u.corners[at_t.alone] - alone_;
+  for (const int from : {0, 1})
+    to_u_[from] = innersphere::cross(to_alone, u.corners[at_t.far(from == 1)] - alone_);
   // No way from a corner of t to one of u is longer; and an edge between the others is up to twice the size.
   const double farthest = largest(u.corners[0] - t.corners[0]) + t.size + u.size;
   rounding_ = kRounding3 * 2 * t.size * farthest * farthest;
 }
 
-bool EdgeOrder::comesBefore(int of_t, int of_u) const {
+bool EdgeOrder::comesBeforeExactly(bool from_alone_t, bool from_alone_u) const {
   // From a, above u, down to b, and from c, above t, down to d.
-  const int next_t = of_t < 2 ? of_t + 1 : 0, next_u = of_u < 2 ? of_u + 1 : 0;
-  const bool falls_t = at_u_.above[of_t], falls_u = at_t_.above[of_u];
-  const Vec3d &a = t_.corners[falls_t ? of_t : next_t], &b = t_.corners[falls_t ? next_t : of_t],
-              &c = u_.corners[falls_u ? of_u : next_u], &d = u_.corners[falls_u ? next_u : of_u];
-  const double volume = dot(innersphere::cross(b - a, c - a), d - a);
-  if (std::abs(volume) > rounding_) return volume > 0;
-  const WideVector along = wide(b - a);
-  const Wide exact = dot(cross(along, wide(c - a)), wide(d - a));
+  int a = at_u_.alone, b = at_u_.far(from_alone_t), c = at_t_.alone, d = at_t_.far(from_alone_u);
+  if (!at_u_.isAbove(a)) std::swap(a, b);
+  if (!at_t_.isAbove(c)) std::swap(c, d);
+  const Vec3d &from_t = t_.corners[a], &from_u = u_.corners[c], &to_u = u_.corners[d];
+  const WideVector along = wide(t_.corners[b] - from_t);
+  const Wide exact = dot(cross(along, wide(from_u - from_t)), wide(to_u - from_t));
   if (exact != 0) return exact > 0;
-  return signAlongMove(cross(along, wide(c - d))) > 0;
+  return signAlongMove(cross(along, wide(from_u - to_u))) > 0;
 }
 
 int windingBelow(const GridTriangle& triangle, const Vec3d& point, Moved moved) {
@@ -128,9 +112,7 @@ int windingBelow(const GridTriangle& triangle, const Vec3d& point, Moved moved) 
   if (isLeft(c[1], c[2], point, moved) != left || isLeft(c[2], c[0], point, moved) != left) return 0;
   const int side = facing(triangle);
   if (side == 0 || (side > 0) != left) return 0;
-  const Vec3d to = point - c[0];
-  const bool above =
-      isAbove(dot(triangle.normal, to), triangle.rounding * largest(to), point, triangle, moved);
+  const bool above = triangle.isAbove(triangle.height(point), point, moved);
   return above == (side > 0) ? 0 : side;
 }
 

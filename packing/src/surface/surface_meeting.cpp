@@ -9,36 +9,13 @@ namespace innersphere {
 namespace {
 
 using Index = GridSurface::Index;
-using Lanes = SurfaceTree::Lanes;
 using Node = SurfaceTree::Node;
 
-/// This is a node with its children's boxes in both frames.
-struct PlacedNode {
-  PlacedNode(GridSurface& surface, Index index)
-      : node(surface.tree().nodes()[index]), in_other(surface.boxesInOther(index)) {}
-  const Node& node;
-  const LaneBoxes& in_other;
-};
-
-/// Returns which of x's children reach into a child of y, a bit for each: their boxes meet in both frames.
-Index meeting(const PlacedNode& x, const PlacedNode& y, Index child) {
-  Lanes gap{};
-  for (int k = 0; k < 3; ++k) {
-    const Lanes in_x = x.node.centre[k] - y.in_other.centre[k][child],
-                in_y = x.in_other.centre[k] - y.node.centre[k][child];
-    gap = larger(gap, larger(in_x, -in_x) - (x.node.half[k] + y.in_other.half[k][child]));
-    gap = larger(gap, larger(in_y, -in_y) - (x.in_other.half[k] + y.node.half[k][child]));
-  }
-  Index bits = 0;
-  for (Index i = 0; i < x.node.count; ++i) bits |= Index{gap[i] <= 0} << i;
-  return bits;
-}
-
-/// Returns which of the children of a node of x reach into a node of y.
-Index meeting(const PlacedNode& x, GridSurface& y, Index node) {
-  if (node == 0) return (1U << x.node.count) - 1;
-  const Node& of_y = y.tree().nodes()[node];
-  return meeting(x, PlacedNode(y, of_y.parent), of_y.place);
+/// Returns which of the children of a node of x reach into a node of y, a bit for each.
+Index meeting(GridSurface& x, Index of_x, GridSurface& y, Index of_y) {
+  if (of_y == 0) return (1U << x.tree().nodes()[of_x].count) - 1;
+  const Node& node = y.tree().nodes()[of_y];
+  return x.boxes(of_x).meeting(y.boxes(node.parent), node.place);
 }
 
 template <typename F>
@@ -48,14 +25,14 @@ void forBits(Index bits, const F& f) {
 
 /// Adds where an edge of x crosses the other surface. Returns the place.
 Vec3d cross(GridSurface& surface, GridSurface::Triangle& x, const Corners& corners, int edge) {
-  const int next = (edge + 1) % 3;
+  const int next = Corners::next(edge);
   // Both triangles at an edge find the same place.
   const bool forward = x.vertices[edge] < x.vertices[next];
   const int low = forward ? edge : next, high = forward ? next : edge;
   const double height = corners.heights[low], fall = height - corners.heights[high];
   const double part = fall != 0 ? std::clamp(height / fall, 0.0, 1.0) : 0.5;
   const Vec3d at = x.corners[low] + part * (x.corners[high] - x.corners[low]);
-  const int change = corners.above[edge] ? 1 : -1;
+  const int change = corners.isAbove(edge) ? 1 : -1;
   surface.addCrossing(x, at, forward ? part : 1 - part, edge, change);
   return at;
 }
@@ -63,19 +40,19 @@ Vec3d cross(GridSurface& surface, GridSurface::Triangle& x, const Corners& corne
 /// Adds what two triangles have in common: a segment of the line in which their planes meet.
 void meet(GridSurface& a, Index of_a, GridSurface& b, Index of_b) {
   GridSurface::Triangle &t = a.at(a.find(of_a)), &u = b.at(b.find(of_b));
-  const Corners at_t = cornersAbove(t, u, Moved::point);
+  const Corners at_t(t, u, Moved::point);
   if (at_t.alone < 0) return;
-  const Corners at_u = cornersAbove(u, t, Moved::triangle);
+  const Corners at_u(u, t, Moved::triangle);
   if (at_u.alone < 0) return;
-  // Two edges of each cross the line. In the direction normal of t x normal of u one is the first.
-  const bool high_u = at_t.above[at_t.alone], high_t = at_u.above[at_u.alone];
-  const int first_t = at_u.edge(!high_t), last_t = at_u.edge(high_t);
-  const int first_u = at_t.edge(high_u), last_u = at_t.edge(!high_u);
+  // Two edges of each cross the line. In the direction normal of t x normal of u one is the first: that from
+  // the corner that is alone, or that to it.
+  const bool first_t = !at_u.isAbove(at_u.alone), first_u = at_t.isAbove(at_t.alone);
   const EdgeOrder order(t, at_u, u, at_t);
-  if (!order.comesBefore(first_t, last_u) || order.comesBefore(last_t, first_u)) return;
-  const Vec3d from =
-      order.comesBefore(first_t, first_u) ? cross(b, u, at_t, first_u) : cross(a, t, at_u, first_t);
-  const Vec3d to = order.comesBefore(last_t, last_u) ? cross(a, t, at_u, last_t) : cross(b, u, at_t, last_u);
+  if (!order.comesBefore(first_t, !first_u) || order.comesBefore(!first_t, first_u)) return;
+  const auto crossU = [&](bool from_alone) { return cross(b, u, at_t, at_t.edge(from_alone)); };
+  const auto crossT = [&](bool from_alone) { return cross(a, t, at_u, at_u.edge(from_alone)); };
+  const Vec3d from = order.comesBefore(first_t, first_u) ? crossU(first_u) : crossT(first_t);
+  const Vec3d to = order.comesBefore(!first_t, !first_u) ? crossT(!first_t) : crossU(!first_u);
   a.addSegment(t, from, to);
   b.addSegment(u, to, from);
 }
@@ -97,21 +74,21 @@ void findMeeting(GridSurface& a, GridSurface& b) {
   while (!open.empty()) {
     const Pair pair = open.back();
     open.pop_back();
-    const PlacedNode of_a(a, pair.first), of_b(b, pair.second);
-    const Node &node_a = of_a.node, &node_b = of_b.node;
+    const Node &node_a = a.tree().nodes()[pair.first], &node_b = b.tree().nodes()[pair.second];
     // A node of triangles stays as it is while the other one is taken apart.
     if (node_a.are_triangles && !node_b.are_triangles) {
-      forBits(meeting(of_b, a, pair.first),
+      forBits(meeting(b, pair.second, a, pair.first),
               [&](Index j) { open.emplace_back(pair.first, node_b.children[j]); });
       continue;
     }
-    const Index met = meeting(of_a, b, pair.second);
+    const Index met = meeting(a, pair.first, b, pair.second);
     if (node_b.are_triangles && !node_a.are_triangles) {
       forBits(met, [&](Index i) { open.emplace_back(node_a.children[i], pair.second); });
       continue;
     }
+    const LaneBoxes &of_a = a.boxes(pair.first), &of_b = b.boxes(pair.second);
     forBits(met, [&](Index i) {
-      forBits(meeting(of_b, of_a, i), [&](Index j) {
+      forBits(of_b.meeting(of_a, i), [&](Index j) {
         if (node_a.are_triangles) {
           meetTriangles(node_a.children[i], node_b.children[j]);
         } else {

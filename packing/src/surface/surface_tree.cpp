@@ -19,6 +19,12 @@ namespace {
 /// are long on average: where all are needles, that bounds the number of boxes.
 constexpr double kLongest = 3, kShortest = 1.0 / 8;
 
+/// Coarse cells from the middle of a surface to its farthest side, and to the end: the sum of two numbers is
+/// less than 2^15.
+constexpr float kCoarseHalf = 16000, kCoarseEnd = 16300;
+/// More cells than this are none in single precision.
+constexpr double kMostCells = 1e30;
+
 double areaOf(const Bounds& box) {
   const Vec3d d = box.max - box.min;
   return d.x * d.y + d.y * d.z + d.z * d.x;
@@ -77,7 +83,7 @@ class SurfaceTree::Builder {
 
 SurfaceTree::Builder::Builder(SurfaceTree& tree) : tree_(tree) {
   const auto at = [&](std::uint32_t v) {
-    return Vec3d{tree.vertices_[v].x, tree.vertices_[v].y, tree.vertices_[v].z};
+    return Vec3d{tree.vertices_[v][0], tree.vertices_[v][1], tree.vertices_[v][2]};
   };
   double area = 0, length = 0;
   for (const Triangle& t : tree.triangles_) {
@@ -149,7 +155,9 @@ std::uint32_t SurfaceTree::Builder::build(std::uint32_t first, std::uint32_t end
       node.half[axis][node.count] = std::max(high - centre, centre - low);
     }
     node.children[node.count++] = child;
+    if (node.are_triangles && tree_.in_several_boxes_[child]) node.are_parts = true;
   }
+  tree_.placeOnGrid(nodes[index]);
   return index;
 }
 
@@ -206,14 +214,28 @@ SurfaceTree::SurfaceTree(const Surface& surface) {
                 "the triangles that the packing carries are not closed; use another estimator");
   }
   vertices_.reserve(surface.vertices.size());
-  for (const auto& v : surface.vertices) vertices_.push_back({v[0], v[1], v[2]});
+  for (const auto& v : surface.vertices) vertices_.push_back(Lanes{v[0], v[1], v[2]});
   triangles_ = surface.triangles;
   Builder builder(*this);
   const std::uint32_t count = builder.size();
   bounds_ = builder.boundsOf(0, count);
+  grid_.middle = 0.5 * (bounds_.min + bounds_.max);
+  grid_.per = std::min(kCoarseHalf / largest(bounds_.max - grid_.middle), kMostCells);
+  grid_.end = kCoarseEnd;
   builder.build(0, count);
   link();
   findParts();
+}
+
+void SurfaceTree::placeOnGrid(Node& node) const {
+  const auto per = static_cast<float>(grid_.per);
+  const auto slack =
+      static_cast<float>(kSingleRounding * grid_.per * std::max(largest(bounds_.min), largest(bounds_.max)));
+  for (int k = 0; k < 3; ++k) {
+    const Lanes centre = per * (node.centre[k] - static_cast<float>(grid_.middle[k])),
+                half = per * node.half[k] + slack;
+    node.sides[k] = grid_.sides(half + centre, half - centre);
+  }
 }
 
 void SurfaceTree::link() {

@@ -9,6 +9,9 @@
 
 namespace innersphere {
 
+/// What rounding to single precision may do to a place, by the largest coordinate.
+constexpr double kSingleRounding = 2e-6;
+
 /// Returns whether each edge is run along as often in one direction as in the other.
 bool isClosedSurface(const Surface& surface);
 
@@ -25,20 +28,34 @@ class SurfaceTree {
   /// One number of each of a node's children lies side by side: one instruction looks at all of them.
   static constexpr std::uint32_t kWidth = 4;
   using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
+  using LaneInts = std::int32_t __attribute__((vector_size(kWidth * sizeof(std::int32_t))));
 
   struct Node {
     Lanes centre[3]{}, half[3]{};  ///< of the children's boxes
+    LaneInts sides[3]{};           ///< of the boxes in the coarse grid
     std::array<std::uint32_t, kWidth> children{};
     std::uint32_t count = 0;              ///< of the children
     bool are_triangles = false;           ///< or nodes
+    bool are_parts = false;               ///< one of these triangles is the child of other nodes, too
     std::uint32_t parent = 0, place = 0;  ///< whose child it is, and which; not for the first node
+  };
+
+  /// Boxes are compared on a grid so coarse that its numbers have 15 bits.
+  struct CoarseGrid {
+    Vec3d middle{};  ///< of the surface
+    double per = 0;  ///< cells for a unit of length
+    float end = 0;   ///< a number behind all of the surface: what is farther away lies there
+    /// Returns the high sides of boxes, and minus their low ones, in the halves of a number. They are
+    /// rounded up.
+    LaneInts sides(Lanes high, Lanes minus_low) const;
   };
 
   /// The root is the first one.
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
-  const std::vector<Vec3f>& vertices() const { return vertices_; }
+  const std::vector<Lanes>& vertices() const { return vertices_; }
   const Bounds& bounds() const { return bounds_; }
+  const CoarseGrid& grid() const { return grid_; }
 
   /// Calls f(triangle) for those that have the vertex.
   template <typename F>
@@ -56,15 +73,17 @@ class SurfaceTree {
 
  private:
   class Builder;
+  void placeOnGrid(Node& node) const;
   void link();
   void findParts();
 
-  std::vector<Vec3f> vertices_;
+  std::vector<Lanes> vertices_;  ///< the last number is zero
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> first_at_, triangles_at_;
   std::vector<std::uint32_t> vertex_of_part_, parts_;  ///< parts_ is empty if there is one
   Bounds bounds_;
+  CoarseGrid grid_;
   std::vector<bool> in_several_boxes_;
 };
 
@@ -74,6 +93,15 @@ inline SurfaceTree::Lanes lesser(SurfaceTree::Lanes a, SurfaceTree::Lanes b) {
 
 inline SurfaceTree::Lanes larger(SurfaceTree::Lanes a, SurfaceTree::Lanes b) {
   return a > b ? a : b;
+}
+
+inline SurfaceTree::LaneInts SurfaceTree::CoarseGrid::sides(Lanes high, Lanes minus_low) const {
+  const Lanes last = Lanes{} + end;
+  // What is not a number is at the end, too.
+  const auto up = [&](Lanes x) {
+    return __builtin_convertvector(larger(lesser(x + 1, last), -last), LaneInts);
+  };
+  return (up(high) << 16) | (up(minus_low) & 0xffff);
 }
 
 }  // namespace innersphere
