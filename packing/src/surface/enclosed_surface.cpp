@@ -197,9 +197,9 @@ void Enclosure::addCut(const GridSurface::Triangle& t) {
   }
   for (int edge = 0; edge < 3; ++edge) {
     const int next = Corners::next(edge);
-    const Vec3d& place = places[edge] != nullptr ? *places[edge] : t.corners[next];
-    addBorder(t.corners[edge], place, vertices_[t.vertices[edge]].winding);
-    if (places[edge] != nullptr) addBorder(place, t.corners[next], vertices_[t.vertices[next]].winding);
+    const Vec3d end = t.corner(next), place = places[edge] != nullptr ? *places[edge] : end;
+    addBorder(t.corner(edge), place, vertices_[t.vertices[edge]].winding);
+    if (places[edge] != nullptr) addBorder(place, end, vertices_[t.vertices[next]].winding);
   }
   sum.middle = sum.middle + sum.area * (apex - origin_);
   add(apex, sum, t.normal);

@@ -1,10 +1,6 @@
 // Declares a surface that stands somewhere, with its vertices rounded to a grid.
 #pragma once
 
-#ifdef __SSE2__
-#include <immintrin.h>
-#endif
-
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -49,13 +45,7 @@ inline std::uint32_t LaneBoxes::meeting(const LaneBoxes& other, std::uint32_t ch
   // A gap is a sign.
   LaneInts gap = reinterpret_cast<LaneInts>(gaps);
   gap |= gap << 16;
-#ifdef __SSE2__
-  return ~static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(gap))) & 15;
-#else
-  std::uint32_t bits = 0;
-  for (std::uint32_t i = 0; i < SurfaceTree::kWidth; ++i) bits |= std::uint32_t{gap[i] >= 0} << i;
-  return bits;
-#endif
+  return ~signBits(gap) & 15;
 }
 
 /// Here the other surface crosses an edge of a triangle.

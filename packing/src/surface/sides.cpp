@@ -44,7 +44,7 @@ int signAlongMove(const WideVector& v) {
 }
 
 WideVector exactNormal(const GridTriangle& t) {
-  return cross(wide(t.corners[1] - t.corners[0]), wide(t.corners[2] - t.corners[0]));
+  return cross(wide(t.corner(1) - t.corner(0)), wide(t.corner(2) - t.corner(0)));
 }
 
 /// Returns whether a point is to the left of the way from a to b, seen from above.
@@ -66,9 +66,27 @@ int facing(const GridTriangle& t) {
   return z == 0 ? 0 : z > 0 ? 1 : -1;
 }
 
+/// Returns what EdgeOrder::comesBefore() does, exactly.
+bool isBefore(const GridTriangle& t, const Corners& at_u, bool from_alone_t, const GridTriangle& u,
+              const Corners& at_t, bool from_alone_u) {
+  // From a, above u, down to b, and from c, above t, down to d.
+  int a = at_u.alone, b = at_u.far(from_alone_t), c = at_t.alone, d = at_t.far(from_alone_u);
+  if (!at_u.isAbove(a)) std::swap(a, b);
+  if (!at_t.isAbove(c)) std::swap(c, d);
+  const Vec3d from_t = t.corner(a), from_u = u.corner(c), to_u = u.corner(d);
+  const WideVector along = wide(t.corner(b) - from_t);
+  const Wide exact = dot(cross(along, wide(from_u - from_t)), wide(to_u - from_t));
+  if (exact != 0) return exact > 0;
+  return signAlongMove(cross(along, wide(from_u - to_u))) > 0;
+}
+
 }  // namespace
 
-GridTriangle::GridTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) : corners{a, b, c} {
+GridTriangle::GridTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  for (int axis = 0; axis < 3; ++axis) {
+    double* x = places[axis];
+    x[0] = x[3] = a[axis], x[1] = x[4] = b[axis], x[2] = c[axis];
+  }
   const Vec3d to_b = b - a, to_c = c - a;
   const double size_b = largest(to_b), size_c = largest(to_c);
   normal = innersphere::cross(to_b, to_c);
@@ -79,40 +97,48 @@ GridTriangle::GridTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) : cor
 
 bool GridTriangle::isAbove(const Vec3d& point, Moved moved) const {
   const WideVector exact_normal = exactNormal(*this);
-  const Wide exact = dot(exact_normal, wide(point - corners[0]));
+  const Wide exact = dot(exact_normal, wide(point - corner(0)));
   if (exact != 0) return exact > 0;
   return (signAlongMove(exact_normal) > 0) == (moved == Moved::point);
 }
 
-EdgeOrder::EdgeOrder(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t)
-    : t_(t), u_(u), at_u_(at_u), at_t_(at_t), alone_(t.corners[at_u.alone]) {
-  const Vec3d to_alone = u.corners[at_t.alone] - alone_;
-  for (const int from : {0, 1})
-    to_u_[from] = innersphere::cross(to_alone, u.corners[at_t.far(from == 1)] - alone_);
+EdgeOrder::EdgeOrder(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t) {
+  // The signs of the volumes between both edges, seen from the corner of t that is alone.
+  const Vec3d from = t.corner(at_u.alone), to_alone = u.corner(at_t.alone) - from;
+  const int others = at_t.alone + 1;
+  const Pair x = pairAt(u.places[0] + others) - from.x, y = pairAt(u.places[1] + others) - from.y,
+             z = pairAt(u.places[2] + others) - from.z;
+  const Pair area_x = to_alone.y * z - to_alone.z * y, area_y = to_alone.z * x - to_alone.x * z,
+             area_z = to_alone.x * y - to_alone.y * x;
   // No way from a corner of t to one of u is longer; and an edge between the others is up to twice the size.
-  const double farthest = largest(u.corners[0] - t.corners[0]) + t.size + u.size;
-  rounding_ = kRounding3 * 2 * t.size * farthest * farthest;
-}
-
-bool EdgeOrder::comesBeforeExactly(bool from_alone_t, bool from_alone_u) const {
-  // From a, above u, down to b, and from c, above t, down to d.
-  int a = at_u_.alone, b = at_u_.far(from_alone_t), c = at_t_.alone, d = at_t_.far(from_alone_u);
-  if (!at_u_.isAbove(a)) std::swap(a, b);
-  if (!at_t_.isAbove(c)) std::swap(c, d);
-  const Vec3d &from_t = t_.corners[a], &from_u = u_.corners[c], &to_u = u_.corners[d];
-  const WideVector along = wide(t_.corners[b] - from_t);
-  const Wide exact = dot(cross(along, wide(from_u - from_t)), wide(to_u - from_t));
-  if (exact != 0) return exact > 0;
-  return signAlongMove(cross(along, wide(from_u - to_u))) > 0;
+  const double farthest = largest(u.corner(0) - t.corner(0)) + t.size + u.size;
+  const double rounding = kRounding3 * 2 * t.size * farthest * farthest;
+  unsigned above = 0, below = 0;
+  for (const bool from_alone : {true, false}) {
+    const Vec3d along = t.corner(at_u.far(from_alone)) - from;
+    const Pair volume = along.x * area_x + along.y * area_y + along.z * area_z;
+    above |= bitsAbove(volume, rounding) << bit(from_alone, true);
+    below |= bitsAbove(-volume, rounding) << bit(from_alone, true);
+  }
+  before_ = at_u.isAbove(at_u.alone) == at_t.isAbove(at_t.alone) ? above : below;
+  if ((above | below) == 15) return;
+  for (const bool from_t : {true, false}) {
+    for (const bool from_u : {true, false}) {
+      if (((above | below) >> bit(from_t, from_u) & 1) != 0) continue;
+      if (isBefore(t, at_u, from_t, u, at_t, from_u)) before_ |= 1U << bit(from_t, from_u);
+    }
+  }
 }
 
 int windingBelow(const GridTriangle& triangle, const Vec3d& point, Moved moved) {
-  const Vec3d* c = triangle.corners;
-  const bool left = isLeft(c[0], c[1], point, moved);
-  if (isLeft(c[1], c[2], point, moved) != left || isLeft(c[2], c[0], point, moved) != left) return 0;
+  const Vec3d a = triangle.corner(0), b = triangle.corner(1), c = triangle.corner(2);
+  const bool left = isLeft(a, b, point, moved);
+  if (isLeft(b, c, point, moved) != left || isLeft(c, a, point, moved) != left) return 0;
   const int side = facing(triangle);
   if (side == 0 || (side > 0) != left) return 0;
-  const bool above = triangle.isAbove(triangle.height(point), point, moved);
+  const double height = triangle.height(point.x, point.y, point.z);
+  const bool above =
+      std::abs(height) > triangle.heightRounding() ? height > 0 : triangle.isAbove(point, moved);
   return above == (side > 0) ? 0 : side;
 }
 

@@ -1,10 +1,11 @@
 // Declares on which side of each other points, edges and triangles lie, decided exactly.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "innersphere/geometry.hpp"
+#include "surface/lanes.hpp"
 
 namespace innersphere {
 
@@ -22,21 +23,20 @@ enum class Moved { point, triangle };
 /// This is a triangle with its corners on the grid.
 struct GridTriangle {
   GridTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
-  Vec3d corners[3];
-  Vec3d normal;     ///< of twice its area
-  double offset;    ///< of its plane, times the length of the normal
-  double size;      ///< the largest component of a way from the first corner to another
-  double rounding;  ///< of the normal's components
+  double places[3][5];  ///< along each axis those of all corners, and of the first two again
+  Vec3d normal;         ///< of twice its area
+  double offset;        ///< of its plane, times the length of the normal
+  double size;          ///< the largest component of a way from the first corner to another
+  double rounding;      ///< of the normal's components
 
-  /// Returns the height of a point above the plane, times the length of the normal; rounded.
-  double height(const Vec3d& point) const { return dot(normal, point) - offset; }
-  /// Returns whether a point at this height is above the plane. It is exact.
-  bool isAbove(double height, const Vec3d& point, Moved moved) const {
-    constexpr double kOfHeight = std::uint64_t{32} << kGridBits;
-    return std::abs(height) > kOfHeight * rounding ? height > 0 : isAbove(point, moved);
+  Vec3d corner(int k) const { return {places[0][k], places[1][k], places[2][k]}; }
+  /// Returns heights above the plane, times the length of the normal; rounded by up to heightRounding().
+  template <typename T>
+  T height(const T& x, const T& y, const T& z) const {
+    return normal.x * x + normal.y * y + normal.z * z - offset;
   }
-
- private:
+  double heightRounding() const { return static_cast<double>(std::uint64_t{32} << kGridBits) * rounding; }
+  /// Returns whether a point is above the plane, exactly.
   bool isAbove(const Vec3d& point, Moved moved) const;
 };
 
@@ -45,7 +45,7 @@ struct Corners {
   /// `moved` names the surface of the triangle.
   Corners(const GridTriangle& plane, const GridTriangle& triangle, Moved moved);
 
-  double heights[3];  ///< above the plane, times the length of its normal; rounded
+  double heights[4];  ///< above the plane, times the length of its normal; rounded
   unsigned above;     ///< a bit for each of those above it, exact
   int alone;          ///< this one lies on its own side, -1 if all lie on one
 
@@ -56,6 +56,7 @@ struct Corners {
   /// Returns the other corner of such an edge.
   int far(bool from_alone) const { return from_alone ? next(alone) : previous(alone); }
 
+  static constexpr std::int8_t kAlone[8] = {-1, 0, 1, 2, 2, 1, 0, -1};  ///< by `above`
   static int next(int corner) { return corner < 2 ? corner + 1 : 0; }
   static int previous(int corner) { return corner > 0 ? corner - 1 : 2; }
 };
@@ -67,19 +68,14 @@ class EdgeOrder {
   /// Returns whether along the line, in the direction normal of t x normal of u, an edge of t comes before
   /// one of u. Each leads from or to the corner that is alone.
   bool comesBefore(bool from_alone_t, bool from_alone_u) const {
-    const double volume = dot(t_.corners[at_u_.far(from_alone_t)] - alone_, to_u_[from_alone_u ? 1 : 0]);
-    if (!(std::abs(volume) > rounding_)) return comesBeforeExactly(from_alone_t, from_alone_u);
-    return (volume > 0) == (at_u_.isAbove(at_u_.alone) == at_t_.isAbove(at_t_.alone));
+    return (before_ >> bit(from_alone_t, from_alone_u) & 1) != 0;
   }
 
  private:
-  bool comesBeforeExactly(bool from_alone_t, bool from_alone_u) const;
-
-  const GridTriangle &t_, &u_;
-  const Corners &at_u_, &at_t_;
-  Vec3d alone_;    ///< the corner of t
-  Vec3d to_u_[2];  ///< cross products of the ways from there to both corners of an edge of u
-  double rounding_;
+  static int bit(bool from_alone_t, bool from_alone_u) {
+    return (from_alone_t ? 0 : 2) + (from_alone_u ? 0 : 1);
+  }
+  unsigned before_ = 0;
 };
 
 /// Returns by how much a triangle adds to the winding number of a point: 1 where it is above it, in the
@@ -87,11 +83,21 @@ class EdgeOrder {
 int windingBelow(const GridTriangle& triangle, const Vec3d& point, Moved moved);
 
 inline Corners::Corners(const GridTriangle& plane, const GridTriangle& triangle, Moved moved) : above(0) {
-  for (int k = 0; k < 3; ++k) {
-    heights[k] = plane.height(triangle.corners[k]);
-    above |= unsigned{plane.isAbove(heights[k], triangle.corners[k], moved)} << k;
+  unsigned below = 0;
+  const double rounding = plane.heightRounding();
+  for (const int k : {0, 2}) {
+    const auto& at = triangle.places;
+    const Pair height = plane.height(pairAt(at[0] + k), pairAt(at[1] + k), pairAt(at[2] + k));
+    std::memcpy(heights + k, &height, sizeof height);
+    above |= bitsAbove(height, rounding) << k;
+    below |= bitsAbove(-height, rounding) << k;
   }
-  constexpr std::int8_t kAlone[8] = {-1, 0, 1, 2, 2, 1, 0, -1};
+  above &= 7;
+  if (((above | below) & 7) != 7) {
+    for (int k = 0; k < 3; ++k) {
+      if (((above | below) >> k & 1) == 0 && plane.isAbove(triangle.corner(k), moved)) above |= 1U << k;
+    }
+  }
   alone = kAlone[above];
 }
 

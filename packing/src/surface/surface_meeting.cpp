@@ -31,7 +31,7 @@ Vec3d cross(GridSurface& surface, GridSurface::Triangle& x, const Corners& corne
   const int low = forward ? edge : next, high = forward ? next : edge;
   const double height = corners.heights[low], fall = height - corners.heights[high];
   const double part = fall != 0 ? std::clamp(height / fall, 0.0, 1.0) : 0.5;
-  const Vec3d at = x.corners[low] + part * (x.corners[high] - x.corners[low]);
+  const Vec3d from = x.corner(low), at = from + part * (x.corner(high) - from);
   const int change = corners.isAbove(edge) ? 1 : -1;
   surface.addCrossing(x, at, forward ? part : 1 - part, edge, change);
   return at;

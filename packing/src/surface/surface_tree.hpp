@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "innersphere/geometry.hpp"
+#include "surface/lanes.hpp"
 
 namespace innersphere {
 
@@ -27,8 +28,8 @@ class SurfaceTree {
 
   /// One number of each of a node's children lies side by side: one instruction looks at all of them.
   static constexpr std::uint32_t kWidth = 4;
-  using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
-  using LaneInts = std::int32_t __attribute__((vector_size(kWidth * sizeof(std::int32_t))));
+  using Lanes = FourFloats;
+  using LaneInts = FourInts;
 
   struct Node {
     Lanes centre[3]{}, half[3]{};  ///< of the children's boxes
@@ -86,14 +87,6 @@ class SurfaceTree {
   CoarseGrid grid_;
   std::vector<bool> in_several_boxes_;
 };
-
-inline SurfaceTree::Lanes lesser(SurfaceTree::Lanes a, SurfaceTree::Lanes b) {
-  return a < b ? a : b;
-}
-
-inline SurfaceTree::Lanes larger(SurfaceTree::Lanes a, SurfaceTree::Lanes b) {
-  return a > b ? a : b;
-}
 
 inline SurfaceTree::LaneInts SurfaceTree::CoarseGrid::sides(Lanes high, Lanes minus_low) const {
   const Lanes last = Lanes{} + end;

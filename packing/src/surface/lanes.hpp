@@ -1,0 +1,51 @@
+// Declares what is done with numbers side by side. All results are those of one number at a time.
+#pragma once
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include <cstdint>
+#include <cstring>
+
+namespace innersphere {
+
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+using FourFloats = float __attribute__((vector_size(4 * sizeof(float))));
+using FourInts = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
+
+inline FourFloats lesser(FourFloats a, FourFloats b) {
+  return a < b ? a : b;
+}
+
+inline FourFloats larger(FourFloats a, FourFloats b) {
+  return a > b ? a : b;
+}
+
+inline Pair pairAt(const double* x) {
+  Pair pair;
+  std::memcpy(&pair, x, sizeof pair);
+  return pair;
+}
+
+/// Returns a bit for each number that is larger than the bound.
+inline unsigned bitsAbove(Pair x, double bound) {
+#ifdef __SSE2__
+  return static_cast<unsigned>(_mm_movemask_pd(_mm_cmpgt_pd(x, _mm_set1_pd(bound))));
+#else
+  return unsigned{x[0] > bound} | unsigned{x[1] > bound} << 1;
+#endif
+}
+
+/// Returns a bit for each negative number.
+inline unsigned signBits(FourInts x) {
+#ifdef __SSE2__
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(x)));
+#else
+  unsigned bits = 0;
+  for (int i = 0; i < 4; ++i) bits |= unsigned{x[i] < 0} << i;
+  return bits;
+#endif
+}
+
+}  // namespace innersphere
