@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace innersphere {
@@ -42,7 +43,7 @@ class Enclosure {
   void startAt(Index vertex);
   void flood();
   void passThrough(Index triangle, int winding);
-  int windingAlong(const GridSurface::Triangle& t, int from, int to) const;
+  void passCut(const GridSurface::Triangle& t, Index from);
   void addCut(const GridSurface::Triangle& t);
   void add(const Vec3d& place, const PlanePart& part, const Vec3d& normal);
 
@@ -53,7 +54,7 @@ class Enclosure {
   EnclosedSums sums_;
   Index query_ = 0;
   std::vector<Vertex> vertices_;
-  std::vector<Index> added_in_;  ///< the query in which a triangle was added as a whole
+  std::vector<Index> passed_in_;  ///< the query in which the flood came to a triangle
   std::vector<Index> open_;      ///< vertices from which to go on
   std::vector<char> is_cut_;     ///< of the parts of the surface
 };
@@ -66,11 +67,11 @@ EnclosedSums Enclosure::sum(GridSurface& own, GridSurface& other, const Vec3d& o
   sums_ = {};
   if (++query_ == 0) {
     vertices_.clear();
-    added_in_.clear();
+    passed_in_.clear();
     query_ = 1;
   }
   vertices_.resize(std::max(vertices_.size(), own.tree().vertices().size()));
-  added_in_.resize(std::max(added_in_.size(), own.tree().triangles().size()));
+  passed_in_.resize(std::max(passed_in_.size(), own.tree().triangles().size()));
   addAll();
   return sums_;
 }
@@ -93,8 +94,7 @@ void Enclosure::addAll() {
   const SurfaceTree& tree = own_->tree();
   is_cut_.assign(tree.partCount(), 0);
   // Vertices of triangles that are cut are next to all that is in the other solid, but for whole parts.
-  const std::size_t count = own_->foundCount();
-  for (Index i = 0; i < count; ++i) {
+  for (Index i = 0; i < own_->foundCount(); ++i) {
     const GridSurface::Triangle& t = own_->at(i);
     if (!t.isCut()) continue;
     is_cut_[tree.partOf(t.vertices[0])] = 1;
@@ -102,9 +102,6 @@ void Enclosure::addAll() {
   }
   for (Index part = 0; part < tree.partCount(); ++part) {
     if (is_cut_[part] == 0) startAt(tree.vertexOfPart(part));
-  }
-  for (Index i = 0; i < count; ++i) {
-    if (own_->at(i).isCut()) addCut(own_->at(i));
   }
 }
 
@@ -127,23 +124,19 @@ void Enclosure::flood() {
     open_.pop_back();
     const int winding = vertices_[from].winding;
     tree.forTrianglesAt(from, [&](Index triangle) {
+      if (std::exchange(passed_in_[triangle], query_) == query_) return;
       const Index place = own_->found(triangle);
-      if (place == GridSurface::kNone || !own_->at(place).isCut()) {
-        if (winding != 0) passThrough(triangle, winding);
-        return;
+      if (place != GridSurface::kNone && own_->at(place).isCut()) {
+        passCut(own_->at(place), from);
+      } else if (winding != 0) {
+        passThrough(triangle, winding);
       }
-      const GridSurface::Triangle& t = own_->at(place);
-      const int k =
-          static_cast<int>(std::find(t.vertices.begin(), t.vertices.end(), from) - t.vertices.begin());
-      for (const int to : {(k + 1) % 3, (k + 2) % 3}) set(t.vertices[to], windingAlong(t, k, to));
     });
   }
 }
 
 /// Adds a triangle that is not cut, and goes on to its other vertices.
 void Enclosure::passThrough(Index triangle, int winding) {
-  if (added_in_[triangle] == query_) return;
-  added_in_[triangle] = query_;
   const SurfaceTree::Triangle& v = own_->tree().triangles()[triangle];
   const Vec3d a = own_->vertex(v[0]), b = own_->vertex(v[1]), c = own_->vertex(v[2]);
   const Vec3d outwards = cross(b - a, c - a);
@@ -154,15 +147,18 @@ void Enclosure::passThrough(Index triangle, int winding) {
   for (const Index to : v) set(to, winding);
 }
 
-/// Returns the winding number at corner `to` from that at corner `from`.
-int Enclosure::windingAlong(const GridSurface::Triangle& t, int from, int to) const {
-  const bool forward = (from + 1) % 3 == to;
-  int winding = vertices_[t.vertices[from]].winding;
+/// Goes on from one corner of a triangle that is cut to the others, and adds what is enclosed of it.
+void Enclosure::passCut(const GridSurface::Triangle& t, Index from) {
+  const int first = t.vertices[0] == from ? 0 : t.vertices[1] == from ? 1 : 2, next = Corners::next(first);
+  int at_next = vertices_[from].winding, at_last = at_next;
   for (Index i = t.first_crossing; i != GridSurface::kNone; i = own_->crossings()[i].next) {
     const Crossing& crossing = own_->crossings()[i];
-    if (crossing.edge == (forward ? from : to)) winding += forward ? crossing.change : -crossing.change;
+    if (crossing.edge == first) at_next += crossing.change;
+    if (crossing.edge == Corners::next(next)) at_last -= crossing.change;
   }
-  return winding;
+  set(t.vertices[next], at_next);
+  set(t.vertices[Corners::next(next)], at_last);
+  addCut(t);
 }
 
 /// Adds what is enclosed of a triangle that is cut. The border of this consists of segments, and of parts of
@@ -197,9 +193,14 @@ void Enclosure::addCut(const GridSurface::Triangle& t) {
   }
   for (int edge = 0; edge < 3; ++edge) {
     const int next = Corners::next(edge);
-    const Vec3d end = t.corner(next), place = places[edge] != nullptr ? *places[edge] : end;
-    addBorder(t.corner(edge), place, vertices_[t.vertices[edge]].winding);
-    if (places[edge] != nullptr) addBorder(place, end, vertices_[t.vertices[next]].winding);
+    const int before = vertices_[t.vertices[edge]].winding, after = vertices_[t.vertices[next]].winding;
+    const Vec3d* place = places[edge];
+    if (place != nullptr) {
+      addBorder(t.corner(edge), *place, before);
+      addBorder(*place, t.corner(next), after);
+    } else {
+      addBorder(t.corner(edge), t.corner(next), before);
+    }
   }
   sum.middle = sum.middle + sum.area * (apex - origin_);
   add(apex, sum, t.normal);

@@ -76,12 +76,12 @@ void GridSurface::begin(const SurfaceTree& tree, const SurfaceTree& other, const
   asked_ = 0;
   if (++query_ == 0) {
     vertices_.clear();
-    boxes_.clear();
+    nodes_.clear();
     marks_.clear();
     query_ = 1;
   }
   if (vertices_.size() < tree.vertices().size()) vertices_.resize(tree.vertices().size());
-  if (boxes_.size() < tree.nodes().size()) boxes_.resize(tree.nodes().size());
+  if (nodes_.size() < tree.nodes().size()) nodes_.resize(tree.nodes().size());
   if (marks_.size() < tree.triangles().size()) marks_.resize(tree.triangles().size());
   triangles_.clear();
   segments_.clear();
@@ -100,11 +100,10 @@ void GridSurface::placeTriangle(Index triangle) {
   triangles_.push_back({GridTriangle(vertex(v[0]), vertex(v[1]), vertex(v[2])), v});
 }
 
-void GridSurface::placeBoxes(Index index) {
-  boxes_[index].query = query_;
+void GridSurface::placeNode(Index index) {
   const SurfaceTree::Node& node = tree_->nodes()[index];
   Lanes low[3], high[3];
-  if (!node.are_triangles || node.are_parts) {
+  if (!node.are_triangles || node.in_several != 0) {
     for (int k = 0; k < 3; ++k) {
       const float *m = matrix_.m + 3 * k, *size = absolute_.m + 3 * k;
       const Lanes centre =
@@ -135,7 +134,9 @@ void GridSurface::placeBoxes(Index index) {
     }
   }
   const bool is_first = moved_ == Moved::point;
-  LaneInts* sides = boxes_[index].boxes.sides;
+  static_cast<SurfaceTree::Links&>(nodes_[index]) = node;
+  nodes_[index].query = query_;
+  LaneInts* sides = nodes_[index].sides;
   for (int k = 0; k < 3; ++k) {
     const LaneInts there = other_->grid().sides(high[k] + slack_, slack_ - low[k]);
     sides[k] = is_first ? node.sides[k] : exchanged(there);
@@ -161,8 +162,8 @@ int GridSurface::windingAt(const Vec3d& point) {
   while (!open_.empty()) {
     const Index index = open_.back();
     open_.pop_back();
-    const SurfaceTree::Node& node = tree_->nodes()[index];
-    for (Index met = boxes(index).meeting(above, 0, 3); met != 0; met &= met - 1) {
+    const Node& node = this->node(index);
+    for (Index met = node.meeting(above, 0, 3); met != 0; met &= met - 1) {
       const Index child = node.children[std::countr_zero(met)];
       if (!node.are_triangles) {
         open_.push_back(child);

@@ -29,29 +29,23 @@ Similarity after(const Similarity& a, const Similarity& b);
 /// one. Half of a number is the high side, half minus the low one, in an order that differs between the
 /// surfaces: boxes of both meet if the sums of all halves are not negative.
 struct LaneBoxes {
-  using LaneInts = SurfaceTree::LaneInts;
-  LaneInts sides[6];
+  FourInts sides[6];
   /// Returns which of the boxes meet one of the other surface, a bit for each.
-  std::uint32_t meeting(const LaneBoxes& other, std::uint32_t child, int axes = 6) const;
-};
-
-inline std::uint32_t LaneBoxes::meeting(const LaneBoxes& other, std::uint32_t child, int axes) const {
-  using Halves = std::int16_t __attribute__((vector_size(sizeof(LaneInts))));
-  Halves gaps{};
-  for (int k = 0; k < axes; ++k) {
-    const LaneInts same = LaneInts{} + other.sides[k][child];
-    gaps |= reinterpret_cast<Halves>(sides[k]) + reinterpret_cast<Halves>(same);
+  std::uint32_t meeting(const LaneBoxes& other, std::uint32_t child, int axes = 6) const {
+    using Halves = std::int16_t __attribute__((vector_size(sizeof(FourInts))));
+    Halves gaps{};
+    for (int k = 0; k < axes; ++k) {
+      const FourInts same = FourInts{} + other.sides[k][child];
+      gaps |= reinterpret_cast<Halves>(sides[k]) + reinterpret_cast<Halves>(same);
+    }
+    const auto gap = reinterpret_cast<FourInts>(gaps);
+    return ~signBits(gap | (gap << 16)) & 15;
   }
-  // A gap is a sign.
-  LaneInts gap = reinterpret_cast<LaneInts>(gaps);
-  gap |= gap << 16;
-  return ~signBits(gap) & 15;
-}
+};
 
 /// Here the other surface crosses an edge of a triangle.
 struct Crossing {
   Vec3d at;
-  double part;         ///< of the edge, from its first corner
   int edge;            ///< from this corner to the next
   int change;          ///< of the winding number in the other solid
   std::uint32_t next;  ///< of the same triangle
@@ -64,7 +58,7 @@ struct Segment {
   std::uint32_t next;  ///< of the same triangle
 };
 
-/// Holds one of two surfaces, in the frame of the first one, in cells of a grid. Vertices, boxes and
+/// Holds one of two surfaces, in the frame of the first one, in cells of a grid. Vertices, nodes and
 /// triangles are placed when they are first asked for. Memory is kept from query to query.
 class GridSurface {
  public:
@@ -76,6 +70,10 @@ class GridSurface {
     SurfaceTree::Triangle vertices;
     Index first_segment = kNone, first_crossing = kNone;
     bool isCut() const { return first_segment != kNone; }
+  };
+
+  struct Node : SurfaceTree::Links, LaneBoxes {
+    Index query = 0;  ///< in which it was placed
   };
 
   /// Begins a query. `placed`: in the frame of the first surface; `in_other`: in that of the other one;
@@ -101,18 +99,17 @@ class GridSurface {
   Triangle& at(Index place) { return triangles_[place]; }
   std::size_t foundCount() const { return triangles_.size(); }
 
-  /// Returns the boxes of a node's children.
-  const LaneBoxes& boxes(Index node) {
-    if (boxes_[node].query != query_) placeBoxes(node);
-    return boxes_[node].boxes;
+  const Node& node(Index index) {
+    if (nodes_[index].query != query_) placeNode(index);
+    return nodes_[index];
   }
 
   void addSegment(Triangle& t, const Vec3d& from, const Vec3d& to) {
     segments_.push_back({from, to, t.first_segment});
     t.first_segment = static_cast<Index>(segments_.size() - 1);
   }
-  void addCrossing(Triangle& t, const Vec3d& at, double part, int edge, int change) {
-    crossings_.push_back({at, part, edge, change, t.first_crossing});
+  void addCrossing(Triangle& t, const Vec3d& at, int edge, int change) {
+    crossings_.push_back({at, edge, change, t.first_crossing});
     t.first_crossing = static_cast<Index>(crossings_.size() - 1);
   }
   const std::vector<Segment>& segments() const { return segments_; }
@@ -126,10 +123,6 @@ class GridSurface {
     Index query = 0;  ///< in which it was placed
     Vec3d at;
   };
-  struct PlacedBoxes {
-    Index query = 0;
-    LaneBoxes boxes;
-  };
   struct Mark {
     Index query = 0, place = 0;
     Index asked = 0;  ///< number of the last point for which it was looked at
@@ -137,7 +130,7 @@ class GridSurface {
 
   void place(Index vertex);
   void placeTriangle(Index triangle);
-  void placeBoxes(Index node);
+  void placeNode(Index index);
 
   const SurfaceTree *tree_ = nullptr, *other_ = nullptr;
   Similarity to_grid_;
@@ -148,7 +141,7 @@ class GridSurface {
   Moved moved_;
   Index query_ = 0, asked_ = 0;
   std::vector<PlacedVertex> vertices_;
-  std::vector<PlacedBoxes> boxes_;
+  std::vector<Node> nodes_;
   std::vector<Mark> marks_;
   std::vector<Triangle> triangles_;
   std::vector<Segment> segments_;

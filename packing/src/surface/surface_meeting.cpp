@@ -9,13 +9,13 @@ namespace innersphere {
 namespace {
 
 using Index = GridSurface::Index;
-using Node = SurfaceTree::Node;
+using Node = GridSurface::Node;
 
 /// Returns which of the children of a node of x reach into a node of y, a bit for each.
-Index meeting(GridSurface& x, Index of_x, GridSurface& y, Index of_y) {
-  if (of_y == 0) return (1U << x.tree().nodes()[of_x].count) - 1;
-  const Node& node = y.tree().nodes()[of_y];
-  return x.boxes(of_x).meeting(y.boxes(node.parent), node.place);
+inline Index meeting(const Node& of_x, GridSurface& y, Index of_y) {
+  if (of_y == 0) return (1U << of_x.count) - 1;
+  const Node& node = y.node(of_y);
+  return of_x.meeting(y.node(node.parent), node.place);
 }
 
 template <typename F>
@@ -33,7 +33,7 @@ Vec3d cross(GridSurface& surface, GridSurface::Triangle& x, const Corners& corne
   const double part = fall != 0 ? std::clamp(height / fall, 0.0, 1.0) : 0.5;
   const Vec3d from = x.corner(low), at = from + part * (x.corner(high) - from);
   const int change = corners.isAbove(edge) ? 1 : -1;
-  surface.addCrossing(x, at, forward ? part : 1 - part, edge, change);
+  surface.addCrossing(x, at, edge, change);
   return at;
 }
 
@@ -61,46 +61,43 @@ void meet(GridSurface& a, Index of_a, GridSurface& b, Index of_b) {
 
 void findMeeting(GridSurface& a, GridSurface& b) {
   using Pair = std::pair<Index, Index>;
-  static thread_local std::vector<Pair> open, repeated;
+  static thread_local std::vector<Pair> open;
+  static thread_local std::vector<std::uint64_t> repeated;
   open.assign(1, {0, 0});
   repeated.clear();
-  const auto meetTriangles = [&](Index t, Index u) {
-    if (a.tree().isInSeveralBoxes(t) || b.tree().isInSeveralBoxes(u)) {
-      repeated.emplace_back(t, u);
-    } else {
-      meet(a, t, b, u);
-    }
-  };
   while (!open.empty()) {
     const Pair pair = open.back();
     open.pop_back();
-    const Node &node_a = a.tree().nodes()[pair.first], &node_b = b.tree().nodes()[pair.second];
+    const Node &of_a = a.node(pair.first), &of_b = b.node(pair.second);
     // A node of triangles stays as it is while the other one is taken apart.
-    if (node_a.are_triangles && !node_b.are_triangles) {
-      forBits(meeting(b, pair.second, a, pair.first),
-              [&](Index j) { open.emplace_back(pair.first, node_b.children[j]); });
+    if (of_a.are_triangles && !of_b.are_triangles) {
+      forBits(meeting(of_b, a, pair.first),
+              [&](Index j) { open.emplace_back(pair.first, of_b.children[j]); });
       continue;
     }
-    const Index met = meeting(a, pair.first, b, pair.second);
-    if (node_b.are_triangles && !node_a.are_triangles) {
-      forBits(met, [&](Index i) { open.emplace_back(node_a.children[i], pair.second); });
+    const Index met = meeting(of_a, b, pair.second);
+    if (of_b.are_triangles && !of_a.are_triangles) {
+      forBits(met, [&](Index i) { open.emplace_back(of_a.children[i], pair.second); });
       continue;
     }
-    const LaneBoxes &of_a = a.boxes(pair.first), &of_b = b.boxes(pair.second);
     forBits(met, [&](Index i) {
       forBits(of_b.meeting(of_a, i), [&](Index j) {
-        if (node_a.are_triangles) {
-          meetTriangles(node_a.children[i], node_b.children[j]);
+        const Index child_a = of_a.children[i], child_b = of_b.children[j];
+        if (!of_a.are_triangles) {
+          open.emplace_back(child_a, child_b);
+        } else if (((of_a.in_several >> i | of_b.in_several >> j) & 1) != 0) {
+          repeated.push_back(std::uint64_t{child_a} << 32 | child_b);
         } else {
-          open.emplace_back(node_a.children[i], node_b.children[j]);
+          meet(a, child_a, b, child_b);
         }
       });
     });
   }
   // Several of their boxes meet, but they do once.
   std::sort(repeated.begin(), repeated.end());
-  const auto end = std::unique(repeated.begin(), repeated.end());
-  for (auto pair = repeated.begin(); pair != end; ++pair) meet(a, pair->first, b, pair->second);
+  repeated.erase(std::unique(repeated.begin(), repeated.end()), repeated.end());
+  for (const std::uint64_t pair : repeated)
+    meet(a, static_cast<Index>(pair >> 32), b, static_cast<Index>(pair));
 }
 
 }  // namespace innersphere

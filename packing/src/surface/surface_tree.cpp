@@ -77,6 +77,7 @@ class SurfaceTree::Builder {
 
   SurfaceTree& tree_;
   std::vector<Part> parts_;
+  std::vector<bool> in_several_;  ///< of the triangles
   std::vector<Part> best_;
   std::vector<double> costs_;
 };
@@ -98,9 +99,9 @@ SurfaceTree::Builder::Builder(SurfaceTree& tree) : tree_(tree) {
     const Vec3d corners[3] = {at(t[0]), at(t[1]), at(t[2])};
     addParts(i, {corners, corners + 3}, most);
   }
-  tree.in_several_boxes_.assign(tree.triangles_.size(), false);
+  in_several_.assign(tree.triangles_.size(), false);
   for (std::size_t k = 1; k < parts_.size(); ++k) {
-    if (parts_[k].triangle == parts_[k - 1].triangle) tree.in_several_boxes_[parts_[k].triangle] = true;
+    if (parts_[k].triangle == parts_[k - 1].triangle) in_several_[parts_[k].triangle] = true;
   }
 }
 
@@ -154,8 +155,8 @@ std::uint32_t SurfaceTree::Builder::build(std::uint32_t first, std::uint32_t end
       node.centre[axis][node.count] = centre;
       node.half[axis][node.count] = std::max(high - centre, centre - low);
     }
+    if (node.are_triangles && in_several_[child]) node.in_several |= 1U << node.count;
     node.children[node.count++] = child;
-    if (node.are_triangles && tree_.in_several_boxes_[child]) node.are_parts = true;
   }
   tree_.placeOnGrid(nodes[index]);
   return index;

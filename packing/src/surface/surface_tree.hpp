@@ -31,14 +31,18 @@ class SurfaceTree {
   using Lanes = FourFloats;
   using LaneInts = FourInts;
 
-  struct Node {
+  /// Says what is below a node, and above it.
+  struct Links {
+    std::array<std::uint32_t, kWidth> children{};
+    std::uint32_t parent = 0;     ///< not of the first node
+    std::uint8_t place = 0;       ///< among the parent's children
+    std::uint8_t count = 0;       ///< of the children
+    bool are_triangles = false;   ///< or nodes
+    std::uint8_t in_several = 0;  ///< a bit for each triangle that is the child of several nodes
+  };
+  struct Node : Links {
     Lanes centre[3]{}, half[3]{};  ///< of the children's boxes
     LaneInts sides[3]{};           ///< of the boxes in the coarse grid
-    std::array<std::uint32_t, kWidth> children{};
-    std::uint32_t count = 0;              ///< of the children
-    bool are_triangles = false;           ///< or nodes
-    bool are_parts = false;               ///< one of these triangles is the child of other nodes, too
-    std::uint32_t parent = 0, place = 0;  ///< whose child it is, and which; not for the first node
   };
 
   /// Boxes are compared on a grid so coarse that its numbers have 15 bits.
@@ -64,9 +68,6 @@ class SurfaceTree {
     for (std::uint32_t i = first_at_[vertex]; i < first_at_[vertex + 1]; ++i) f(triangles_at_[i]);
   }
 
-  /// Returns whether a triangle is the child of several nodes: a long one is in several boxes.
-  bool isInSeveralBoxes(std::uint32_t triangle) const { return in_several_boxes_[triangle]; }
-
   /// Parts of the surface that have no vertex in common.
   std::uint32_t partCount() const { return static_cast<std::uint32_t>(vertex_of_part_.size()); }
   std::uint32_t vertexOfPart(std::uint32_t part) const { return vertex_of_part_[part]; }
@@ -85,7 +86,6 @@ class SurfaceTree {
   std::vector<std::uint32_t> vertex_of_part_, parts_;  ///< parts_ is empty if there is one
   Bounds bounds_;
   CoarseGrid grid_;
-  std::vector<bool> in_several_boxes_;
 };
 
 inline SurfaceTree::LaneInts SurfaceTree::CoarseGrid::sides(Lanes high, Lanes minus_low) const {
