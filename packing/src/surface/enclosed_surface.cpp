@@ -165,20 +165,21 @@ void Enclosure::passCut(const GridSurface::Triangle& t, Index from) {
 /// the edges: with one corner in common each of them makes a triangle, to be added or taken away. All lie in
 /// one plane, so that one component of their normals is enough.
 void Enclosure::addCut(const GridSurface::Triangle& t) {
-  const Vec3d& apex = own_->segments()[t.first_segment].from;
+  const Segment& first = own_->segments()[t.first_segment];
+  const Vec3d& apex = first.from;
   const int k = largestAxis(t.normal), i = Corners::next(k), j = Corners::previous(k);
   if (t.normal[k] == 0) return;
   const double unit = 1 / t.normal[k];
   PlanePart sum;
   const auto addBorder = [&](const Vec3d& from, const Vec3d& to, int winding) {
     if (winding == 0) return;
-    const double part = unit * winding *
-                        ((from[i] - apex[i]) * (to[j] - apex[j]) - (from[j] - apex[j]) * (to[i] - apex[i]));
+    const Vec3d u = from - apex, v = to - apex;
+    const double part = unit * winding * (u[i] * v[j] - u[j] * v[i]);
     sum.area += part;
     sum.magnitude += std::abs(part);
-    sum.middle = sum.middle + part * ((from - origin_) + (to - origin_));
+    sum.middle = sum.middle + part * (u + v);
   };
-  for (Index s = t.first_segment; s != GridSurface::kNone; s = own_->segments()[s].next)
+  for (Index s = first.next; s != GridSurface::kNone; s = own_->segments()[s].next)
     addBorder(own_->segments()[s].from, own_->segments()[s].to, 1);
   // From a place on each edge, winding numbers are those of its corners, but for what changes in between.
   const Vec3d* places[3] = {};
@@ -202,7 +203,7 @@ void Enclosure::addCut(const GridSurface::Triangle& t) {
       addBorder(t.corner(edge), t.corner(next), before);
     }
   }
-  sum.middle = sum.middle + sum.area * (apex - origin_);
+  sum.middle = sum.middle + 3 * sum.area * (apex - origin_);
   add(apex, sum, t.normal);
 }
 

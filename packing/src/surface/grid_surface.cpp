@@ -63,11 +63,12 @@ void GridSurface::begin(const SurfaceTree& tree, const SurfaceTree& other, const
   other_ = &other;
   const SurfaceTree::CoarseGrid& grid = other.grid();
   for (int i = 0; i < 9; ++i) {
-    matrix_.m[i] = static_cast<float>(grid.per * in_other.matrix.m[i]);
-    absolute_.m[i] = std::abs(matrix_.m[i]);
+    const auto m = static_cast<float>(grid.per * in_other.matrix.m[i]);
+    matrix_[i] = Lanes{} + m;
+    absolute_[i] = Lanes{} + std::abs(m);
   }
   const Vec3d t = grid.per * (in_other.translation - grid.middle);
-  translation_ = {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z)};
+  for (int k = 0; k < 3; ++k) translation_[k] = Lanes{} + static_cast<float>(t[k]);
   const double own_reach = std::max(largest(tree.bounds().min), largest(tree.bounds().max));
   slack_ =
       static_cast<float>(kSingleRounding * std::max(grid.per * in_other.scale() * own_reach, largest(t)));
@@ -97,7 +98,7 @@ void GridSurface::place(Index v) {
 void GridSurface::placeTriangle(Index triangle) {
   marks_[triangle] = {query_, static_cast<Index>(triangles_.size()), 0};
   const SurfaceTree::Triangle& v = tree_->triangles()[triangle];
-  triangles_.push_back({GridTriangle(vertex(v[0]), vertex(v[1]), vertex(v[2])), v});
+  triangles_.emplace_back(vertex(v[0]), vertex(v[1]), vertex(v[2]), v);
 }
 
 void GridSurface::placeNode(Index index) {
@@ -105,7 +106,7 @@ void GridSurface::placeNode(Index index) {
   Lanes low[3], high[3];
   if (!node.are_triangles || node.in_several != 0) {
     for (int k = 0; k < 3; ++k) {
-      const float *m = matrix_.m + 3 * k, *size = absolute_.m + 3 * k;
+      const Lanes *m = matrix_ + 3 * k, *size = absolute_ + 3 * k;
       const Lanes centre =
           m[0] * node.centre[0] + m[1] * node.centre[1] + m[2] * node.centre[2] + translation_[k];
       const Lanes half = size[0] * node.half[0] + size[1] * node.half[1] + size[2] * node.half[2];
@@ -125,7 +126,7 @@ void GridSurface::placeNode(Index index) {
       asColumns(places, corners[c]);
     }
     for (int k = 0; k < 3; ++k) {
-      const float* m = matrix_.m + 3 * k;
+      const Lanes* m = matrix_ + 3 * k;
       Lanes along[3];
       for (int c = 0; c < 3; ++c)
         along[c] = m[0] * corners[c][0] + m[1] * corners[c][1] + m[2] * corners[c][2] + translation_[k];

@@ -67,12 +67,14 @@ class GridSurface {
 
   /// This is a triangle, and where the other surface meets it.
   struct Triangle : GridTriangle {
+    Triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, const SurfaceTree::Triangle& v)
+        : GridTriangle(a, b, c), vertices(v) {}
     SurfaceTree::Triangle vertices;
     Index first_segment = kNone, first_crossing = kNone;
     bool isCut() const { return first_segment != kNone; }
   };
 
-  struct Node : SurfaceTree::Links, LaneBoxes {
+  struct Node : LaneBoxes, SurfaceTree::Links {
     Index query = 0;  ///< in which it was placed
   };
 
@@ -134,8 +136,7 @@ class GridSurface {
 
   const SurfaceTree *tree_ = nullptr, *other_ = nullptr;
   Similarity to_grid_;
-  core::Mat3<float> matrix_, absolute_;  ///< to the other surface's coarse grid
-  Vec3f translation_;
+  FourFloats matrix_[9], absolute_[9], translation_[3];  ///< to the other surface's coarse grid
   float slack_;  ///< what rounding may do to places there
   double cells_;
   Moved moved_;

@@ -28,6 +28,10 @@ inline Pair pairAt(const double* x) {
   return pair;
 }
 
+inline Pair exchanged(Pair x) {
+  return Pair{x[1], x[0]};
+}
+
 /// Returns a bit for each number that is larger than the bound.
 inline unsigned bitsAbove(Pair x, double bound) {
 #ifdef __SSE2__

@@ -67,7 +67,7 @@ int facing(const GridTriangle& t) {
 }
 
 /// Returns what EdgeOrder::comesBefore() does, exactly.
-bool isBefore(const GridTriangle& t, const Corners& at_u, bool from_alone_t, const GridTriangle& u,
+[[gnu::noinline]] bool isBefore(const GridTriangle& t, const Corners& at_u, bool from_alone_t, const GridTriangle& u,
               const Corners& at_t, bool from_alone_u) {
   // From a, above u, down to b, and from c, above t, down to d.
   int a = at_u.alone, b = at_u.far(from_alone_t), c = at_t.alone, d = at_t.far(from_alone_u);
@@ -105,20 +105,22 @@ bool GridTriangle::isAbove(const Vec3d& point, Moved moved) const {
 EdgeOrder::EdgeOrder(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t) {
   // The signs of the volumes between both edges, seen from the corner of t that is alone.
   const Vec3d from = t.corner(at_u.alone), to_alone = u.corner(at_t.alone) - from;
-  const int others = at_t.alone + 1;
-  const Pair x = pairAt(u.places[0] + others) - from.x, y = pairAt(u.places[1] + others) - from.y,
-             z = pairAt(u.places[2] + others) - from.z;
-  const Pair area_x = to_alone.y * z - to_alone.z * y, area_y = to_alone.z * x - to_alone.x * z,
-             area_z = to_alone.x * y - to_alone.y * x;
+  const auto toOthers = [&](const GridTriangle& triangle, int alone, int axis) {
+    return pairAt(triangle.places[axis] + alone + 1) - from[axis];
+  };
+  Pair tx = toOthers(t, at_u.alone, 0), ty = toOthers(t, at_u.alone, 1), tz = toOthers(t, at_u.alone, 2);
+  const Pair ux = toOthers(u, at_t.alone, 0), uy = toOthers(u, at_t.alone, 1), uz = toOthers(u, at_t.alone, 2);
+  const Pair area_x = to_alone.y * uz - to_alone.z * uy, area_y = to_alone.z * ux - to_alone.x * uz,
+             area_z = to_alone.x * uy - to_alone.y * ux;
   // No way from a corner of t to one of u is longer; and an edge between the others is up to twice the size.
   const double farthest = largest(u.corner(0) - t.corner(0)) + t.size + u.size;
   const double rounding = kRounding3 * 2 * t.size * farthest * farthest;
   unsigned above = 0, below = 0;
-  for (const bool from_alone : {true, false}) {
-    const Vec3d along = t.corner(at_u.far(from_alone)) - from;
-    const Pair volume = along.x * area_x + along.y * area_y + along.z * area_z;
-    above |= bitsAbove(volume, rounding) << bit(from_alone, true);
-    below |= bitsAbove(-volume, rounding) << bit(from_alone, true);
+  for (const int first : {0, 2}) {
+    const Pair volume = tx * area_x + ty * area_y + tz * area_z;
+    above |= bitsAbove(volume, rounding) << first;
+    below |= bitsAbove(-volume, rounding) << first;
+    tx = exchanged(tx), ty = exchanged(ty), tz = exchanged(tz);
   }
   before_ = at_u.isAbove(at_u.alone) == at_t.isAbove(at_t.alone) ? above : below;
   if ((above | below) == 15) return;

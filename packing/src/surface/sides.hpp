@@ -72,10 +72,11 @@ class EdgeOrder {
   }
 
  private:
+  /// The first two bits are of edges that both lead from those corners, or to them.
   static int bit(bool from_alone_t, bool from_alone_u) {
-    return (from_alone_t ? 0 : 2) + (from_alone_u ? 0 : 1);
+    return (from_alone_t == from_alone_u ? 0 : 2) + (from_alone_u ? 0 : 1);
   }
-  unsigned before_ = 0;
+  unsigned before_;
 };
 
 /// Returns by how much a triangle adds to the winding number of a point: 1 where it is above it, in the
