@@ -55,8 +55,8 @@ class Enclosure {
   Index query_ = 0;
   std::vector<Vertex> vertices_;
   std::vector<Index> passed_in_;  ///< the query in which the flood came to a triangle
-  std::vector<Index> open_;      ///< vertices from which to go on
-  std::vector<char> is_cut_;     ///< of the parts of the surface
+  std::vector<Index> open_;       ///< vertices from which to go on
+  std::vector<char> is_cut_;      ///< of the parts of the surface
 };
 
 EnclosedSums Enclosure::sum(GridSurface& own, GridSurface& other, const Vec3d& origin, bool volume_only) {

@@ -24,14 +24,13 @@ LaneInts exchanged(LaneInts x) {
 
 /// Returns as columns the first three of each place's coordinates.
 void asColumns(const Lanes (&places)[4], Lanes (&columns)[3]) {
-  using Four = LaneInts;
-  const Lanes a = __builtin_shuffle(places[0], places[1], Four{0, 4, 1, 5}),
-              b = __builtin_shuffle(places[2], places[3], Four{0, 4, 1, 5}),
-              c = __builtin_shuffle(places[0], places[1], Four{2, 6, 3, 7}),
-              d = __builtin_shuffle(places[2], places[3], Four{2, 6, 3, 7});
-  columns[0] = __builtin_shuffle(a, b, Four{0, 1, 4, 5});
-  columns[1] = __builtin_shuffle(a, b, Four{2, 3, 6, 7});
-  columns[2] = __builtin_shuffle(c, d, Four{0, 1, 4, 5});
+  const auto firstOf = [](Lanes a, Lanes b) { return Lanes{a[0], b[0], a[1], b[1]}; };
+  const auto lastOf = [](Lanes a, Lanes b) { return Lanes{a[2], b[2], a[3], b[3]}; };
+  const Lanes a = firstOf(places[0], places[1]), b = firstOf(places[2], places[3]),
+              c = lastOf(places[0], places[1]), d = lastOf(places[2], places[3]);
+  columns[0] = Lanes{a[0], a[1], b[0], b[1]};
+  columns[1] = Lanes{a[2], a[3], b[2], b[3]};
+  columns[2] = Lanes{c[0], c[1], d[0], d[1]};
 }
 
 /// Returns the nearest whole number. Numbers are less than 2^51.
@@ -103,7 +102,10 @@ void GridSurface::placeTriangle(Index triangle) {
 
 void GridSurface::placeNode(Index index) {
   const SurfaceTree::Node& node = tree_->nodes()[index];
+  constexpr float kFar = std::numeric_limits<float>::infinity();
   Lanes low[3], high[3];
+  for (int k = 0; k < 3; ++k) low[k] = Lanes{} - kFar, high[k] = Lanes{} + kFar;
+  // Boxes around whole triangles are smaller than around their boxes, unless these are of parts.
   if (!node.are_triangles || node.in_several != 0) {
     for (int k = 0; k < 3; ++k) {
       const Lanes *m = matrix_ + 3 * k, *size = absolute_ + 3 * k;
@@ -113,11 +115,8 @@ void GridSurface::placeNode(Index index) {
       low[k] = centre - half;
       high[k] = centre + half;
     }
-  } else {
-    for (int k = 0; k < 3; ++k) high[k] = Lanes{} + std::numeric_limits<float>::infinity(), low[k] = -high[k];
   }
   if (node.are_triangles) {
-    // Those around whole triangles are smaller, unless these are in several.
     Lanes corners[3][3];
     for (int c = 0; c < 3; ++c) {
       Lanes places[SurfaceTree::kWidth];
@@ -134,10 +133,11 @@ void GridSurface::placeNode(Index index) {
       high[k] = lesser(high[k], larger(larger(along[0], along[1]), along[2]));
     }
   }
+  Node& placed = nodes_[index];
+  static_cast<SurfaceTree::Links&>(placed) = node;
+  placed.query = query_;
+  LaneInts* sides = placed.sides;
   const bool is_first = moved_ == Moved::point;
-  static_cast<SurfaceTree::Links&>(nodes_[index]) = node;
-  nodes_[index].query = query_;
-  LaneInts* sides = nodes_[index].sides;
   for (int k = 0; k < 3; ++k) {
     const LaneInts there = other_->grid().sides(high[k] + slack_, slack_ - low[k]);
     sides[k] = is_first ? node.sides[k] : exchanged(there);

@@ -137,7 +137,7 @@ class GridSurface {
   const SurfaceTree *tree_ = nullptr, *other_ = nullptr;
   Similarity to_grid_;
   FourFloats matrix_[9], absolute_[9], translation_[3];  ///< to the other surface's coarse grid
-  float slack_;  ///< what rounding may do to places there
+  float slack_;                                          ///< what rounding may do to places there
   double cells_;
   Moved moved_;
   Index query_ = 0, asked_ = 0;

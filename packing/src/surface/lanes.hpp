@@ -10,7 +10,7 @@
 
 namespace innersphere {
 
-using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+using TwoDoubles = double __attribute__((vector_size(2 * sizeof(double))));
 using FourFloats = float __attribute__((vector_size(4 * sizeof(float))));
 using FourInts = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
 
@@ -22,18 +22,18 @@ inline FourFloats larger(FourFloats a, FourFloats b) {
   return a > b ? a : b;
 }
 
-inline Pair pairAt(const double* x) {
-  Pair pair;
-  std::memcpy(&pair, x, sizeof pair);
-  return pair;
+inline TwoDoubles twoAt(const double* x) {
+  TwoDoubles two;
+  std::memcpy(&two, x, sizeof two);
+  return two;
 }
 
-inline Pair exchanged(Pair x) {
-  return Pair{x[1], x[0]};
+inline TwoDoubles exchanged(TwoDoubles x) {
+  return TwoDoubles{x[1], x[0]};
 }
 
 /// Returns a bit for each number that is larger than the bound.
-inline unsigned bitsAbove(Pair x, double bound) {
+inline unsigned bitsAbove(TwoDoubles x, double bound) {
 #ifdef __SSE2__
   return static_cast<unsigned>(_mm_movemask_pd(_mm_cmpgt_pd(x, _mm_set1_pd(bound))));
 #else

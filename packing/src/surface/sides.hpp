@@ -35,6 +35,7 @@ struct GridTriangle {
   T height(const T& x, const T& y, const T& z) const {
     return normal.x * x + normal.y * y + normal.z * z - offset;
   }
+  /// That of the normal, and of products with places, which are not seen from the plane.
   double heightRounding() const { return static_cast<double>(std::uint64_t{32} << kGridBits) * rounding; }
   /// Returns whether a point is above the plane, exactly.
   bool isAbove(const Vec3d& point, Moved moved) const;
@@ -88,7 +89,7 @@ inline Corners::Corners(const GridTriangle& plane, const GridTriangle& triangle,
   const double rounding = plane.heightRounding();
   for (const int k : {0, 2}) {
     const auto& at = triangle.places;
-    const Pair height = plane.height(pairAt(at[0] + k), pairAt(at[1] + k), pairAt(at[2] + k));
+    const TwoDoubles height = plane.height(twoAt(at[0] + k), twoAt(at[1] + k), twoAt(at[2] + k));
     std::memcpy(heights + k, &height, sizeof height);
     above |= bitsAbove(height, rounding) << k;
     below |= bitsAbove(-height, rounding) << k;

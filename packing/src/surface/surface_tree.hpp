@@ -49,7 +49,7 @@ class SurfaceTree {
   struct CoarseGrid {
     Vec3d middle{};  ///< of the surface
     double per = 0;  ///< cells for a unit of length
-    float end = 0;   ///< a number behind all of the surface: what is farther away lies there
+    float end = 0;   ///< a place behind all of the surface: boxes reach no farther
     /// Returns the high sides of boxes, and minus their low ones, in the halves of a number. They are
     /// rounded up.
     LaneInts sides(Lanes high, Lanes minus_low) const;

@@ -136,6 +136,16 @@ TEST_P(SurfaceConformance, ApartTouchingAndInside) {
   }
 }
 
+// One is a million times as large as the other.
+TEST_P(SurfaceConformance, VeryDifferentSizes) {
+  constexpr float kLarge = 0x1p20F;
+  const auto large = boxModel({kLarge, kLarge, kLarge}), small = boxModel({1, 1, 1});
+  for (const Vec3d& place : {Vec3d{kLarge / 2 - 0.25, 0.125, 0.25}, Vec3d{0.25, kLarge / 2 - 0.25, -1e5}}) {
+    EXPECT_NEAR(overlap(*large, *small, at(place)).volume, 0.75, 1e-5);
+    EXPECT_NEAR(overlap(*small, *large, at(-place)).volume, 0.75, 1e-5);
+  }
+}
+
 // Force and torque are those of the energy, in any pose and scale.
 TEST_P(SurfaceConformance, ForceIsTheGradient) {
   const auto a = boxModel({1, 0.5, 0.75}), b = boxModel({0.5, 1, 0.625});
