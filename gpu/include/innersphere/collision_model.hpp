@@ -19,12 +19,12 @@ enum class Estimator {
   /// spheres: energy is the volume, force is area, torque is minus the gradient of the volume by a rotation
   /// about the origin of B, and stiffness is the area of B's surface in A. pair_count are pairs of triangles
   /// that meet: none where one solid is wholly inside the other. Spheres (volume-true ones) give Want::touch,
-  /// contacts and pairs, which may be missing where an overlap is smaller than they are. It costs 2 to 5
-  /// times as much as volume_true with 4,000 spheres where less than 1 % of a solid overlaps (threads and
-  /// cups 10 times), 2 to 24 times where more does, and grows with the length of the line in which both
-  /// surfaces meet. The CPU works on the triangles, also where the spheres are on a device; each thread keeps
-  /// memory for the largest surface that it was asked for. Swapping A and B negates force and area to
-  /// rounding only.
+  /// contacts and pairs, which may be missing where an overlap is smaller than they are. It costs 1 to 3
+  /// times as much as volume_true with 4,000 spheres where less than 1 % of a solid overlaps, 1 to 11 times
+  /// where more does (with AVX-512, which sums spheres faster, up to twice that), and grows with the length
+  /// of the line in which both surfaces meet. The CPU works on the triangles, also where the spheres are on a
+  /// device; each thread keeps memory for the largest surface that it was asked for. Swapping A and B negates
+  /// force and area to rounding only.
   surface
 };
 
