@@ -39,4 +39,9 @@ inline double largest(const Vec3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+/// Returns that of a place in the box.
+inline double largest(const Bounds& box) {
+  return std::max(largest(box.min), largest(box.max));
+}
+
 }  // namespace innersphere

@@ -12,13 +12,12 @@ namespace innersphere {
 namespace {
 
 using Lanes = SurfaceTree::Lanes;
-using LaneInts = SurfaceTree::LaneInts;
 
 /// Both sides of what is behind the end of any coarse grid.
 constexpr std::int32_t kNoBox = -16384 * 0x10001;
 
 /// Returns the numbers with their halves exchanged.
-LaneInts exchanged(LaneInts x) {
+FourInts exchanged(FourInts x) {
   return (x << 16) | ((x >> 16) & 0xffff);
 }
 
@@ -68,9 +67,8 @@ void GridSurface::begin(const SurfaceTree& tree, const SurfaceTree& other, const
   }
   const Vec3d t = grid.per * (in_other.translation - grid.middle);
   for (int k = 0; k < 3; ++k) translation_[k] = Lanes{} + static_cast<float>(t[k]);
-  const double own_reach = std::max(largest(tree.bounds().min), largest(tree.bounds().max));
-  slack_ =
-      static_cast<float>(kSingleRounding * std::max(grid.per * in_other.scale() * own_reach, largest(t)));
+  slack_ = static_cast<float>(kSingleRounding *
+                              std::max(grid.per * in_other.scale() * largest(tree.bounds()), largest(t)));
   cells_ = cells;
   moved_ = moved;
   asked_ = 0;
@@ -136,10 +134,10 @@ void GridSurface::placeNode(Index index) {
   Node& placed = nodes_[index];
   static_cast<SurfaceTree::Links&>(placed) = node;
   placed.query = query_;
-  LaneInts* sides = placed.sides;
+  FourInts* sides = placed.sides;
   const bool is_first = moved_ == Moved::point;
   for (int k = 0; k < 3; ++k) {
-    const LaneInts there = other_->grid().sides(high[k] + slack_, slack_ - low[k]);
+    const FourInts there = other_->grid().sides(high[k] + slack_, slack_ - low[k]);
     sides[k] = is_first ? node.sides[k] : exchanged(there);
     sides[3 + k] = is_first ? there : exchanged(node.sides[k]);
   }
@@ -156,7 +154,7 @@ int GridSurface::windingAt(const Vec3d& point) {
   LaneBoxes above;
   for (int k = 0; k < 3; ++k) {
     const Lanes here = Lanes{} + static_cast<float>(at[k]);
-    above.sides[k] = grid.sides(k < 2 ? here : Lanes{} + grid.end, -here);
+    above.sides[k] = grid.sides(k < 2 ? here : Lanes{} + grid.kEnd, -here);
     if (is_first) above.sides[k] = exchanged(above.sides[k]);
   }
   open_.assign(1, 0);

@@ -35,10 +35,7 @@ SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b) {
   const Similarity b_to_a = after(a.place.inverse(), b.place);
   const Bounds &box_a = a.tree.bounds(), box_b = placed(b.tree.bounds(), b_to_a);
   if (isEmpty(common(box_a, box_b))) return {};
-  double reach = 0;
-  for (const Vec3d& corner : {box_a.min, box_a.max, box_b.min, box_b.max}) {
-    for (const double x : corner) reach = std::max(reach, std::abs(x));
-  }
+  const double reach = std::max(largest(box_a), largest(box_b));
   if (!(reach > 0)) return {};
   const double cells = std::exp2(kGridBits - 1 - std::ilogb(reach));
   static thread_local GridSurface on_grid_a, on_grid_b;

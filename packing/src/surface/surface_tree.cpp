@@ -19,9 +19,10 @@ namespace {
 /// are long on average: where all are needles, that bounds the number of boxes.
 constexpr double kLongest = 3, kShortest = 1.0 / 8;
 
-/// Coarse cells from the middle of a surface to its farthest side, and to the end: the sum of two numbers is
-/// less than 2^15.
-constexpr float kCoarseHalf = 16000, kCoarseEnd = 16300;
+/// Coarse cells from the middle of a surface to its farthest side. That is before the end of the grid, and
+/// the sum of two numbers up to that is less than 2^15.
+constexpr float kCoarseHalf = 16000;
+static_assert(kCoarseHalf < SurfaceTree::CoarseGrid::kEnd && 2 * SurfaceTree::CoarseGrid::kEnd < 0x1p15F);
 /// More cells than this are none in single precision.
 constexpr double kMostCells = 1e30;
 
@@ -222,7 +223,6 @@ SurfaceTree::SurfaceTree(const Surface& surface) {
   bounds_ = builder.boundsOf(0, count);
   grid_.middle = 0.5 * (bounds_.min + bounds_.max);
   grid_.per = std::min(kCoarseHalf / largest(bounds_.max - grid_.middle), kMostCells);
-  grid_.end = kCoarseEnd;
   builder.build(0, count);
   link();
   findParts();
@@ -230,8 +230,7 @@ SurfaceTree::SurfaceTree(const Surface& surface) {
 
 void SurfaceTree::placeOnGrid(Node& node) const {
   const auto per = static_cast<float>(grid_.per);
-  const auto slack =
-      static_cast<float>(kSingleRounding * grid_.per * std::max(largest(bounds_.min), largest(bounds_.max)));
+  const auto slack = static_cast<float>(kSingleRounding * grid_.per * largest(bounds_));
   for (int k = 0; k < 3; ++k) {
     const Lanes centre = per * (node.centre[k] - static_cast<float>(grid_.middle[k])),
                 half = per * node.half[k] + slack;

@@ -29,7 +29,6 @@ class SurfaceTree {
   /// One number of each of a node's children lies side by side: one instruction looks at all of them.
   static constexpr std::uint32_t kWidth = 4;
   using Lanes = FourFloats;
-  using LaneInts = FourInts;
 
   /// Says what is below a node, and above it.
   struct Links {
@@ -42,17 +41,17 @@ class SurfaceTree {
   };
   struct Node : Links {
     Lanes centre[3]{}, half[3]{};  ///< of the children's boxes
-    LaneInts sides[3]{};           ///< of the boxes in the coarse grid
+    FourInts sides[3]{};           ///< of the boxes in the coarse grid
   };
 
   /// Boxes are compared on a grid so coarse that its numbers have 15 bits.
   struct CoarseGrid {
-    Vec3d middle{};  ///< of the surface
-    double per = 0;  ///< cells for a unit of length
-    float end = 0;   ///< a place behind all of the surface: boxes reach no farther
+    Vec3d middle{};                       ///< of the surface
+    double per = 0;                       ///< cells for a unit of length
+    static constexpr float kEnd = 16300;  ///< behind all of the surface: boxes reach no farther
     /// Returns the high sides of boxes, and minus their low ones, in the halves of a number. They are
     /// rounded up.
-    LaneInts sides(Lanes high, Lanes minus_low) const;
+    FourInts sides(Lanes high, Lanes minus_low) const;
   };
 
   /// The root is the first one.
@@ -88,11 +87,11 @@ class SurfaceTree {
   CoarseGrid grid_;
 };
 
-inline SurfaceTree::LaneInts SurfaceTree::CoarseGrid::sides(Lanes high, Lanes minus_low) const {
-  const Lanes last = Lanes{} + end;
+inline FourInts SurfaceTree::CoarseGrid::sides(Lanes high, Lanes minus_low) const {
+  const Lanes last = Lanes{} + kEnd;
   // What is not a number is at the end, too.
   const auto up = [&](Lanes x) {
-    return __builtin_convertvector(larger(lesser(x + 1, last), -last), LaneInts);
+    return __builtin_convertvector(larger(lesser(x + 1, last), -last), FourInts);
   };
   return (up(high) << 16) | (up(minus_low) & 0xffff);
 }
