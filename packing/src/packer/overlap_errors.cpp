@@ -15,8 +15,6 @@
 namespace innersphere {
 namespace {
 
-constexpr double kVoxels = 1 << 20;
-
 // Enough for 15 depths.
 constexpr std::size_t kTrials = 15 * kOverlapErrorPoses;
 
@@ -111,8 +109,7 @@ Finding findingOf(const Found& found, double truth, double volume, OverlapKind k
 OverlapErrors findOverlapErrors(const Container& container, const Surface& surface,
                                 const SurfaceSamples& samples, std::span<const Ball> balls,
                                 const std::vector<VolumeTrueRadii>& radii, double volume) {
-  const Voxels voxels(container, volume, kVoxels);
-  const OverlapTrials made = makeOverlapTrials(container, surface, samples, voxels, volume, kTrials);
+  const OverlapTrials made = makeOverlapTrials(container, surface, samples, volume, kTrials);
   const std::vector<OverlapTrial>& trials = made.trials;
   const std::vector<PlaneCut>& planes = made.planes;
   if (trials.size() < kOverlapErrorPoses) return {};

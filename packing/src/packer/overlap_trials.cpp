@@ -15,11 +15,16 @@
 namespace innersphere {
 namespace {
 
-// Less than this of the solid is found from triangles: samples are too coarse, and triangles few.
-constexpr double kShallowShare = 0.01;
+// Points inside that tell about how much copies share, as long as a pose is looked for. Of shares above this
+// they have 30.
+constexpr double kFewPoints = 1 << 14, kFewShare = 0.002;
 
-// More than this is known well enough by few samples, as long as a pose is looked for: they have 30 of it.
-constexpr double kFewShare = 0.001;
+// Points inside that tell what is shared where the surface does not.
+constexpr double kManyPoints = 1 << 20;
+
+// A surface does not tell if its volume is off by this part: it encloses a part of the solid twice, or its
+// triangles are chords of a curve. Only overlaps of less than kShallowShare are found from it all the same.
+constexpr double kOff = 1e-3, kShallowShare = 0.01;
 
 // A pose may share up to so many times what is wanted, and is looked for with so many steps. The aim is near
 // the deep side, where the search comes from.
@@ -59,13 +64,20 @@ Point direction(const Point& u) {
 /// Tells what a solid shares with its copy.
 class TrueOverlap {
  public:
-  TrueOverlap(const Container& container, const Surface& surface, const Voxels& voxels, double volume)
-      : voxels_(voxels), volume_(volume), scale_(1 / container.side()) {
+  TrueOverlap(const Container& container, const Surface& surface, double volume)
+      : few_(container, volume, kFewPoints), volume_(volume), scale_(1 / container.side()) {
     shift_ = container.fromWorld(container.origin());
-    if (!surface.triangles.empty() && isClosedSurface(surface)) tree_.emplace(surface);
+    if (!surface.triangles.empty() && isClosedSurface(surface)) {
+      tree_.emplace(surface);
+    }
+    if (!tree_ || std::abs(below(Point::UnitZ(), 2) - 1) > kOff)
+      many_.emplace(container, volume, kManyPoints);
   }
 
   bool knowsSurface() const { return tree_.has_value(); }
+
+  /// Returns a point inside the solid; `part` is in [0, 1).
+  Point point(double part) const { return few_.point(part); }
 
   /// The fraction of the solid that is below a plane. The surface must be known.
   double below(const Point& normal, double height) const {
@@ -93,10 +105,10 @@ class TrueOverlap {
     return sum / volume_;
   }
 
-  /// The fraction of the solid, with all samples, or by triangles where it is shallow. It is about
-  /// `expected`.
+  /// The fraction of the solid, about `expected`, by its triangles, or by many points.
   Voxels::Shared at(const Pose& pose, double expected) const {
-    return tree_ && expected < kShallowShare ? Voxels::Shared{byTriangles(pose), 0} : voxels_.shared(pose);
+    const bool by_triangles = tree_ && (!many_ || expected < kShallowShare);
+    return by_triangles ? Voxels::Shared{byTriangles(pose), 0} : many_->shared(pose);
   }
 
   struct Found {
@@ -104,10 +116,10 @@ class TrueOverlap {
     bool exact;
   };
 
-  /// About the fraction, by few samples if these are enough. It is less than `most`.
+  /// About the fraction, by few points if these are enough. It is less than `most`.
   Found roughlyAt(const Pose& pose, double most) const {
     if (!tree_ || most > kFewShare) {
-      const double fraction = voxels_.roughlyShared(pose).fraction;
+      const double fraction = few_.shared(pose).fraction;
       if (!tree_ || fraction > kFewShare) return {fraction, false};
     }
     return {byTriangles(pose), true};
@@ -126,7 +138,8 @@ class TrueOverlap {
 
   static Vec3d vectorOf(const Point& x) { return {x[0], x[1], x[2]}; }
 
-  const Voxels& voxels_;
+  Voxels few_;
+  std::optional<Voxels> many_;
   std::optional<SurfaceTree> tree_;
   double volume_, scale_;
   Point shift_;  // of the packing's frame
@@ -140,10 +153,10 @@ struct Start {
 };
 
 /// The copy is turned at random, and a random point of it lies on one of the solid.
-Start anyStart(const Voxels& voxels, std::size_t number) {
+Start anyStart(const TrueOverlap& overlap, std::size_t number) {
   const Point places = random(number, 1);
   const Eigen::Matrix3d turn = rotation(random(number, 2)).toRotationMatrix();
-  return {turn, voxels.point(places[0]) - turn * voxels.point(places[1]), direction(random(number, 0)),
+  return {turn, overlap.point(places[0]) - turn * overlap.point(places[1]), direction(random(number, 0)),
           OverlapKind::any};
 }
 
@@ -155,8 +168,8 @@ Eigen::Quaterniond slightTurn(double part, const Point& axis) {
 }
 
 /// The copy lies upon the solid, but for some degrees about a random point.
-Start nestedStart(const Voxels& voxels, std::size_t number) {
-  const Point places = random(number, 1), middle = voxels.point(places[0]);
+Start nestedStart(const TrueOverlap& overlap, std::size_t number) {
+  const Point places = random(number, 1), middle = overlap.point(places[0]);
   const Eigen::Matrix3d turn = slightTurn(places[1], random(number, 2)).toRotationMatrix();
   return {turn, middle - turn * middle, direction(random(number, 0)), OverlapKind::nested};
 }
@@ -224,32 +237,31 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
 }
 
 /// A plane through a random point of the solid.
-PlaneCut cutSolid(const TrueOverlap& overlap, const Voxels& voxels, std::size_t number) {
+PlaneCut cutSolid(const TrueOverlap& overlap, std::size_t number) {
   const Point normal = direction(random(number, 4));
-  const double height = normal.dot(voxels.point(random(number, 5)[0]));
+  const double height = normal.dot(overlap.point(random(number, 5)[0]));
   return {normal, height, overlap.below(normal, height)};
 }
 
 }  // namespace
 
 OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface,
-                                const SurfaceSamples& samples, const Voxels& voxels, double volume,
-                                std::size_t count) {
-  const TrueOverlap overlap(container, surface, voxels, volume);
+                                const SurfaceSamples& samples, double volume, std::size_t count) {
+  const TrueOverlap overlap(container, surface, volume);
   const double least = overlap.knowsSurface() ? kLeastByTriangles : kLeastBySamples;
   OverlapTrials result{std::vector<OverlapTrial>(count), std::vector<PlaneCut>(count / 3),
                        overlap.knowsSurface() ? kShallowest : least};
   if (!overlap.knowsSurface()) result.planes.clear();
   const auto start = [&](std::size_t i) {
-    if (i % 3 == 0) return anyStart(voxels, i);
-    return i % 3 == 1 || samples.empty() ? nestedStart(voxels, i) : facingStart(samples, i);
+    if (i % 3 == 0) return anyStart(overlap, i);
+    return i % 3 == 1 || samples.empty() ? nestedStart(overlap, i) : facingStart(samples, i);
   };
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     result.trials[i] = findTrial(overlap, start(i), least * steady::pow(kMostShared / least, part));
   });
   tbb::parallel_for(std::size_t{0}, result.planes.size(),
-                    [&](std::size_t i) { result.planes[i] = cutSolid(overlap, voxels, i); });
+                    [&](std::size_t i) { result.planes[i] = cutSolid(overlap, i); });
   std::erase_if(result.trials, [](const OverlapTrial& trial) { return !(trial.truth.fraction > 0); });
   return result;
 }

@@ -18,9 +18,6 @@ constexpr double kMostCells = 512;
 constexpr std::uint32_t kBlock = 8;
 static_assert(kBlock == 8, "a row of a block is a byte of the bitmap");
 
-// Of so many points one is among the few. A prime: these do not all lie in the same columns of the blocks.
-constexpr std::size_t kFew = 31;
-
 }  // namespace
 
 Voxels::Voxels(const Container& container, double volume, double wanted) {
@@ -70,22 +67,13 @@ Voxels::Voxels(const Container& container, double volume, double wanted) {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const Block& block = blocks_[b];
     if (block.distance <= -reach_) continue;
-    Samples::Run run{block.centre, {all_.points[0].size(), all_.points[1].size()}};
-    Samples::Run few{block.centre, {few_.points[0].size(), few_.points[1].size()}};
+    Run run{block.centre, {points_[0].size(), points_[1].size()}};
     for (std::uint32_t i = 0; i < kCells; ++i) {
       const Index at = cell(b, i);
-      if (!isInside(bit(at))) continue;
-      const int half = (at[0] + at[1] + at[2]) % 2;
-      const Eigen::Vector3f x = place(at).cast<float>();
-      if (all_.points[half].size() % kFew == 0) few_.points[half].push_back(x);
-      all_.points[half].push_back(x);
+      if (isInside(bit(at))) points_[(at[0] + at[1] + at[2]) % 2].push_back(place(at).cast<float>());
     }
-    const auto end = [](Samples& samples, Samples::Run& of) {
-      of.end = {samples.points[0].size(), samples.points[1].size()};
-      if (of.end != of.begin) samples.runs.push_back(of);
-    };
-    end(all_, run);
-    end(few_, few);
+    run.end = {points_[0].size(), points_[1].size()};
+    if (run.end != run.begin) runs_.push_back(run);
   }
 }
 
@@ -99,11 +87,11 @@ const Voxels::Block* Voxels::blockAt(const Point& x) const {
 }
 
 Point Voxels::point(double part) const {
-  const auto& points = all_.points[all_.points[0].size() < all_.points[1].size()];
+  const auto& points = points_[points_[0].size() < points_[1].size()];
   return points[static_cast<std::size_t>(part * static_cast<double>(points.size()))].cast<double>();
 }
 
-Voxels::Shared Voxels::shared(const Pose& pose, const Samples& samples) const {
+Voxels::Shared Voxels::shared(const Pose& pose) const {
   // Into the lattice of the original; in single precision, which is far finer than the cells. Plain numbers:
   // with sanitizers Eigen's products would take most of the packer's time.
   Eigen::Matrix<float, 4, 3> to;
@@ -126,7 +114,7 @@ Voxels::Shared Voxels::shared(const Pose& pose, const Samples& samples) const {
     return within && isInside(bit(at));
   };
   std::size_t hits[2] = {};
-  for (const Samples::Run& run : samples.runs) {
+  for (const Run& run : runs_) {
     const Point centre = pose.apply(run.centre), corner = centre - origin_;
     if ((corner.array() < -reach_).any() || ((extent - corner).array() < -reach_).any()) continue;
     const Block* there = blockAt(centre);
@@ -138,13 +126,12 @@ Voxels::Shared Voxels::shared(const Pose& pose, const Samples& samples) const {
       continue;
     }
     for (int half = 0; half < 2; ++half) {
-      for (std::size_t i = run.begin[half]; i < run.end[half]; ++i)
-        hits[half] += hit(samples.points[half][i]);
+      for (std::size_t i = run.begin[half]; i < run.end[half]; ++i) hits[half] += hit(points_[half][i]);
     }
   }
   double fraction[2] = {};
   for (int half = 0; half < 2; ++half) {
-    const std::size_t looked = samples.points[half].size();
+    const std::size_t looked = points_[half].size();
     if (looked > 0) fraction[half] = static_cast<double>(hits[half]) / static_cast<double>(looked);
   }
   return {(fraction[0] + fraction[1]) / 2, std::abs(fraction[0] - fraction[1]) / 2};

@@ -32,10 +32,7 @@ class Voxels {
   };
 
   /// Returns what the solid shares with its copy.
-  Shared shared(const Pose& pose) const { return shared(pose, all_); }
-
-  /// The same by few of the points, which is less exact.
-  Shared roughlyShared(const Pose& pose) const { return shared(pose, few_); }
+  Shared shared(const Pose& pose) const;
 
   /// Returns one of the points inside; `part` is in [0, 1). There must be one.
   Point point(double part) const;
@@ -50,15 +47,10 @@ class Voxels {
     double distance = 0;  ///< of its middle from the surface; negative outside
   };
 
-  /// Holds points inside, in two halves, in the order of blocks.
-  struct Samples {
-    /// The points of a block; there are no others in it.
-    struct Run {
-      Point centre;
-      std::array<std::size_t, 2> begin{}, end{};
-    };
-    std::array<std::vector<Eigen::Vector3f>, 2> points;
-    std::vector<Run> runs;
+  /// The points of a block that lie inside; there are no others in it.
+  struct Run {
+    Point centre;
+    std::array<std::size_t, 2> begin{}, end{};
   };
 
   std::size_t bit(const Index& at) const {
@@ -67,7 +59,6 @@ class Voxels {
   bool isInside(std::size_t bit) const { return inside_[bit / 8] >> bit % 8 & 1; }
   void setInside(std::size_t bit) { inside_[bit / 8] |= static_cast<std::uint8_t>(1 << bit % 8); }
   const Block* blockAt(const Point& x) const;
-  Shared shared(const Pose& pose, const Samples& samples) const;
 
   Point origin_;
   double spacing_ = 1;
@@ -76,7 +67,8 @@ class Voxels {
   std::vector<Block> blocks_;
   // A bit for each cell. Eight cells along x make a byte and belong to one block, so that threads share none.
   std::vector<std::uint8_t> inside_;
-  Samples all_, few_;
+  std::array<std::vector<Eigen::Vector3f>, 2> points_;  // inside, in two halves, in the order of blocks
+  std::vector<Run> runs_;
 };
 
 }  // namespace innersphere
