@@ -80,6 +80,9 @@ constexpr btScalar kShorter = 3;
 /// Ratio: a step leads uphill if it gains this part of what the slope at its start promises. On a paraboloid
 /// it gains a half.
 constexpr btScalar kClimbs = btScalar(0.25);
+/// Ratio: a step over edges that loses this part of what the slope promised leads down another facet, however
+/// flat that is. Less may be rounding.
+constexpr btScalar kSinks = btScalar(0.02);
 /// [rad]: where the slope is less, the top is reached: the normals are that close.
 constexpr btScalar kLevel = btScalar(1e-5);
 /// [rad]: an ascent that ends where the slope is less has reached its top.

@@ -146,9 +146,10 @@ void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shif
       continue;
     }
     const Hillside next = hillsideAt(points, sample.direction);
-    const bool climbs = next.depth - here.depth > kClimbs * here.slope.dot(step);
+    const btScalar gain = next.depth - here.depth, promised = here.slope.dot(step);
+    const bool climbs = gain > kClimbs * promised, sinks = gain < -kSinks * promised;
     if ((over_edges && next.slope.length() > steepest) ||
-        (!climbs && next.slope.length2() > here.slope.length2())) {
+        (!climbs && (next.slope.length2() > here.slope.length2() || (over_edges && sinks)))) {
       if (over_edges && next.slope.dot(step) < 0)
         falls.learn(step, here.slope - next.slope);  // the top is between
       else
@@ -176,10 +177,21 @@ void climbToTop(const LineStarts& lines, const btVector3& shift, ProbedSample& s
   if (!sample.is_top ||
       (apart - normal * apart.dot(normal)).length2() < kReached * kReached * apart.length2())
     return;
+  const btVector3 place = middleOf(points);
   ProbedSample again = sample;
   again.direction = normal;
-  const btVector3 start = shiftTo(middleOf(points), normal, probe, again.index) + probe.toMiddleOfBend(again);
-  if (!probe.probeLine(sample.index, normal, start, again.points)) return;
+  btVector3 start;
+  const auto startFrom = [&](std::size_t index) {
+    again.index = index;
+    again.points = points;
+    start = shiftTo(place, normal, probe, index) + probe.toMiddleOfBend(again);
+    return probe.probeLine(index, normal, start, again.points);
+  };
+  if (!startFrom(sample.index)) {
+    // From another sphere, if that does not see another wall.
+    const std::optional<std::size_t> nearest = lines.nearest(place, probe.lineDirection(again));
+    if (!nearest || !startFrom(*nearest) || middleOf(again.points).distance2(place) > apart.length2()) return;
+  }
   climb(lines, BT_LARGE_FLOAT, steps, start, again);
   if (again.is_top) sample = again;
 }
