@@ -67,9 +67,7 @@ class TrueOverlap {
   TrueOverlap(const Container& container, const Surface& surface, double volume)
       : few_(container, volume, kFewPoints), volume_(volume), scale_(1 / container.side()) {
     shift_ = container.fromWorld(container.origin());
-    if (!surface.triangles.empty() && isClosedSurface(surface)) {
-      tree_.emplace(surface);
-    }
+    if (!surface.triangles.empty() && isClosedSurface(surface)) tree_.emplace(surface);
     if (!tree_ || std::abs(below(Point::UnitZ(), 2) - 1) > kOff)
       many_.emplace(container, volume, kManyPoints);
   }
