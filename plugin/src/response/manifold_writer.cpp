@@ -179,14 +179,28 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
 }
 
+/// Whether a point that may be the top of a hill is that of the hill on which another one is. Along a ridge,
+/// where a hill has no top, all places are.
+bool isTopOf(const ContactPoint& top, const ContactPoint& point, btScalar separation) {
+  const Across axes(point.bend_x, point.normal.cross(point.bend_x));
+  const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
+  btVector3 way(0, 0, 0);
+  for (int i = 0; i < 2; ++i) {
+    if (hill.hasTop(i)) way += hill.axis(i) * hill.axis(i).dot(top.on_b - point.on_b);
+  }
+  return way.distance(point.to_top) < btMax(kSameHill * way.length(), kSameTop * separation);
+}
+
 /// A point above a slope whose hilltop is among the points. A SubstepSolver has the hill go along with the
 /// bodies, so that its top meets the other body before the slope does. A point that is all but at the top is
-/// one: of a line between bodies, both ends are needed.
-bool leavesItToTop(const ContactPatch& patch, int index, btScalar spacing) {
+/// one: of a line between bodies, both ends are needed. Tops of other hills do not count: they may touch
+/// while this one still comes down.
+bool leavesItToTop(const ContactPatch& patch, int index, btScalar separation) {
   const ContactPoint& point = patch.points[index];
-  if (point.depth >= 0 || !(point.to_top.length() > kSameTop * spacing)) return false;
+  if (point.depth >= 0 || !(point.to_top.length() > kSameTop * separation)) return false;
   for (int i = 0; i < patch.count; ++i) {
-    if (patch.points[i].depth > point.depth + point.below_top / 2) return true;
+    const ContactPoint& other = patch.points[i];
+    if (other.depth > point.depth + point.below_top / 2 && isTopOf(other, point, separation)) return true;
   }
   return false;
 }
