@@ -63,7 +63,8 @@ bool PackingProbe::probeLine(std::size_t index, const btVector3& direction, cons
   const btVector3 to_other = other.origin() - own.origin();
   const btScalar length = 2 * (radius + a_.search_margin + b_.search_margin);
   SurfacePoint left, entered;
-  if (!leaveSolid(own, from, way, length, of_a ? points.triangle_a : points.triangle_b, left) ||
+  if (!leaveSolid(own, from, way, longestInSolid(index, length), of_a ? points.triangle_a : points.triangle_b,
+                  left) ||
       !enterSolid(other, from - to_other, way, length, of_a ? points.triangle_b : points.triangle_a,
                   left.normal, entered))
     return false;

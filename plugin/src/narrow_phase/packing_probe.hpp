@@ -12,12 +12,14 @@
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Probes two packings. Of the contacts the first `count_a` are of A's spheres, the others of B's.
+/// Probes two packings. Of the contacts the first `count_a` are of A's spheres, the others of B's. `foretold`
+/// is the part of A's search margin that lies beyond its surface [m], where that is more than a body is
+/// thick; else 0.
 class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExtents, public ContactSpheres {
  public:
   PackingProbe(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
-               std::size_t count_a, bool thin = false)
-      : a_(a), b_(b), contacts_(contacts), count_a_(count_a), thin_(thin) {}
+               std::size_t count_a, bool thin = false, btScalar foretold = 0)
+      : a_(a), b_(b), contacts_(contacts), count_a_(count_a), thin_(thin), foretold_(foretold) {}
 
   /// Probes a sample for the first time: towards the nearest point of the other surface, or, where the
   /// surfaces do not oppose each other there, in the direction of the patch. Where both bend, and the nearest
@@ -54,6 +56,13 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
     const PlacedPacking& own = index < count_a_ ? a_ : b_;
     return own.ownRadius(contacts_[index].sphere) + own.search_margin;
   }
+  /// Returns how far a line goes in the solid of its sphere at most [m]: spheres that look far see surfaces
+  /// along a thin wall, too, and lines to them leave it only at its rim. Each part of the surface is no
+  /// further from some sphere than this.
+  btScalar longestInSolid(std::size_t index, btScalar length) const {
+    if (foretold_ == 0) return length;
+    return surfaceDistance(index) - (index < count_a_ ? foretold_ : btScalar(0));
+  }
   /// Draws the line again along the normal that the surfaces show.
   void align(ProbedSample& sample) const;
 
@@ -62,6 +71,7 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
   const std::vector<SphereContact>& contacts_;
   std::size_t count_a_;
   bool thin_;
+  btScalar foretold_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -205,7 +205,8 @@ void PackingVsPacking::selectMoreSamples(const Bodies& bodies, const std::vector
 
 /// Whether surfaces are near each other at any of the samples.
 bool PackingVsPacking::evaluateDepths(const Bodies& bodies) {
-  const PackingProbe probe(bodies.a, bodies.b, contacts_, count_a_, search_->thin);
+  const btScalar foretold = reachesFar() ? search_->separation : btScalar(0);
+  const PackingProbe probe(bodies.a, bodies.b, contacts_, count_a_, search_->thin, foretold);
   memory.carryTo(now_, *a_, search_->spacing);
   return refinePatches(memory.samples, probe, *search_, step_, memory.patches);
 }

@@ -159,6 +159,29 @@ TEST(ABallOverAnEdge, IsFoundAgainWhenItHasMoved) {
   EXPECT_NEAR(again.points.depthAlong(again.direction), kDepth, kTessellation);
 }
 
+TEST(ACubeInAPlate, IsNotAsDeepAsThePlateIsWide) {
+  // The cube stands in the upper face. A line along the plate is in it until the rim, 1.2 m further on.
+  constexpr double kDepth = 0.2, kSeparation = 1;
+  const auto plate = makeShape(latticeBox({4, 4, 1}, 4)), cube = makeShape(latticeBox({1, 1, 1}, 1));
+  plate->setMargin(0);
+  cube->setMargin(0);
+  // A corner of the plate is as far as this from its nearest sphere.
+  const double inset = std::sqrt(2 * 0.5 * 0.5 + 0.125 * 0.125) - 0.125;
+  const PlacedPacking a(*plate, at({0, 0, btScalar(-0.5)}), Estimator::raw, btScalar(inset + kSeparation));
+  const PlacedPacking b(*cube, at({btScalar(1.3), btScalar(0.5), btScalar(0.5 - kDepth)}), Estimator::raw, 0);
+  const auto sphereAt = [&](double x) {
+    std::uint32_t i = 0;
+    while (a.centreOf(i).distance(btVector3(btScalar(x), btScalar(0.5), btScalar(0.375))) > kRounding) ++i;
+    return contactOf(i);
+  };
+  const std::vector<SphereContact> contacts{sphereAt(0.5), sphereAt(1.5)};
+  const PackingProbe probe(a, b, contacts, contacts.size(), false, btScalar(kSeparation));
+  OpposedPoints points;
+  EXPECT_FALSE(probe.probeLine(0, btVector3(1, 0, 0), btVector3(0, 0, 0), points));
+  ASSERT_TRUE(probe.probeLine(1, btVector3(0, 0, 1), btVector3(0, 0, 0), points));
+  EXPECT_NEAR(points.depthAlong(btVector3(0, 0, 1)), kDepth, kRounding);
+}
+
 /// A cube of 1 m that stands on a corner or an edge, in a slab that is as much as 0.01 m higher. A is the
 /// cube.
 class CubeOnSlab : public testing::Test {
