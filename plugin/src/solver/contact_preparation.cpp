@@ -38,6 +38,11 @@ void holdWithin(btScalar most, btScalar& along_1, btScalar& along_2) {
   along_2 *= most / held;
 }
 
+/// Of bodies that can be moved [m].
+btScalar smallerSize(const TouchingPair& pair, const SolverBodies& bodies) {
+  return bodies.isMovable(pair.b) ? std::min(bodies.size(pair.a), bodies.size(pair.b)) : bodies.size(pair.a);
+}
+
 struct Spring {
   btScalar stiffness, damping;
 };
@@ -54,7 +59,9 @@ std::optional<Spring> springOf(const btManifoldPoint& point, btScalar time_step)
 
 }  // namespace
 
-void ContactRows::beginStep(const btContactSolverInfo& info, int substeps) {
+void ContactRows::beginStep(const btContactSolverInfo& info, int substeps, btScalar depth) {
+  depth_ = depth;
+  impact_ = false;
   substeps_ = btScalar(substeps);
   substep_ = info.m_timeStep / substeps_;
   slop_ = info.m_linearSlop;
@@ -68,7 +75,7 @@ void ContactRows::beginStep(const btContactSolverInfo& info, int substeps) {
 void ContactRows::prepare(int index, const SolverBodies& bodies) {
   Block& block = blocks_[static_cast<std::size_t>(index)];
   block.bounces = block.rolls = block.bends = block.bouncing = false;
-  block.share = Lanes{};
+  block.share = block.calm = Lanes{};
   for (int i = 0; i < block.count; ++i) points_[static_cast<std::size_t>(block.begin + i)] = PointLanes{};
   for (int lane = 0; lane < kLanes; ++lane) {
     block.a[lane] = block.b[lane] = bodies.movable();
@@ -76,6 +83,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
     const TouchingPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
     block.a[lane] = pair.a;
     block.b[lane] = pair.b;
+    block.calm[lane] = depth_ * smallerSize(pair, bodies) / (substep_ * substeps_);
     block.share[lane] = bodies.isMovable(pair.b) ? btScalar(0.5) : btScalar(0);
     for (int i = 0; i < pair.count; ++i) {
       PointLanes& point = points_[static_cast<std::size_t>(block.begin + i)];
@@ -278,9 +286,8 @@ void ContactRows::fillMasses(PointLanes& point, const LaneBodies& a, const LaneB
 /// How they give way.
 void ContactRows::fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point,
                                const TouchingPair& pair, const SolverBodies& bodies) const {
-  const bool both_move = bodies.isMovable(pair.b);
-  const btScalar size = both_move ? std::min(bodies.size(pair.a), bodies.size(pair.b)) : bodies.size(pair.a);
-  Softness soft = both_move ? soft_ : soft_on_fixed_;
+  const btScalar size = smallerSize(pair, bodies);
+  Softness soft = bodies.isMovable(pair.b) ? soft_ : soft_on_fixed_;
   lanes.fastest[lane] = std::max(kFastestPush * size, -kLeavingRate * point.getDistance());
   if (const auto spring = springOf(point, substep_ * substeps_)) {
     soft = Softness::ofSpring(spring->stiffness, spring->damping, lanes.mass[lane], substep_);

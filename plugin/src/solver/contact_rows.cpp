@@ -266,7 +266,8 @@ void ContactRows::solveFriction(const Block& block, PointLanes& point, LaneBodie
   b.turn(turn * inAll(-1));
 }
 
-void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const {
+/// Returns by how much it has slowed down what does not bounce [m/s].
+Lanes ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const {
   const Lanes none{}, one = inAll(1);
   const Lanes gap = point.gap;
   const Lanes speed = dot(a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b), point.normal);
@@ -290,10 +291,12 @@ void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneB
   acts = bounces ? one : acts;
   const Lanes change = acts * (none - point.mass * mass * (speed + bias) - impulse * point.impulse);
   const Lanes total = larger(point.impulse + change, none);
-  const Lanes3 push = point.normal * (total - point.impulse);
+  const Lanes added = total - point.impulse;
+  const Lanes3 push = point.normal * added;
   point.impulse = total;
   a.pushAt(point.arm_a, push);
   b.pushAt(point.arm_b, push * inAll(-1));
+  return bounces || point.mass == none ? none : added / point.mass;
 }
 
 void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& states) {
@@ -304,15 +307,21 @@ void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& state
   if (pass == Pass::relax) {
     for (PointLanes* point = begin; point != end; ++point) follow(block, *point, a, b);
   }
+  Lanes stopped{};
   for (int round = block.bouncing ? kBounceRounds : 1; round > 0; --round) {
     for (PointLanes* point = begin; point != end; ++point) {
-      solveNormal(*point, pass, a, b);
+      stopped = larger(stopped, solveNormal(*point, pass, a, b));
       solveFriction(block, *point, a, b);
     }
   }
   a.put(block.a, movable_, states);
   b.put(block.b, movable_, states);
-  if (pass == Pass::push) return;
+  if (pass == Pass::push) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (stopped[lane] > block.calm[lane]) impact_.store(true, std::memory_order_relaxed);
+    }
+    return;
+  }
   for (PointLanes* point = begin; point != end; ++point) {
     point->sum += point->impulse;
     point->sum_1 += point->impulse_1;

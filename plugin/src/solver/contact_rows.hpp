@@ -54,8 +54,8 @@ class ContactRows {
   /// Returns the first of `count` blocks from `first` on that is of this part of them; parts are as dear.
   int partOf(int first, int count, int part, int parts) const;
 
-  /// Takes over what holds for all rows of a step.
-  void beginStep(const btContactSolverInfo& info, int substeps);
+  /// Takes over what holds for all rows of a step. `depth` is wanted at most, in sizes of the smaller body.
+  void beginStep(const btContactSolverInfo& info, int substeps, btScalar depth);
   /// Fills the rows of a block.
   void prepare(int block, const SolverBodies& bodies);
   /// Adds the impulses that points have borne to what the next substep begins with. Pass::relax does so, too.
@@ -65,6 +65,9 @@ class ContactRows {
   /// Finds those that they reach in this substep. Bodies are only read.
   void findBounces(int block, const std::vector<BodyState>& states);
   void solve(int block, Pass pass, std::vector<BodyState>& states);
+  /// Returns true if passes that push have stopped a pair since it was asked last, so fast that it would have
+  /// come deeper into each other within the step than is wanted. By one thread, between passes.
+  bool takeImpact() { return impact_.exchange(false, std::memory_order_relaxed); }
   /// Tells the points what they have borne, and remembers what they have no place for.
   void writeBack(int block);
   /// Forgets that.
@@ -110,6 +113,7 @@ class ContactRows {
     int a[kLanes], b[kLanes];
     int pair[kLanes];            ///< -1: nothing is in this lane
     int begin, count;            ///< in points_
+    Lanes calm;                  ///< at this speed they come as deep into each other as is wanted [m/s]
     Lanes share;                 ///< of what they slide apart, to the place in the middle
     bool bounces, rolls, bends;  ///< what some of its points do
     bool bouncing;               ///< in this substep
@@ -146,7 +150,7 @@ class ContactRows {
   inline static void roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way,
                           Lanes3& to_a, Lanes3& to_b);
   inline static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
-  inline void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
+  inline Lanes solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
 
   std::vector<Entry> entries_;  ///< room for each manifold, then one for each that pushes
   std::vector<Entry> sorted_;
@@ -163,7 +167,9 @@ class ContactRows {
   btScalar bounce_threshold_ = 0;  ///< [m/s]
   btScalar slop_ = 0;              ///< [m]
   bool warm_starting_ = true;
+  btScalar depth_ = 0;  ///< that is wanted at most, in sizes of the smaller body
   std::atomic<bool> bounces_{false};
+  std::atomic<bool> impact_{false};
   bool wide_;
   int movable_ = 0;
   int broken_ = 0;

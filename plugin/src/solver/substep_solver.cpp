@@ -21,6 +21,9 @@ namespace {
 
 /// What a part for a thread has at least, and what makes a thread worth calling.
 constexpr int kJoints = 2, kBodies = 16, kManifolds = 32, kPairsForThread = 128;
+/// Passes that push in a substep, at most. What is light, between what is heavy and the ground, hands on a
+/// part of an impact in each.
+constexpr int kMostPasses = 10;
 
 void checkSubsteps(const SubstepOptions& options) {
   constexpr int kMost = 1000;
@@ -123,7 +126,7 @@ void SubstepSolver::Impl::step(btScalar substep) {
   for (int i = 0; i < constraints_.count(); ++i) constraints_.refresh(i, bodies_);
   for (const int joint : colouring_.joints()) constraints_.warmStart(joint, bodies_.states());
   if (contacts_.bounces()) forEachBlock([&](int block) { contacts_.findBounces(block, bodies_.states()); });
-  pass(Pass::push);
+  for (int i = 0; i < kMostPasses && (i == 0 || contacts_.takeImpact()); ++i) pass(Pass::push);
   crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.move(begin, end, substep); });
   bodies_.moveDriven(substep);
   pass(Pass::relax);
@@ -167,7 +170,7 @@ int SubstepSolver::Impl::arrange(btTypedConstraint** constraints, int count,
   if (bodies_.movable() > 0)
     substeps = substepsFor(options, info.m_timeStep, bodies_, contacts_.pairs(), constraints_);
   last_substeps = std::max(last_substeps, substeps);
-  contacts_.beginStep(info, std::max(1, substeps));
+  contacts_.beginStep(info, std::max(1, substeps), options.depth);
   constraints_.beginStep(info, std::max(1, substeps));
   colouring_.colour(bodies_, constraints_, contacts_);
   return substeps;

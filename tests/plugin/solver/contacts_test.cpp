@@ -37,6 +37,22 @@ TEST(SubstepContacts, HeavyBoxesRestOnLightOnes) {
   }
 }
 
+TEST(SubstepContacts, WhatLandsOnSomethingLighterStops) {
+  for (const btScalar ratio : {1, 3, 10}) {
+    constexpr btScalar kRadius = btScalar(0.2), kDeep = btScalar(1e-5);  // or Bullet does not see it
+    SolverWorld world;
+    world.world.setGravity(btVector3(0, 0, 0));
+    world.addFloor();
+    world.addBall(kRadius, 1, btVector3(0, 0, kRadius));
+    btRigidBody& upper = world.addBall(kRadius, ratio, btVector3(0, 0, 3 * kRadius - kDeep));
+    upper.setLinearVelocity(btVector3(0, 0, -1));
+    world.step(btScalar(1) / 240);  // before all is driven apart again
+    // All are hard.
+    const btScalar deepest = world.solver.options().depth * 2 * kRadius;
+    EXPECT_GT(upper.getWorldTransform().getOrigin().z(), 3 * kRadius - deepest) << ratio;
+  }
+}
+
 TEST(SubstepContacts, ABlockSlidesAsFarAsFrictionLets) {
   for (const double angle : {0.0, 0.5, 0.8}) {  // friction in all directions is the same
     SolverWorld world;

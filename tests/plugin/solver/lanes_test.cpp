@@ -29,7 +29,7 @@ std::vector<btScalar> solved(SolverWorld& world, bool wide) {
   contacts.begin(manifold_count);
   contacts.find(0, manifold_count, manifolds.data(), bodies);
   contacts.collect(bodies);
-  contacts.beginStep(info, 1);
+  contacts.beginStep(info, 1, SubstepOptions().depth);
   colouring.colour(bodies, constraints, contacts);
   for (int i = 0; i < contacts.blocks(); ++i) contacts.prepare(i, bodies);
   for (int i = 0; i < contacts.blocks(); ++i) contacts.carry(i, bodies.states());
