@@ -4,6 +4,12 @@
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Ratio: along a ridge, what is left of how fast the slope falls across it is less than this part.
+constexpr btScalar kRounding = 64 * SIMD_EPSILON;
+
+}  // namespace
 
 Hill::Hill(const Bend& a, const Bend& b, btScalar depth, const Across& axes) {
   const btScalar xx = a.xx + b.xx - depth * (a.xx * b.xx + a.xy * b.xy);
@@ -18,7 +24,7 @@ Hill::Hill(const Bend& a, const Bend& b, btScalar depth, const Across& axes) {
   fall_[0] = middle + spread;
   fall_[1] = middle - spread;
   for (int i = 0; i < 2; ++i)
-    has_top_[i] = fall_[i] > 0 &&
+    has_top_[i] = fall_[i] > kRounding * fall_[0] &&
                   !fitTogether(a.turn(axis_[i], axes).dot(axis_[i]), b.turn(axis_[i], axes).dot(axis_[i]));
 }
 
