@@ -176,7 +176,7 @@ ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double dept
 const Coverage* coverageOf(const Packing& packing, std::size_t count);
 
 /// Returns a sentence for a user if a twentieth of the surface is farther from the first `count` spheres than
-/// a twentieth of the diagonal: thin walls and slender parts without spheres. Other packings go through them.
+/// a twentieth of the diagonal: thin walls and slender parts without spheres. Volumes leave them out.
 /// Empty if not, or if nothing was measured.
 std::string bareSurface(const Packing& packing, std::size_t count);
 

@@ -66,7 +66,7 @@ std::string bareSurface(const Packing& packing, std::size_t count) {
   sentence.precision(3);
   sentence << "5 % of the surface is more than " << coverage->p95 << " m, "
            << 100 * coverage->p95 / diagonal(box) << " % of the diagonal, from the nearest of "
-           << coverage->count << " spheres: other packings go through it there";
+           << coverage->count << " spheres: volumes and contacts by volume leave it out there";
   return sentence.str();
 }
 

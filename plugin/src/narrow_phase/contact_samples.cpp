@@ -157,7 +157,7 @@ class PatchContactPoints {
     EdgeContact crossing;
     const bool lie = points.normal_a.dot(points.normal_b) > kAlignedOnFacesCosine;
     const bool crosses = points.areFlat() && !lie && addCrossing(points, Kind::crossing, crossing);
-    if (points.areFlat() && lie && probe_.crossesOnFaces()) addCrossing(points, Kind::corner, crossing);
+    if (points.areFlat() && lie && probe_.crossesOnFaces(points)) addCrossing(points, Kind::corner, crossing);
     if (crosses && crossing.is_alone) corners.clear();
     for (const EdgeContact& corner : corners) addCorner(corner, rises_a);
     bool has_corners = !corners.empty();

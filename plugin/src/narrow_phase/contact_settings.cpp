@@ -31,11 +31,11 @@ ContactSettings::ContactSettings(const ContactOptions& options, const PackingSha
     estimator = options.estimator;
     return;
   }
-  const btScalar inset = packing_b == nullptr ? prefix_a->feelers().inset : prefix_a->searchInset();
-  inset_a = inset * a.getLocalScaling().x();
+  inset_a = (packing_b == nullptr ? prefix_a->feelers() : prefix_a->searchFeelers()).inset *
+            a.getLocalScaling().x();
   search_margin_a = separation + inset_a;
   if (packing_b == nullptr) return;
-  search_margin_b = prefix_b->searchInset() * b.getLocalScaling().x();
+  search_margin_b = prefix_b->searchFeelers().inset * b.getLocalScaling().x();
   thin = isThin(a.impl()) || isThin(packing_b->impl());
 }
 

@@ -34,9 +34,9 @@ class EdgeProbe {
   /// `direction` is about that in which the solids are in contact, from A to B.
   virtual bool crossing(const OpposedPoints& points, const btVector3& direction,
                         EdgeContact& crossing) const = 0;
-  /// Returns true if crossings are looked for where faces lie on each other, too. Faces that lean are deepest
-  /// where one ends; on thin solids the ends are long, and points on faces not near them.
-  virtual bool crossesOnFaces() const { return false; }
+  /// Returns true if crossings are looked for where faces lie on each other, too: where a solid is thin.
+  /// Faces that lean are deepest where one ends; there the ends are long, and points on faces not near them.
+  virtual bool crossesOnFaces(const OpposedPoints&) const { return false; }
   /// Returns false if the point on B is known to lie on an edge, seen along no normal of its faces.
   virtual bool isOnFaceOfB(const OpposedPoints&) const { return true; }
 };

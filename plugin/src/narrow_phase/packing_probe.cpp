@@ -1,5 +1,7 @@
 #include "narrow_phase/packing_probe.hpp"
 
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
 #include "narrow_phase/surface_rays.hpp"
@@ -133,10 +135,21 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
   }
 }
 
+bool PackingProbe::crossesOnFaces(const OpposedPoints& points) const {
+  const auto isThin = [](const PlacedPacking& body, const btVector3& place, const btVector3& normal) {
+    const btMatrix3x3& axes = body.world.getBasis();
+    const btScalar thickness = 2 * gContactBreakingThreshold * body.shape().size / body.scale();
+    const btVector3 on_surface = ((place - normal * body.margin) * axes) / body.scale();
+    return body.shape().surfaceQueries().isThinner(thickness, on_surface, normal * axes);
+  };
+  return thin_ || isThin(a_, points.on_a, points.normal_a) ||
+         isThin(b_, points.on_b - apart(), -points.normal_b);
+}
+
 bool PackingProbe::crossing(const OpposedPoints& points, const btVector3& direction,
                             EdgeContact& crossing) const {
   return crossEdges({a_, {0, 0, 0}}, {b_, apart()}, points, direction, crossing,
-                    thin_ ? kLeaning : kFallingSine);
+                    crossesOnFaces(points) ? kLeaning : kFallingSine);
 }
 
 FaceExtents::EdgeDistances PackingProbe::edgeDistances(const OpposedPoints& points,

@@ -41,7 +41,7 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
-  bool crossesOnFaces() const override { return thin_; }
+  bool crossesOnFaces(const OpposedPoints& points) const override;
   EdgeDistances edgeDistances(const OpposedPoints& points, const btVector3& towards) const override;
   std::uint64_t id(std::size_t index) const override;
   Protrusion protrusion(std::size_t index, const btVector3& normal) const override;

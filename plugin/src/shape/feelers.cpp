@@ -29,8 +29,9 @@ struct Place {
   btVector3 at;
   btVector3 normal;  ///< unit, out of the solid
   std::uint32_t triangle;
-  btScalar gap = BT_LARGE_FLOAT;  ///< to the nearest sphere or ball [m]
-  std::array<int, 3> cell{};      ///< of a grid
+  btScalar gap = BT_LARGE_FLOAT;   ///< to the nearest sphere or ball [m]
+  btScalar open = BT_LARGE_FLOAT;  ///< the same; 0 if no ball is to touch it
+  std::array<int, 3> cell{};       ///< of a grid
 };
 
 /// The middles of the parts of each triangle, none longer than `apart`, and the vertices.
@@ -81,7 +82,8 @@ class Gaps {
                      [](const Place& a, const Place& b) { return a.cell < b.cell; });
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const btVector3& at = places_[i].at;
-      if (i == 0 || places_[i].cell != places_[i - 1].cell) cells_.push_back({i, i, at, at, BT_LARGE_FLOAT});
+      if (i == 0 || places_[i].cell != places_[i - 1].cell)
+        cells_.push_back({i, i, at, at, BT_LARGE_FLOAT, BT_LARGE_FLOAT});
       Cell& cell = cells_.back();
       cell.end = i + 1;
       cell.min.setMin(at);
@@ -97,26 +99,49 @@ class Gaps {
       beyond.setMax(btVector3(0, 0, 0));
       if (!(beyond.length() - btScalar(ball.radius) < cell.gap)) continue;
       cell.gap = -BT_LARGE_FLOAT;
+      cell.open = 0;
       for (std::size_t i = cell.begin; i < cell.end; ++i) {
         Place& place = places_[i];
         place.gap = btMin(place.gap, place.at.distance(middle) - btScalar(ball.radius));
+        place.open = btMin(place.open, place.gap);
         cell.gap = btMax(cell.gap, place.gap);
+        cell.open = btMax(cell.open, place.open);
+      }
+    }
+  }
+
+  /// From now on the furthest is one of those for which this is true.
+  template <typename Predicate>
+  void keep(const Predicate& isKept) {
+    for (Cell& cell : cells_) {
+      cell.open = 0;
+      for (std::size_t i = cell.begin; i < cell.end; ++i) {
+        Place& place = places_[i];
+        if (!isKept(place)) place.open = 0;
+        cell.open = btMax(cell.open, place.open);
       }
     }
   }
 
   const Place& furthest() const {
-    const auto smaller = [](const auto& a, const auto& b) { return a.gap < b.gap; };
+    const auto smaller = [](const auto& a, const auto& b) { return a.open < b.open; };
     const Cell& cell = *std::max_element(cells_.begin(), cells_.end(), smaller);
     return *std::max_element(places_.begin() + std::ptrdiff_t(cell.begin),
                              places_.begin() + std::ptrdiff_t(cell.end), smaller);
+  }
+
+  /// The gap of all places [m].
+  btScalar largest() const {
+    btScalar gap = -BT_LARGE_FLOAT;
+    for (const Cell& cell : cells_) gap = btMax(gap, cell.gap);
+    return gap;
   }
 
  private:
   struct Cell {
     std::size_t begin, end;  ///< of places
     btVector3 min, max;
-    btScalar gap;  ///< the largest [m]
+    btScalar gap, open;  ///< the largest [m]
   };
   std::vector<Place> places_;
   std::vector<Cell> cells_;
@@ -152,17 +177,26 @@ std::uint32_t nearestSphere(const Sphere& ball, const Packing& packing, std::siz
 
 }  // namespace
 
-Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
-                     const SurfaceQueries& surface) {
+Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset, const SurfaceQueries& surface,
+                     FeelerPlaces where) {
   Feelers feelers;
   feelers.inset = inset;
   const btScalar size = diagonalOf(packing.surface);
   if (!(inset > kNear * size)) return feelers;
   std::vector<Place> places = placesOn(packing.surface, surface.normals(), kApart * size);
   if (places.empty()) return feelers;  // no triangle has an area
+  const auto isThin = [&](const Place& place, btScalar gap) {
+    return surface.isThinner(2 * gap, place.at, place.normal);
+  };
+  // Most solids have no such places, and gaps take longer.
+  if (where == FeelerPlaces::thin &&
+      std::none_of(places.begin(), places.end(), [&](const Place& place) { return isThin(place, inset); }))
+    return feelers;
   Gaps gaps(std::move(places), kCell * size);
   for (std::size_t i = 0; i < count; ++i) gaps.add(packing.spheres[i]);
-  for (Place place = gaps.furthest(); place.gap > kNear * size; place = gaps.furthest()) {
+  if (where == FeelerPlaces::thin)
+    gaps.keep([&](const Place& place) { return place.gap > kNear * size && isThin(place, place.gap); });
+  for (Place place = gaps.furthest(); place.open > kNear * size; place = gaps.furthest()) {
     const Sphere ball = ballAt(place, size, surface);
     // Where numbers are too large to be told apart, it would be chosen again and again.
     if (!(place.at.distance(centre(ball)) - btScalar(ball.radius) < place.gap)) break;
@@ -172,7 +206,7 @@ Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
     feelers.spheres.push_back(nearestSphere(ball, packing, count));
     gaps.add(ball);
   }
-  feelers.inset = gaps.furthest().gap;
+  if (where == FeelerPlaces::all || !feelers.balls.empty()) feelers.inset = gaps.largest();
   return feelers;
 }
 

@@ -21,13 +21,19 @@ struct Feelers {
   btScalar inset = 0;  ///< how far spheres and balls together may end inside of the surface [m]
 };
 
+/// Says where balls are placed.
+enum class FeelerPlaces : std::uint8_t {
+  all,
+  thin,  ///< only where the solid is thinner than twice the gap to the nearest sphere, see isThinner()
+};
+
 /// Places balls until no place of the surface is further from the first `count` spheres and the balls than 1
 /// % of the solid's size (the diagonal of its box), but for what lies between the places looked at. Each is
 /// the largest ball inside that touches the place which is furthest away: Ma, Bae and Choi, "3D medial axis
 /// point approximation using nearest neighbors and the normal field", The Visual Computer 28 (2012). `inset`
 /// is how far the spheres alone may end inside of the surface [m]: where that is less, no ball is needed.
-Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset,
-                     const SurfaceQueries& surface);
+Feelers placeFeelers(const Packing& packing, std::size_t count, btScalar inset, const SurfaceQueries& surface,
+                     FeelerPlaces where);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -90,21 +90,16 @@ btScalar Prefix::inset() const {
   return inset_.get([&] { return std::make_unique<btScalar>(largestInset(packing, count)); });
 }
 
+Feelers Prefix::feelersIn(FeelerPlaces where) const {
+  return placeFeelers(model_.packing(), count, inset(), model_.surfaceQueries(), where);
+}
+
 const Feelers& Prefix::feelers() const {
-  return feelers_.get([this] {
-    return std::make_unique<Feelers>(placeFeelers(model_.packing(), count, inset(), model_.surfaceQueries()));
-  });
+  return feelers_.get([this] { return std::make_unique<Feelers>(feelersIn(FeelerPlaces::all)); });
 }
 
-const Feelers* Prefix::searchFeelers() const {
-  // Spheres on a grid do not tell how thick a solid is, but balls do.
-  const bool reach_through = inset() > largest_radius && inset() > feelers().largest_radius;
-  return reach_through ? &feelers() : nullptr;
-}
-
-btScalar Prefix::searchInset() const {
-  const Feelers* const more = searchFeelers();
-  return more == nullptr ? inset() : more->inset;
+const Feelers& Prefix::searchFeelers() const {
+  return search_feelers_.get([this] { return std::make_unique<Feelers>(feelersIn(FeelerPlaces::thin)); });
 }
 
 const SphereBvh& Prefix::feelingTree() const {
@@ -120,10 +115,9 @@ const CollisionModel& Prefix::searchModel() const {
     auto first = std::make_shared<Packing>();
     first->order = model_.packing().order;
     first->spheres.assign(all.begin(), all.begin() + std::ptrdiff_t(count));
-    if (const Feelers* const more = searchFeelers()) {
-      first->order = SphereOrder::coverage;  // radii do not fall
-      first->spheres.insert(first->spheres.end(), more->balls.begin(), more->balls.end());
-    }
+    const std::vector<Sphere>& more = searchFeelers().balls;
+    if (!more.empty()) first->order = SphereOrder::coverage;  // radii do not fall
+    first->spheres.insert(first->spheres.end(), more.begin(), more.end());
     const std::vector<Sphere> enlarged = searchSpheres(model_.packing().surface, first->spheres);
     auto model = std::make_unique<CollisionModel>(std::move(first));
     model->update(enlarged.data(), enlarged.size());

@@ -34,11 +34,10 @@ class Prefix {
   /// Returns the balls that feel where no sphere is near the surface: none where spheres are near it
   /// everywhere. Call it only if the packing has a surface.
   const Feelers& feelers() const;
-  /// Returns the feelers if searches among packings need them, too, else null: in a solid that is thinner
-  /// than its gaps spheres would be enlarged through walls, and lines from them not lead to where walls meet.
-  const Feelers* searchFeelers() const;
-  /// Returns how far what searches among packings use may end inside of the surface.
-  btScalar searchInset() const;
+  /// Returns those that searches among packings need: where the solid is thinner than its gaps spheres would
+  /// be enlarged through walls, and lines from them not lead to where walls meet. Most solids have none, and
+  /// inset() then is theirs.
+  const Feelers& searchFeelers() const;
   /// Returns the tree of the spheres and, counted on from there, the feelers.
   const SphereBvh& feelingTree() const;
 
@@ -56,10 +55,12 @@ class Prefix {
   const btScalar largest_radius;  ///< half as thick as the solid is where it is thickest
 
  private:
+  Feelers feelersIn(FeelerPlaces where) const;
+
   const PackedModel& model_;
   Lazy<SphereBvh> tree_;
   Lazy<btScalar> inset_;
-  Lazy<Feelers> feelers_;
+  Lazy<Feelers> feelers_, search_feelers_;
   Lazy<SphereBvh> feeling_tree_;
   Lazy<CollisionModel> search_model_;
   mutable std::once_flag warned_;

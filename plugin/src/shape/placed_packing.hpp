@@ -25,8 +25,8 @@ struct PlacedPacking {
   /// Has feelers from now on: spheres from count() on, which bear no volume. Call it only if the packing has
   /// a surface.
   void addFeelers() { feelers = &prefix->feelers(); }
-  /// The same for searches among packings, where only some have them.
-  void addSearchFeelers() { feelers = prefix->searchFeelers(); }
+  /// The same for searches among packings.
+  void addSearchFeelers() { feelers = &prefix->searchFeelers(); }
   bool isFeeler(std::size_t i) const { return i >= count(); }
   /// Returns sphere i, in the packing's frame and its lengths.
   const Sphere& sphere(std::size_t i) const {

@@ -9,6 +9,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
 #include "common/bullet_vectors.hpp"
+#include "common/contact_tolerances.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -22,6 +23,8 @@ constexpr btScalar kShared = btScalar(1e-5);
 constexpr btScalar kGrazing = btScalar(0.1);
 /// Cosine, 15 degrees: a nearest point that is seen from further aside lies on an edge.
 constexpr btScalar kOver = btScalar(0.966);
+/// In the thickness asked for: a ray starts so far below the surface, so as not to meet it there.
+constexpr btScalar kBelow = btScalar(1e-3);
 
 /// The same vector in every lane.
 struct VectorLanes {
@@ -292,6 +295,12 @@ bool SurfaceQueries::castNear(std::size_t triangle, const btVector3& from, const
   hit.triangle = triangle;
   complete(normals, crossing, from, direction, hit);
   return true;
+}
+
+bool SurfaceQueries::isThinner(btScalar thickness, const btVector3& place, const btVector3& normal) const {
+  Hit hit;
+  return cast(place - normal * (kBelow * thickness), -normal, thickness, -normal, hit) &&
+         hit.face.dot(normal) < -kOpposedCosine;
 }
 
 btScalar SurfaceQueries::untilSharpEdge(std::size_t triangle, const btVector3& point,

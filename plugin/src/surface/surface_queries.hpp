@@ -50,6 +50,10 @@ class SurfaceQueries {
   bool sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
                  SmoothNormals::SharpEdge& edge) const;
 
+  /// Whether the solid is thinner than this [m] below a place of its surface: the normal, drawn inwards,
+  /// comes out of a face that looks the other way.
+  bool isThinner(btScalar thickness, const btVector3& place, const btVector3& normal) const;
+
   struct Nearest {
     btScalar distance;  ///< [m], negative inside the solid
     btVector3 normal;   ///< unit, out of the solid, along the line from the nearest point

@@ -1,4 +1,4 @@
-// Thin solids that touch each other are told where they are deepest.
+// Thin solids, and thin parts of thick ones, that touch something are told where they are deepest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,11 +25,11 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-/// A bar along x of 0.1 m, so wide along y, of 2 mm at the one edge and `thin` at the other.
-Mesh barMesh(double width, double thin) {
+/// A bar along x of 0.1 m, so wide along y, and so thick at the one edge and at the other.
+Mesh barMesh(double width, double thick, double thin) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i) {
-    const double z = (i & 2 ? thin : 0.002) / 2;
+    const double z = (i & 2 ? thin : thick) / 2;
     mesh.vertices.push_back({i & 1 ? 0.05 : -0.05, (i & 2 ? 0.5 : -0.5) * width, i & 4 ? z : -z});
   }
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
@@ -37,9 +37,41 @@ Mesh barMesh(double width, double thin) {
   return mesh;
 }
 
+/// Of eight flat sides around and six along its tube.
+Mesh torusMesh() {
+  constexpr std::uint32_t kAround = 8, kAlong = 6;
+  constexpr double kRadius = 0.04, kTube = 0.015;
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < kAround; ++i) {
+    for (std::uint32_t k = 0; k < kAlong; ++k) {
+      const double angle = 2 * M_PI * i / kAround, tilt = 2 * M_PI * k / kAlong;
+      const double out = kRadius + kTube * std::cos(tilt);
+      mesh.vertices.push_back({out * std::cos(angle), out * std::sin(angle), kTube * std::sin(tilt)});
+      const std::uint32_t here = i * kAlong, next = (i + 1) % kAround * kAlong, up = (k + 1) % kAlong;
+      mesh.triangles.push_back({here + k, next + k, next + up});
+      mesh.triangles.push_back({here + k, next + up, here + up});
+    }
+  }
+  return mesh;
+}
+
+/// The thin part of a thick solid lies above z = 0.
 Mesh meshOf(const std::string& solid) {
   if (solid == "cup") return cupMesh(8);
-  return solid == "plate" ? barMesh(0.08, 0.002) : barMesh(0.03, 0.0002);
+  if (solid == "torus") return torusMesh();
+  if (solid == "box") return barMesh(0.06, 0.04, 0.04);
+  if (solid == "pin")
+    return turnedMesh({{0, -0.06}, {0.03, -0.06}, {0.03, 0}, {0.001, 0}, {0.001, 0.025}, {0, 0.025}}, 8);
+  if (solid == "mug")
+    return turnedMesh({{0, -0.06}, {0.03, -0.06}, {0.03, 0.025}, {0.028, 0.025}, {0.028, 0}, {0, 0}}, 8);
+  if (solid == "nail")
+    return turnedMesh({{0, -0.05}, {0.025, -0.05}, {0.025, 0}, {0.045, 0}, {0.045, 0.002}, {0, 0.002}}, 8);
+  return solid == "plate" ? barMesh(0.08, 0.002, 0.002) : barMesh(0.03, 0.002, 0.0002);
+}
+
+/// Then only contacts of what is above are of interest.
+bool isThickBelow(const std::string& solid) {
+  return solid == "pin" || solid == "mug" || solid == "nail";
 }
 
 double wallOf(const std::string& solid) {
@@ -95,8 +127,16 @@ struct FindAll : btCollisionWorld::ContactResultCallback {
 
 class Placements {
  public:
-  Placements(const PackingShape& a, const PackingShape& b, double deepest)
-      : a_(surfaceOf(a)), b_(surfaceOf(b)), deepest_(deepest) {}
+  /// Of A what is above `lowest` [m] meets B.
+  Placements(const PackingShape& a, const PackingShape& b, double lowest, double deepest)
+      : a_(surfaceOf(a)), b_(surfaceOf(b)), deepest_(deepest) {
+    for (std::size_t t = 0; t < a_.triangles.size(); ++t) {
+      const auto& corners = a_.triangles[t];
+      const auto isAbove = [&](std::uint32_t c) { return a_.vertices[c][2] > lowest; };
+      if (std::any_of(corners.begin(), corners.end(), isAbove)) of_a_.push_back(t);
+    }
+    for (std::size_t t = 0; t < b_.triangles.size(); ++t) of_b_.push_back(t);
+  }
 
   /// A meets B along a random line, somewhere, and goes on, or stops before, by a random way.
   std::pair<btTransform, btTransform> next() {
@@ -107,7 +147,7 @@ class Placements {
       const Vec3d way = direction();
       PlacedMesh a(a_, at_a);
       const PlacedMesh b(b_, at_b);
-      const Vec3d start = placeOn(b) - placeOn(a) - 1.0 * way;
+      const Vec3d start = placeOn(b, of_b_) - placeOn(a, of_a_) - 1.0 * way;
       a.move(start);
       const std::optional<Touch> touch = firstTouch(a, b, way);
       if (!touch || dot(touch->normal, way) < kSteepest) continue;
@@ -129,14 +169,15 @@ class Placements {
     return btQuaternion(btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2])),
                         btScalar(M_PI * uniform_(rng_)));
   }
-  Vec3d placeOn(const PlacedMesh& mesh) {
-    const auto& t = mesh.triangles[rng_() % mesh.triangles.size()];
+  Vec3d placeOn(const PlacedMesh& mesh, const std::vector<std::size_t>& triangles) {
+    const auto& t = mesh.triangles[triangles[rng_() % triangles.size()]];
     const double u = std::fabs(uniform_(rng_)), v = (1 - u) * std::fabs(uniform_(rng_));
     return (1 - u - v) * mesh.corners[t[0]] + u * mesh.corners[t[1]] + v * mesh.corners[t[2]];
   }
 
   const Surface &a_, &b_;
   double deepest_;
+  std::vector<std::size_t> of_a_, of_b_;
   std::mt19937 rng_{1};
   std::normal_distribution<double> normal_;
   std::uniform_real_distribution<double> uniform_{-1, 1};
@@ -172,10 +213,13 @@ TEST_P(ThinPairs, MeetWhereTheyAreDeepest) {
   TestWorld world;
   btRigidBody& body_a = world.add(a, 1, btVector3(0, 0, 0));
   btRigidBody& body_b = world.add(b, 0, btVector3(0, 0, 0));
-  Placements random(*a, *b, wall / 4);
+  const bool has_thin_part = isThickBelow(names.first);
+  const double lowest = has_thin_part ? 0 : -1;
+  Placements random(*a, *b, lowest, wall / 4);
   std::map<std::string, int> faults;
+  const int placements = wanted != nullptr ? std::atoi(wanted) : has_thin_part ? 200 : 12;
   int tried = 0, missed = 0;
-  for (int i = 0; i < (wanted != nullptr ? std::atoi(wanted) : 12); ++i) {
+  for (int i = 0; i < placements; ++i) {
     const auto [at_a, at_b] = random.next();
     body_a.setWorldTransform(a->bodyTransform(at_a));
     body_b.setWorldTransform(b->bodyTransform(at_b));
@@ -183,6 +227,8 @@ TEST_P(ThinPairs, MeetWhereTheyAreDeepest) {
     const PlacedMesh mesh_b(surfaceOf(*b), b->meshTransform(body_b.getWorldTransform()));
     const std::optional<LocalOverlap> truth = localOverlap(mesh_a, mesh_b, 2 * wall);
     if (!truth) continue;
+    const btVector3 place(btScalar(truth->on_b[0]), btScalar(truth->on_b[1]), btScalar(truth->on_b[2]));
+    if (at_a.invXform(place).z() < lowest) continue;
     ++tried;
     FindAll found;
     found.a = &body_a;
@@ -195,8 +241,10 @@ TEST_P(ThinPairs, MeetWhereTheyAreDeepest) {
   }
   RecordProperty("tried", tried);
   for (const auto& [fault, count] : faults) RecordProperty(fault, count);
-  // Where another way out is nearly as short, or a wall ends in a thin edge.
-  EXPECT_LE(20 * missed, tried);
+  // Where another way out is nearly as short, or a wall ends in a thin edge; or a face at the end of a thin
+  // part leans, which is told the depth within it.
+  EXPECT_LE((has_thin_part ? 6 : 20) * missed, tried);
+  EXPECT_LE(50 * faults["none"], tried);
   EXPECT_GT(tried, 0);
 }
 
@@ -212,11 +260,16 @@ std::vector<std::string> kinds() {
 }
 
 using Pair = std::pair<std::string, std::string>;
-INSTANTIATE_TEST_SUITE_P(All, ThinPairs,
-                         testing::Combine(testing::Values(Pair("plate", "plate"), Pair("blade", "blade"),
-                                                          Pair("cup", "plate"), Pair("cup", "cup")),
-                                          testing::ValuesIn(kinds())),
-                         nameOf);
+INSTANTIATE_TEST_SUITE_P(
+    All, ThinPairs,
+    testing::Combine(testing::Values(Pair("plate", "plate"), Pair("blade", "blade"), Pair("cup", "plate"),
+                                     Pair("cup", "cup"), Pair("pin", "box"), Pair("pin", "torus"),
+                                     Pair("pin", "pin"), Pair("pin", "nail"), Pair("mug", "box"),
+                                     Pair("mug", "torus"), Pair("mug", "mug"), Pair("mug", "pin"),
+                                     Pair("nail", "box"), Pair("nail", "torus"), Pair("nail", "nail"),
+                                     Pair("nail", "mug")),
+                     testing::ValuesIn(kinds())),
+    nameOf);
 
 }  // namespace
 }  // namespace innersphere::test

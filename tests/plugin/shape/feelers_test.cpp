@@ -21,7 +21,7 @@ struct Felt {
         diagonal(std::hypot(box[0], box[1], box[2])),
         packing(latticeBox(box, 1)),
         surface(packing.surface),
-        feelers(placeFeelers(packing, 1, btScalar(diagonal), surface)) {}
+        feelers(placeFeelers(packing, 1, btScalar(diagonal), surface, FeelerPlaces::all)) {}
 
   double gapAt(const btVector3& place) const {
     const auto gap = [&](const Sphere& s) { return double(place.distance({s.x, s.y, s.z})) - s.radius; };
@@ -98,7 +98,7 @@ TEST(PlaceFeelers, FillsAPlate) {
 TEST(PlaceFeelers, PlacesNoneWhereSpheresAreNearEverywhere) {
   const Packing box = latticeBox({1, 1, 1}, 4);
   const SurfaceQueries surface(box.surface);
-  const Feelers feelers = placeFeelers(box, 64, btScalar(0.017), surface);  // 1 % of sqrt(3) m
+  const Feelers feelers = placeFeelers(box, 64, btScalar(0.017), surface, FeelerPlaces::all);  // 1 % of sqrt(3) m
   EXPECT_TRUE(feelers.balls.empty());
   EXPECT_EQ(feelers.inset, btScalar(0.017));
 }
@@ -107,8 +107,7 @@ TEST(PlaceFeelers, PlacesNoneWhereSpheresAreNearEverywhere) {
 std::size_t searchFeelersOf(const Packing& packing) {
   const auto model =
       PackedModel::of(std::make_shared<CollisionModel>(std::make_shared<const Packing>(packing)));
-  const Feelers* const more = model->prefix(packing.spheres.size()).searchFeelers();
-  return more == nullptr ? 0 : more->balls.size();
+  return model->prefix(packing.spheres.size()).searchFeelers().balls.size();
 }
 
 TEST(SearchFeelers, AreThoseOfSolidsThinnerThanTheirGaps) {

@@ -196,6 +196,26 @@ TEST(VertexHillClimb, StaysNear) {
   EXPECT_TRUE(found.empty());
 }
 
+TEST(SurfaceQueries, TellsHowThickABoxIs) {
+  const Packing box = latticeBox(kSize, 1);
+  const SurfaceQueries surface(box.surface);
+  std::mt19937 rng(6);
+  std::uniform_real_distribution<double> uniform(-0.499, 0.499);
+  for (int i = 0; i < 300; ++i) {
+    btVector3 place, normal(0, 0, 0);
+    for (int k = 0; k < 3; ++k) place[k] = btScalar(uniform(rng) * kSize[std::size_t(k)]);
+    const int side = i % 3, sign = i % 2 == 0 ? 1 : -1;
+    normal[side] = btScalar(sign);
+    place[side] = btScalar(sign * kSize[std::size_t(side)] / 2);
+    EXPECT_TRUE(surface.isThinner(btScalar(1.01 * kSize[std::size_t(side)]), place, normal));
+    EXPECT_FALSE(surface.isThinner(btScalar(0.99 * kSize[std::size_t(side)]), place, normal));
+    // Across an edge the other face does not look the other way.
+    btVector3 askew = normal;
+    askew[(side + 1) % 3] = place[(side + 1) % 3] > 0 ? btScalar(2) : btScalar(-2);
+    EXPECT_FALSE(surface.isThinner(btScalar(0.5), place, askew.normalized()));
+  }
+}
+
 TEST(VertexHillClimb, BringsBothEndsOfALevelEdge) {
   const Packing box = latticeBox({1, 1, 1}, 1);
   const VertexHillClimb climb(box.surface);
