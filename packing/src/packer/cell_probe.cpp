@@ -17,10 +17,9 @@ CellSearch::Probe CellSearch::nearestBall(const Point& x, std::size_t begin, std
   double best = std::numeric_limits<double>::infinity();
   std::size_t nearest = end;
   for (std::size_t i = begin; i < end; ++i) {
-    const double reach = best + balls_[i].radius;
-    const double squared = (x - balls_[i].centre).squaredNorm();
-    if (reach > 0 && squared < reach * reach) {
-      best = std::sqrt(squared) - balls_[i].radius;
+    const double distance = balls_[i].distance(x);
+    if (distance < best) {
+      best = distance;
       nearest = i;
     }
   }

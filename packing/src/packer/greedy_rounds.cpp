@@ -4,6 +4,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <tuple>
 
@@ -86,7 +87,10 @@ bool GreedyRounds::insert(const std::vector<CellSearch::Candidate>& candidates, 
                           const Add& add, Placed& placed) const {
   for (const CellSearch::Candidate& candidate : candidates) {
     const Ball& ball = candidate.ball;
-    if (placed.grid.nearest(ball.centre, ball.radius).distance < ball.radius) continue;
+    if (placed.grid.nearest(ball.centre, ball.radius).distance < ball.radius) {
+      assert(&candidate != &candidates.front());  // or the same turn would come again and again
+      continue;
+    }
     placed.grid.insert(ball);
     placed.rounded.push_back(container_.rounded(ball));
     placed.top.push_back(top);

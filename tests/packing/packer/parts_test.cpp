@@ -8,9 +8,12 @@
 #include <set>
 #include <utility>
 
+#include "analytic_solids.hpp"
 #include "mesh/triangle.hpp"
 #include "packer/ball_trees.hpp"
+#include "packer/cell_search.hpp"
 #include "packer/cells.hpp"
+#include "packer/container.hpp"
 #include "packer/dual_simplex.hpp"
 #include "packer/near_balls.hpp"
 #include "packer/prism.hpp"
@@ -109,6 +112,30 @@ TEST(SphereGrid, FindsTheNearestBall) {
     EXPECT_EQ(hit.distance, least);
     EXPECT_EQ(balls[hit.index].distance(x), least);
     EXPECT_EQ(grid.nearest(x, least).distance, std::numeric_limits<double>::infinity());
+  }
+}
+
+// Between mirrored balls, two are equally near but for the last digit. A candidate that one of them overlaps
+// by a digit would be refused, and found again in each turn of its round, without end.
+TEST(CellSearch, CandidatesOverlapNoPlacedBallByADigit) {
+  const TestBall solid;
+  const Container container(solid);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<Ball> balls;
+    for (int pair = 0; pair < 3; ++pair) {
+      const Ball ball{Point(unit(random), unit(random), unit(random)), 0.05 + 0.1 * unit(random)};
+      const Point mirrored(1 - ball.centre[0], ball.centre[1], ball.centre[2]);
+      balls.push_back(ball);
+      balls.push_back({mirrored, std::nextafter(ball.radius, unit(random) < 0.5 ? 0.0 : 1.0)});
+    }
+    const SphereGrid placed(balls);
+    const std::vector<Cell> all(1);
+    const CellSearch::Result found = CellSearch(container, placed, 1, 0.15, 0.1).search(all);
+    for (const CellSearch::Candidate& candidate : found.candidates) {
+      for (const Ball& ball : balls) EXPECT_GE(ball.distance(candidate.ball.centre), candidate.ball.radius);
+    }
   }
 }
 
