@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -16,6 +17,11 @@ constexpr double kLarge = 4;
 
 // Points at which a cell is looked at before it is divided.
 constexpr int kProbes = 12;
+
+// A cell's bound is lowered beyond what its round asks for, so that the cell need not be looked at again in
+// each of the next rounds: as long as one more point lowers it by the first part of what is asked for, or
+// until it is at the second, about two rounds later.
+constexpr double kWorthAPoint = 0.05, kLowEnough = 0.85;
 
 // Radius of the balls put behind walls, in wanted radii. Larger: less curved, but they find less room.
 constexpr double kBehind = 8;
@@ -132,18 +138,21 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
     return cell.upper <= bound_;
   };
   Point x = centre;
-  for (int k = 0; k < (half > kLarge * wanted_ ? 1 : kProbes); ++k) {
+  double before = std::numeric_limits<double>::infinity();
+  const int probes = half > kLarge * wanted_ ? 1 : kProbes;
+  for (int k = 0; k < probes; ++k) {
     const Probe p = probe(x, begin, balls_.size(), wanted_, k == 0 ? bound_ - std::numbers::sqrt3 * half : 0);
     if (p.value > wanted_ && climb(x)) return Verdict::found;
     program_.add(p.value - p.gradient.dot(x - centre), p.gradient);
     cuts_.push_back(p);
-    const bool low = program_.optimum() <= bound_;
-    if ((low || k == 0) && prove()) return Verdict::below;
-    // Then only the balls' curvature is in the way.
-    if (low) {
-      const bool below = (straighten() && prove()) || (flatten(half) && prove());
+    const double optimum = program_.optimum();
+    const bool worthwhile = k + 1 < probes && before - optimum > kWorthAPoint * bound_;
+    if (optimum <= kLowEnough * bound_ || (optimum <= bound_ && !worthwhile)) {
+      // If that is no proof, only the balls' curvature is in the way.
+      const bool below = prove() || (straighten() && prove()) || (flatten(half) && prove());
       return below ? Verdict::below : Verdict::undecided;
     }
+    before = optimum;
     x = centre + program_.argmax();
   }
   return Verdict::undecided;
