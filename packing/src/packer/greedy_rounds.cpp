@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t kTightSpheres = 300;
 constexpr double kTightDelta = 0.01;
 
-// Unless this many cells would have to be looked at in one round: the solid is equally thick over a large
-// part, where proofs with a tight delta are expensive and gain nothing.
+// Unless this many cells would have to be looked at in one round: many places are about equally good, and
+// proofs with a tight delta are expensive and gain nothing.
 constexpr std::size_t kMostTightCells = 1000;
 
 // The part of delta that is left between the radii wanted and the bound to be proven. Smaller: fewer rounds;
