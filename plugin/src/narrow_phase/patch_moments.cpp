@@ -40,12 +40,13 @@ PatchMoments patchMoments(const std::vector<SphereContact>& contacts, const std:
 
   for (std::size_t i : indices) {
     const btVector3 x = toBullet(contacts[i].centroid) - m.centre;
-    const btScalar weight = toBullet(contacts[i].area).length() / weights;
+    const btScalar area = toBullet(contacts[i].area).length(), weight = area / weights;
     const btScalar u = x.dot(m.tangent[0]), v = x.dot(m.tangent[1]);
     m.spread[0] += weight * u * u;
     m.spread[1] += weight * u * v;
     m.spread[2] += weight * v * v;
-    m.radius += weight * btSqrt(u * u + v * v);
+    // A disc is on average d + s^2 / (8 d) away, as far as it is small.
+    m.radius += weight * btSqrt(u * u + v * v + area / (4 * SIMD_PI));
   }
   // A depth that slopes by s over the patch moves the centre of volume by spread * s / mean depth.
   if (m.volume > 0) {
