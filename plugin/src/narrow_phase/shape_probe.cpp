@@ -70,9 +70,14 @@ btVector3 ShapeProbe::toMiddleOfBend(const ProbedSample& sample) const {
 }
 
 bool ShapeProbe::goesOn(const NearSphere& near_sphere, const btVector3& place) const {
-  // A little above a face it is that far away; beyond its edge it is further.
+  // A little above a face it is that far away, and the face is below; beyond its edge it is further, and
+  // aside. Bullet knows how deep a place is in a hull to a part of the hull's size only, so that `place` may
+  // itself be above the face.
   const btScalar radius = a_.searchRadius(near_sphere.sphere);
   const btVector3 above = place + near_sphere.normal * (kAboveFace * radius);
+  constexpr btScalar kBelow = kAboveFace / (kAboveFace + kBeyondFace);  // the same angle
+  NearSphere seen;
+  if (other_.nearestTo(a_, world_, above, seen) && seen.normal.dot(near_sphere.normal) > kBelow) return true;
   // On a large ground.
   const btScalar rounding = 4 * SIMD_EPSILON * (a_.origin() + above - world_.getOrigin()).length();
   btScalar distance = 0;
