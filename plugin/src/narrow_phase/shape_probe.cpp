@@ -77,12 +77,16 @@ bool ShapeProbe::goesOn(const NearSphere& near_sphere, const btVector3& place) c
   const btVector3 above = place + near_sphere.normal * (kAboveFace * radius);
   constexpr btScalar kBelow = kAboveFace / (kAboveFace + kBeyondFace);  // the same angle
   NearSphere seen;
-  if (other_.nearestTo(a_, world_, above, seen) && seen.normal.dot(near_sphere.normal) > kBelow) return true;
+  btScalar distance = 0;
+  if (other_.nearestTo(a_, world_, above, seen)) {
+    if (seen.normal.dot(near_sphere.normal) > kBelow) return true;
+    distance = seen.distance;
+  } else if (!other_.distanceOf(a_, world_, above, distance)) {
+    return true;
+  }
   // On a large ground.
   const btScalar rounding = 4 * SIMD_EPSILON * (a_.origin() + above - world_.getOrigin()).length();
-  btScalar distance = 0;
-  return !other_.distanceOf(a_, world_, above, distance) ||
-         distance < (kAboveFace + kBeyondFace) * radius + rounding;
+  return distance < (kAboveFace + kBeyondFace) * radius + rounding;
 }
 
 bool ShapeProbe::nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const {
