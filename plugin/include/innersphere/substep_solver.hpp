@@ -30,7 +30,7 @@ struct SubstepOptions {
 ///
 /// It divides a step into substeps, and looks for contact once a step: in between, contacts follow the
 /// bodies. A substep takes one pass over all rows with soft contacts, or up to ten where bodies hit others,
-/// moves the bodies, and takes one more pass without what drives bodies apart ("Soft Step" of E. Catto,
+/// moves the bodies, and takes as many without what drives bodies apart ("Soft Step" of E. Catto,
 /// https://box2d.org/posts/2024/02/solver2d/; why substeps, M. Macklin et al., Small Steps in Physics
 /// Simulation, SCA 2019). Errors fall with the square of the substep.
 ///

@@ -285,7 +285,7 @@ void ConstraintRows::solve(int index, Pass pass, std::vector<BodyState>& states)
     push(joint, row, impulse, states);
   }
   solveFree(joint, pass, states);
-  if (pass == Pass::push) return;
+  if (pass != Pass::finish) return;
   for (int i = 0; i < joint.count; ++i) {
     Row& row = rows_[joint.begin + static_cast<std::size_t>(i)];
     row.sum += row.impulse;

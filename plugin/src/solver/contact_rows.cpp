@@ -304,7 +304,7 @@ void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& state
   LaneBodies a(block.a, states), b(block.b, states);
   PointLanes* const begin = points_.data() + block.begin;
   PointLanes* const end = begin + block.count;
-  if (pass == Pass::relax) {
+  if (pass != Pass::push) {
     for (PointLanes* point = begin; point != end; ++point) follow(block, *point, a, b);
   }
   Lanes stopped{};
@@ -320,8 +320,8 @@ void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& state
     for (int lane = 0; lane < kLanes; ++lane) {
       if (stopped[lane] > block.calm[lane]) impact_.store(true, std::memory_order_relaxed);
     }
-    return;
   }
+  if (pass != Pass::finish) return;
   for (PointLanes* point = begin; point != end; ++point) {
     point->sum += point->impulse;
     point->sum_1 += point->impulse_1;

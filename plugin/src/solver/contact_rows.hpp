@@ -26,8 +26,9 @@ struct TouchingPair {
 
 /// How a pass treats contacts.
 enum class Pass {
-  push,  ///< with what drives bodies apart that are in each other
-  relax  ///< without: the speed that this took is given back
+  push,   ///< with what drives bodies apart that are in each other
+  relax,  ///< without: the speed that this took is given back
+  finish  ///< the same, and the substep ends: what was borne is added up, and carried to the next one
 };
 
 /// The contacts of a group. Call begin(), find() and collect(), then addBlock() with the pairs in the order
@@ -58,7 +59,7 @@ class ContactRows {
   void beginStep(const btContactSolverInfo& info, int substeps, btScalar depth);
   /// Fills the rows of a block.
   void prepare(int block, const SolverBodies& bodies);
-  /// Adds the impulses that points have borne to what the next substep begins with. Pass::relax does so, too.
+  /// Adds the impulses that points have borne to what the next substep begins with. Pass::finish does so, too.
   void carry(int block, std::vector<BodyState>& states);
   /// Returns true if bodies are thrown back by some points, as restitution says.
   bool bounces() const { return bounces_; }

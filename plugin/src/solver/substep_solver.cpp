@@ -126,10 +126,16 @@ void SubstepSolver::Impl::step(btScalar substep) {
   for (int i = 0; i < constraints_.count(); ++i) constraints_.refresh(i, bodies_);
   for (const int joint : colouring_.joints()) constraints_.warmStart(joint, bodies_.states());
   if (contacts_.bounces()) forEachBlock([&](int block) { contacts_.findBounces(block, bodies_.states()); });
-  for (int i = 0; i < kMostPasses && (i == 0 || contacts_.takeImpact()); ++i) pass(Pass::push);
+  int passes = 0;
+  do {
+    pass(Pass::push);
+    ++passes;
+  } while (contacts_.takeImpact() && passes < kMostPasses);
   crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.move(begin, end, substep); });
   bodies_.moveDriven(substep);
-  pass(Pass::relax);
+  // As many take the speed back that was given to drive bodies apart: what fewer leave of it throws bodies.
+  while (--passes > 0) pass(Pass::relax);
+  pass(Pass::finish);
 }
 
 void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,

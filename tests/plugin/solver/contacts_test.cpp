@@ -53,6 +53,24 @@ TEST(SubstepContacts, WhatLandsOnSomethingLighterStops) {
   }
 }
 
+TEST(SubstepContacts, WhatIsDeepInANotchIsNotThrownOut) {
+  constexpr btScalar kRadius = btScalar(0.5), kDeep = btScalar(0.1);
+  for (const int degrees : {30, 45, 60}) {
+    SolverWorld world;
+    world.world.setGravity(btVector3(0, 0, 0));
+    const btScalar slope = btScalar(degrees) * SIMD_RADS_PER_DEG;
+    for (const btScalar side : {-1, 1}) {
+      const btVector3 normal(side * btSin(slope), 0, btCos(slope));
+      world.add(std::make_unique<btStaticPlaneShape>(normal, btScalar(0)), 0, btVector3(0, 0, 0));
+    }
+    btRigidBody& ball = world.addBall(kRadius, 1, btVector3(0, 0, (kRadius - kDeep) / btCos(slope)));
+    world.run(2);
+    EXPECT_GT(ball.getWorldTransform().getOrigin().z() * btCos(slope), kRadius - btScalar(0.001)) << degrees;
+    // What drives it apart is as fast as half its size in a second, on each side.
+    EXPECT_LT(ball.getLinearVelocity().length(), btScalar(0.5) * kRadius) << degrees;
+  }
+}
+
 TEST(SubstepContacts, ABlockSlidesAsFarAsFrictionLets) {
   for (const double angle : {0.0, 0.5, 0.8}) {  // friction in all directions is the same
     SolverWorld world;

@@ -55,7 +55,7 @@ TEST(SubstepInput, BodiesWithInfiniteVelocitiesOrForcesAreStoppedForAStep) {
       EXPECT_TRUE(hasOnlyNumbers(world)) << bad;
       EXPECT_EQ(upper.getLinearVelocity(), btVector3(0, 0, 0)) << bad;
       spoil(upper, btVector3(0, bad, 0));
-      world.run(1);
+      world.run(0.5);  // the upper one tumbles down on it later
       EXPECT_TRUE(hasOnlyNumbers(world)) << bad;
       EXPECT_NEAR(lower.getWorldTransform().getOrigin().z(), kHalf, 0.001) << bad;
       EXPECT_EQ(log.messages.size(), 1u) << bad;
