@@ -240,9 +240,17 @@ void ContactRows::findBounces(int index, const std::vector<BodyState>& states) {
 
 void ContactRows::solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b) {
   const Lanes3 slide = a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b);
-  Lanes along_1 = point.impulse_1 - point.mass_1 * (dot(slide, point.side_1) - point.belt_1);
-  Lanes along_2 = point.impulse_2 - point.mass_2 * (dot(slide, point.side_2) - point.belt_2);
-  holdWithin(point.friction * point.impulse, along_1, along_2);
+  const Lanes slide_1 = dot(slide, point.side_1) - point.belt_1,
+              slide_2 = dot(slide, point.side_2) - point.belt_2;
+  const Lanes most = point.friction * point.impulse;
+  Lanes along_1 = point.impulse_1 - point.mass_1 * slide_1;
+  Lanes along_2 = point.impulse_2 - point.mass_2 * slide_2;
+  // What slides is braked against its way, from which two masses would turn the impulse aside.
+  const auto slides = along_1 * along_1 + along_2 * along_2 > most * most;
+  const Lanes mass = smaller(point.mass_1, point.mass_2);
+  along_1 = slides ? point.impulse_1 - mass * slide_1 : along_1;
+  along_2 = slides ? point.impulse_2 - mass * slide_2 : along_2;
+  holdWithin(most, along_1, along_2);
   const Lanes3 impulse =
       point.side_1 * (along_1 - point.impulse_1) + point.side_2 * (along_2 - point.impulse_2);
   point.impulse_1 = along_1;
@@ -254,9 +262,9 @@ void ContactRows::solveFriction(const Block& block, PointLanes& point, LaneBodie
   Lanes roll_1 = point.roll_1 - point.mass_rolling * dot(rolls, point.side_1);
   Lanes roll_2 = point.roll_2 - point.mass_rolling * dot(rolls, point.side_2);
   holdWithin(point.rolling * point.impulse, roll_1, roll_2);
-  const Lanes most = point.spinning * point.impulse;
-  const Lanes spin =
-      larger(smaller(point.spin - point.mass_spinning * dot(rolls, point.normal), most), most * inAll(-1));
+  const Lanes most_spin = point.spinning * point.impulse;
+  const Lanes spin = larger(smaller(point.spin - point.mass_spinning * dot(rolls, point.normal), most_spin),
+                            most_spin * inAll(-1));
   const Lanes3 turn = point.side_1 * (roll_1 - point.roll_1) + point.side_2 * (roll_2 - point.roll_2) +
                       point.normal * (spin - point.spin);
   point.roll_1 = roll_1;

@@ -71,6 +71,21 @@ TEST(SubstepContacts, WhatIsDeepInANotchIsNotThrownOut) {
   }
 }
 
+TEST(SubstepContacts, FrictionTurnsABoxAgainstItsWay) {
+  constexpr btScalar kSpin = 10, kFriction = btScalar(0.5);
+  constexpr double kSeconds = 0.2;
+  SolverWorld world;
+  world.addSlab().setFriction(1);
+  btRigidBody& box = world.addBox(btVector3(kHalf, kHalf, kHalf / 4), 8, btVector3(0, 0, kHalf / 4));
+  box.setFriction(kFriction);
+  world.run(0.5);
+  box.setAngularVelocity(btVector3(0, 0, kSpin));
+  world.run(kSeconds, kStep / 4);  // in longer steps Bullet loses corners
+  // Each corner bears as much: friction m g r / I, with r^2 = 2 h^2 and I = 2/3 m h^2.
+  const double slower = kFriction * kGravity * 1.5 * std::sqrt(2.0) / kHalf * kSeconds;
+  EXPECT_NEAR(box.getAngularVelocity().z(), kSpin - slower, 0.005 * slower);
+}
+
 TEST(SubstepContacts, ABlockSlidesAsFarAsFrictionLets) {
   for (const double angle : {0.0, 0.5, 0.8}) {  // friction in all directions is the same
     SolverWorld world;
