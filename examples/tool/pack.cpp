@@ -1,9 +1,12 @@
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "file_names.hpp"
+#include "innersphere/clump_solid.hpp"
 #include "innersphere/cover_solid.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/packer.hpp"
@@ -27,11 +30,20 @@ struct Arguments {
   Order order = Order::unsaid;
   bool split = false;
   bool cover = false;
+  bool clump = false;
+  double outside_weight = 1;
   bool json = false;
 };
 
-// Spheres of a covering, where none are asked for: what planners take for a link of a robot.
+// Spheres of a covering or clump, where none are asked for: what planners take for a link of a robot.
 constexpr std::size_t kCoveringSpheres = 64;
+
+// Of --spheres, where it is not given.
+constexpr std::size_t kUnsaid = std::numeric_limits<std::size_t>::max();
+
+bool areCovering(const Arguments& arguments) {
+  return arguments.cover || arguments.clump;
+}
 
 // Without any other limit as many spheres as the accuracy asks for. Walls then get theirs before the middle
 // is filled, unless the user wants another order.
@@ -49,14 +61,19 @@ PackOptions limitsFor(const Solid& solid, const Arguments& arguments) {
 
 void checkOutputOf(const Arguments& arguments, const PackingOutput& output) {
   checkPackingOutput(output);
-  if (arguments.cover && (endingOf(output.path) == ".cbor" || output.format == "cbor"))
-    throw Error(ErrorCode::bad_argument, "a covering is written to .json, .ply or .xyzr, not to .cbor");
+  if (areCovering(arguments) && (endingOf(output.path) == ".cbor" || output.format == "cbor")) {
+    throw Error(ErrorCode::bad_argument, std::string(arguments.clump ? "a clump" : "a covering") +
+                                             " is written to .json, .ply or .xyzr, not to .cbor");
+  }
 }
 
 Report reportOf(const Covering& covering, double diagonal) {
   Report report;
   const Provenance& from = covering.provenance;
-  report.add("kind", "kind", "covering: the spheres contain the solid and overlap each other");
+  const bool clump = covering.kind == CoveringKind::clump;
+  report.add("kind", "kind",
+             clump ? "clump: the union of the spheres is near to the solid; they overlap each other"
+                   : "covering: the spheres contain the solid and overlap each other");
   report.add("source", "source", from.source);
   report.add("options", "options", from.options);
   report.add("spheres", "spheres", covering.spheres.size());
@@ -64,21 +81,52 @@ Report reportOf(const Covering& covering, double diagonal) {
     report.add(key, label, length,
                number(length, "m") + ", " + percent(length / diagonal) + " of the diagonal");
   };
+  report.add("inside", "of the solid inside", covering.inside, percent(covering.inside));
+  report.add("outside", "outside of the solid", covering.outside,
+             percent(covering.outside) + " of its volume");
   addLength("overhang_mean", "overhang, mean", covering.overhang_mean);
   addLength("overhang_max", "overhang, max", covering.overhang_max);
-  report.add("volume", "volume of the solid", covering.solid.volume, number(covering.solid.volume, "m^3"));
+  addLength("gap_mean", "surface gap, mean", covering.gap_mean);
+  addLength("gap_max", "surface gap, max", covering.gap_max);
+  const MassProperties &solid = covering.solid, &united = covering.united;
+  report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
+  report.add("union_volume", "volume of the union", united.volume, number(united.volume, "m^3"));
+  addLength("union_centre_off", "its centre is off by", norm(united.centre_of_mass - solid.centre_of_mass));
+  double off = 0, whole = 0;
+  for (std::size_t i = 0; i < solid.inertia.size(); ++i) {
+    off += std::pow(united.inertia[i] - solid.inertia[i], 2);
+    whole += std::pow(solid.inertia[i], 2);
+  }
+  const double inertia_off = std::sqrt(off / whole);
+  report.add("union_inertia_off", "its inertia is off by", inertia_off, percent(inertia_off));
+  addMassWeights(covering.mass_weights, report);
   return report;
 }
 
-void coverInto(const PackingOutput& output, bool say_where, const Solid& solid, const Arguments& arguments) {
+Covering covered(const Solid& solid, const Arguments& arguments) {
   PackOptions options = arguments.pack;
   if (options.spheres == 0 && options.density == 0 && options.gap == 0) options.spheres = kCoveringSpheres;
   options.order = arguments.order == Order::radius ? SphereOrder::radius : SphereOrder::coverage;
   options.overlap_errors = false;
   CoverOptions cover;
   cover.threads = options.threads;
-  const Covering covering = coverSolid(solid, pack(solid, options, progressBar()), cover, progressBar());
+  return coverSolid(solid, pack(solid, options, progressBar()), cover, progressBar());
+}
+
+Covering clumped(const Solid& solid, const Arguments& arguments) {
+  ClumpOptions options;
+  options.spheres = arguments.pack.spheres;
+  options.outside_weight = arguments.outside_weight;
+  options.threads = arguments.pack.threads;
+  return clumpSolid(solid, options, progressBar());
+}
+
+void coverInto(const PackingOutput& output, bool say_where, const Solid& solid, const Arguments& arguments) {
+  const Covering covering = arguments.clump ? clumped(solid, arguments) : covered(solid, arguments);
   clearProgressBar();
+  if (covering.spheres.size() < arguments.pack.spheres && arguments.clump)
+    say("more than " + std::to_string(covering.spheres.size()) +
+        " spheres would not come nearer to the solid");
   writeNamedOutput(output,
                    [&](const std::string& path, bool force) { writeCovering(covering, path, force); });
   if (say_where) say("wrote " + output.path);
@@ -88,7 +136,7 @@ void coverInto(const PackingOutput& output, bool say_where, const Solid& solid, 
 
 void packInto(const PackingOutput& output, bool say_where, const Solid& solid, const Arguments& arguments) {
   checkOutputOf(arguments, output);
-  if (arguments.cover) return coverInto(output, say_where, solid, arguments);
+  if (areCovering(arguments)) return coverInto(output, say_where, solid, arguments);
   const Packing packing = pack(solid, limitsFor(solid, arguments), progressBar());
   clearProgressBar();
   writePackingOutput(packing, output);
@@ -118,10 +166,30 @@ void packBodies(const Solid& solid, const Arguments& arguments) {
   }
 }
 
+// What belongs together, and how many spheres where that was not said.
+void settle(Arguments& arguments) {
+  PackOptions& options = arguments.pack;
+  const bool unsaid = options.spheres == kUnsaid;
+  if (unsaid) options.spheres = arguments.clump ? kCoveringSpheres : 0;
+  if (!arguments.clump && arguments.outside_weight != 1)
+    throw Error(ErrorCode::bad_argument, "--outside-weight is for --clump");
+  if (!arguments.clump) return;
+  if (arguments.cover) {
+    throw Error(ErrorCode::bad_argument,
+                "--cover contains the solid, --clump comes near to it: give one of them");
+  }
+  if (options.density > 0 || options.gap > 0 || options.min_radius > 0 || arguments.order != Order::unsaid) {
+    throw Error(
+        ErrorCode::bad_argument,
+        "a clump is found by its number of spheres; leave out --density, --gap, --min-radius and --order");
+  }
+}
+
 void run(Arguments& arguments) {
+  settle(arguments);
   PackingOutput& output = arguments.output;
   const bool named = !output.path.empty();
-  if (!named) output.path = stemOf(arguments.solid.source) + (arguments.cover ? ".json" : ".cbor");
+  if (!named) output.path = stemOf(arguments.solid.source) + (areCovering(arguments) ? ".json" : ".cbor");
   if (arguments.split && isStream(output.path)) {
     throw Error(ErrorCode::bad_argument,
                 "--split writes a file for each body; give -o a name, not " + output.path);
@@ -146,9 +214,9 @@ Command packCommand() {
             "Packing file to write: .json, .cbor, .ply or .xyzr; -: to stdout")
       .withFile()
       .withDefault("SOLID.cbor in this folder");
-  options.spheres = 0;
+  options.spheres = kUnsaid;
   command.count("--spheres", options.spheres, kNotNegative, "Stop at exactly this many spheres; 0: no limit")
-      .withDefault("as --accuracy asks for");
+      .withDefault("as --accuracy asks for; 64 with --cover and --clump");
   command.number(
       "--accuracy", arguments->accuracy, {0, 1, true},
       "Without --spheres, --density and --gap: the fewest spheres of which one is within this part of "
@@ -176,13 +244,21 @@ Command packCommand() {
       "--cover", arguments->cover,
       "Write spheres that contain the solid, 64 where no limit is set, for planners: they overlap each "
       "other and are no packing; to .json, .ply or .xyzr, by default SOLID.json");
+  command.flag(
+      "--clump", arguments->clump,
+      "Write --spheres spheres that overlap each other and of which the union is as near to the solid "
+      "as can be, for grains and haptics: a multi-sphere particle, no packing; to the same files");
+  command.number(
+      "--outside-weight", arguments->outside_weight, {1, 100},
+      "With --clump: how much volume outside of the solid counts against volume of it that is left "
+      "out; with more, spheres reach out less and fill less");
   addPackingOutputOptions(command, arguments->output);
   command.flag("--json", arguments->json, "Print the summary as JSON");
   command.notes = "The first limit that is reached ends the packing.";
   command.examples = {"innersphere pack bunny.obj --spheres 4000 -o bunny.cbor",
                       "innersphere pack bracket.stl --scale 0.001 --spheres 0 --density 0.85 -o bracket.json",
-                      "innersphere pack torus",
-                      "innersphere pack link.stl --cover --spheres 32 -o link.json"};
+                      "innersphere pack torus", "innersphere pack link.stl --cover --spheres 32 -o link.json",
+                      "innersphere pack grain.obj --clump --spheres 16 -o grain.json"};
   command.run = [arguments] {
     run(*arguments);
     return kOk;

@@ -74,6 +74,8 @@ void addCoverage(const Packing& packing, double diagonal, Report& report) {
   }
 }
 
+}  // namespace
+
 void addMassWeights(const std::vector<float>& weights, Report& report) {
   if (weights.empty()) {
     report.add("mass_weights", "mass weights", nullptr, "none");
@@ -83,8 +85,6 @@ void addMassWeights(const std::vector<float>& weights, Report& report) {
   report.add("mass_weights", "mass weights", {{"min", *low}, {"max", *high}},
              number(*low) + " to " + number(*high) + " times the density of the solid");
 }
-
-}  // namespace
 
 Report describe(const Packing& packing) {
   const Quality& quality = packing.quality;

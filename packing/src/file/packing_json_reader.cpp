@@ -115,6 +115,12 @@ void requireVersion(const Entry& document) {
         "these spheres cover a solid: they overlap each other and reach out of it, so the volumes that they "
         "share mean nothing; this needs a packing, from `innersphere pack` without --cover");
   }
+  if (format == kClumpFormat) {
+    throw Error(ErrorCode::bad_format,
+                "these spheres are a clump: they overlap each other and reach out of their solid, so the "
+                "volumes that "
+                "they share mean nothing; this needs a packing, from `innersphere pack` without --clump");
+  }
   if (format != kPackingFormat) {
     throw Error(ErrorCode::bad_format,
                 "this is not a packing file (no format '" + std::string(kPackingFormat) + "')");

@@ -9,8 +9,10 @@ inline constexpr char kPackingFormat[] = "innersphere-packing";
 /// In version 2 places are relative to "origin", which version 1 does not know.
 inline constexpr int kPackingFormatVersion = 2;
 
-/// This is the name of the format of spheres that cover a solid.
+/// These are the names of the formats of spheres that overlap each other: those that contain a solid, and
+/// clumps. Two names, so that no reader takes a clump for spheres that contain a solid.
 inline constexpr char kCoveringFormat[] = "innersphere-covering";
-inline constexpr int kCoveringFormatVersion = 1;
+inline constexpr char kClumpFormat[] = "innersphere-clump";
+inline constexpr int kCoveringFormatVersion = 1;  ///< Of both.
 
 }  // namespace innersphere

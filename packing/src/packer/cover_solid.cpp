@@ -7,17 +7,16 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
 #include "common/bounds.hpp"
-#include "common/steady_math.hpp"
 #include "innersphere/error.hpp"
 #include "innersphere/mesh.hpp"
 #include "packer/container.hpp"
 #include "packer/near_balls.hpp"
 #include "packer/pattern_search.hpp"
 #include "packer/surface_samples.hpp"
+#include "packer/union_measures.hpp"
 
 namespace innersphere {
 namespace {
@@ -33,9 +32,6 @@ constexpr int kSteps = 30;
 // this part of their length.
 constexpr double kFinestFit = 0.01;
 constexpr double kWorthwhile = 0.01;
-
-// Points on each sphere at which the overhang is measured.
-constexpr int kOverhangPoints = 500;
 
 /// A cube of the octree.
 struct OctreeCube {
@@ -172,34 +168,6 @@ class Proof {
   std::vector<double> growth_;
 };
 
-/// Measures the overhang at points of the balls that are in no other ball, by equal parts of the area.
-void addOverhang(const Container& container, const std::vector<Ball>& balls, Covering& covering) {
-  const double turn = std::numbers::pi * (1 + std::sqrt(5.0));
-  std::vector<double> sums(balls.size()), areas(balls.size()), most(balls.size());
-  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
-    const Ball& ball = balls[i];
-    const double area = ball.radius * ball.radius;
-    for (int k = 0; k < kOverhangPoints; ++k) {
-      const double z = 1 - (2 * k + 1.0) / kOverhangPoints, r = std::sqrt(1 - z * z);
-      const Point x =
-          ball.centre + ball.radius * Point(r * steady::cos(k * turn), r * steady::sin(k * turn), z);
-      const auto holds = [&](const Ball& other) { return &other != &ball && other.distance(x) < 0; };
-      if (std::any_of(balls.begin(), balls.end(), holds)) continue;
-      const double out = container.closest(x, std::numeric_limits<double>::infinity()).distance;
-      sums[i] += area * out;
-      areas[i] += area;
-      most[i] = std::max(most[i], out);
-    }
-  });
-  double sum = 0, area = 0;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    sum += sums[i];
-    area += areas[i];
-    covering.overhang_max = std::max(covering.overhang_max, container.side() * most[i]);
-  }
-  covering.overhang_mean = area > 0 ? container.side() * sum / area : 0;
-}
-
 }  // namespace
 
 Covering coverSolid(const Solid& solid, const Packing& packing, const CoverOptions& options,
@@ -245,9 +213,7 @@ Covering coverSolid(const Solid& solid, const Packing& packing, const CoverOptio
     radius = std::nextafter(radius, std::numeric_limits<float>::infinity());
   }
   report(0.9);
-  arena.execute([&] { addOverhang(container, balls, covering); });
-  covering.solid = solid.massProperties();
-  covering.solid.centre_of_mass = covering.solid.centre_of_mass - covering.origin;
+  arena.execute([&] { measureUnion(container, balls, covering); });
   covering.provenance = packing.provenance;
   covering.provenance.options += " --cover";
   report(1);

@@ -26,6 +26,9 @@ class Voxels {
   /// Takes about `wanted` points inside; fewer if the solid is thin. Runs in the current TBB arena.
   Voxels(const Container& container, double volume, double wanted);
 
+  /// Returns the points inside, in two halves.
+  const std::array<std::vector<Eigen::Vector3f>, 2>& points() const { return points_; }
+
   struct Shared {
     double fraction = 0;  ///< of the solid's volume
     double error = 0;     ///< standard error of it: half of the difference of two halves of the points
