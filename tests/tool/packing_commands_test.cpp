@@ -292,6 +292,33 @@ TEST_F(PackingCommands, CoversASolidAndSaysHowFarSpheresReachOut) {
   refuse("pack gear --cover -o gear.cbor", 2, {".cbor", ".xyzr"});
 }
 
+TEST_F(PackingCommands, MakesAClumpAndSaysHowNearItComes) {
+  writeFile(path("tetra.obj"), kTetrahedron);
+  const auto summary = json("pack tetra.obj --clump --spheres 12");
+  EXPECT_EQ(summary["spheres"], 12);
+  EXPECT_GT(summary["inside"].get<double>(), 0.8);
+  EXPECT_LT(summary["outside"].get<double>(), 0.2);
+  const auto written = nlohmann::json::parse(readFile(path("tetra.json")));
+  EXPECT_EQ(written["format"], "innersphere-clump");
+  EXPECT_EQ(written["spheres"].size(), 12u);
+  EXPECT_EQ(written["inside"], summary["inside"]);
+  EXPECT_EQ(written["union"]["volume"], summary["union_volume"]);
+  refuse("info tetra.json", 3, {"clump", "overlap"});
+  refuse("check tetra.json", 3, {"clump", "overlap"});
+  EXPECT_LT(
+      json("pack tetra.obj --clump --spheres 12 --outside-weight 10 -o in.xyzr")["outside"].get<double>(),
+      summary["outside"].get<double>() / 2);
+  EXPECT_EQ(json("pack box --clump -o box.ply")["spheres"], 64);
+
+  refuse("pack gear --clump --spheres 0", 2, {"1 to 1000 spheres"});
+  refuse("pack gear --clump --cover", 2, {"--cover", "--clump"});
+  refuse("pack gear --clump --density 0.5", 2, {"--density"});
+  refuse("pack gear --clump -o gear.cbor", 2, {"clump", ".cbor", ".xyzr"});
+  refuse("pack gear --outside-weight 2", 2, {"--clump"});
+  writeFile(path("open.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  refuse("pack open.obj --clump", 3, {"open edges"});
+}
+
 TEST_F(PackingCommands, InterruptCancelsAndLeavesNothing) {
   const Outcome outcome =
       shell("\"$TOOL\" pack gear --spheres 5000000 -o gear.cbor & sleep 1; kill -INT $!; wait $!");
