@@ -32,6 +32,10 @@ constexpr double kLeastCells = 100000;
 constexpr double kPlacesPerSphere = 16;
 constexpr double kLeastPlaces = 1000;
 
+// Of places where the union wins at least this part of the most, that counts which is farthest from other
+// spheres: they are to be all over a solid that is as thick everywhere.
+constexpr double kAlike = 0.9;
+
 // The most rounds in which spheres move. They end when one wins less than this part of the solid.
 constexpr int kRounds = 50;
 constexpr double kLeastWin = 1e-4;
@@ -53,16 +57,22 @@ class ClumpSearch {
   void place(std::size_t count) {
     std::vector<Ball> places =
         lattice_.innerBalls(std::max(kPlacesPerSphere * static_cast<double>(count), kLeastPlaces));
-    std::vector<double> gains(places.size(), 0);
+    std::vector<double> gains(places.size(), 0), gaps(places.size(), 2);  // wider than the unit cube
     while (balls_.size() < count) {
       report_(static_cast<double>(balls_.size()) / static_cast<double>(2 * count));
       tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) {
         const Ball& last = balls_.empty() ? places[k] : balls_.back();
-        if (last.distance(places[k].centre) < places[k].radius) gains[k] = lattice_.gain(places[k]);
+        const double gap = last.distance(places[k].centre);
+        if (gap < places[k].radius) gains[k] = lattice_.gain(places[k]);
+        if (!balls_.empty()) gaps[k] = std::min(gaps[k], gap);
       });
-      const auto most = std::max_element(gains.begin(), gains.end());
-      if (most == gains.end()) return;
-      Ball ball = places[static_cast<std::size_t>(most - gains.begin())];
+      const double enough = kAlike * *std::max_element(gains.begin(), gains.end());
+      std::size_t best = 0;
+      double gap = -std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        if (gains[k] >= enough && gaps[k] > gap) gap = gaps[k], best = k;
+      }
+      Ball ball = places[best];
       if (!(fit(ball, kFirstStep * ball.radius) > 0)) return;
       lattice_.add(ball);
       balls_.push_back(ball);
