@@ -289,7 +289,28 @@ def test_bad_output(folder, inside, box, tmp_path):
     assert (tmp_path / "a.xml").read_text().count("<geom ") == 10
 
 
+def test_clumps_overlap_and_come_near_to_the_solid(box, tmp_path):
+    balls, overhang = robots.spheres_of(box[:24], clump=True)
+    points = np.random.default_rng(2).uniform(-0.5, [1.5, 2.5, 3.5], (100000, 3))
+    held = (np.linalg.norm(points[:, None] - balls[None, :, :3], axis=2) < balls[:, 3]).any(axis=1)
+    out = np.linalg.norm(points - np.clip(points, 0, [1, 2, 3]), axis=1)
+    inside = out == 0
+    assert (held & inside).sum() > 0.88 * inside.sum() and (held & ~inside).sum() < 0.08 * inside.sum()
+    assert 0 < out[held].max() < 1.02 * overhang
+    careful = robots.spheres_of(box[:24], clump=True, outside_weight=20)
+    assert careful.overhang < overhang / 2
+    robots.write_dem_engine(tmp_path / "box.csv", box[:24], clump=True)
+    read = np.loadtxt(tmp_path / "box.csv", delimiter=",", skiprows=1)
+    np.testing.assert_allclose(sorted(read[:, 3]), sorted(balls[:, 3]), rtol=1e-7)
+    with pytest.raises(innersphere.InvalidArgumentError, match="one of them"):
+        robots.spheres_of(box, cover=True, clump=True)
+    with pytest.raises(innersphere.InvalidArgumentError, match="weight"):
+        robots.spheres_of(box[:4], clump=True, outside_weight=0)
+
+
 def test_covering_needs_a_surface(ball):
     with pytest.raises(innersphere.EmptyInputError, match="surface"):
         robots.spheres_of(ball, cover=True)
+    with pytest.raises(innersphere.EmptyInputError, match="surface"):
+        robots.spheres_of(ball, clump=True)
     assert robots.spheres_of(ball).spheres.tolist() == [[0, 0, 0, 1]]

@@ -28,4 +28,9 @@ struct ClumpOptions {
 /// no volume), not_finite (the solid's distances), cancelled.
 Covering clumpSolid(const Solid& solid, const ClumpOptions& options = {}, const Progress& progress = {});
 
+/// Does the same for the solid that the packing's own surface bounds, as coverSurface() does. Throws Error
+/// also: empty_input (the packing has no surface).
+Covering clumpSurface(const Packing& packing, const ClumpOptions& options = {},
+                      const Progress& progress = {});
+
 }  // namespace innersphere

@@ -14,6 +14,7 @@
 #include "innersphere/error.hpp"
 #include "packer/container.hpp"
 #include "packer/pattern_search.hpp"
+#include "packer/surface_solid.hpp"
 #include "packer/union_lattice.hpp"
 #include "packer/union_measures.hpp"
 
@@ -185,6 +186,10 @@ Covering clumpSolid(const Solid& solid, const ClumpOptions& options, const Progr
   clump.provenance = {solid.name(), solid.hash(), commandLine(options), INNERSPHERE_VERSION};
   report(1);
   return clump;
+}
+
+Covering clumpSurface(const Packing& packing, const ClumpOptions& options, const Progress& progress) {
+  return clumpSolid(*solidOf(packing), options, progress);
 }
 
 }  // namespace innersphere

@@ -11,11 +11,11 @@
 
 #include "common/bounds.hpp"
 #include "innersphere/error.hpp"
-#include "innersphere/mesh.hpp"
 #include "packer/container.hpp"
 #include "packer/near_balls.hpp"
 #include "packer/pattern_search.hpp"
 #include "packer/surface_samples.hpp"
+#include "packer/surface_solid.hpp"
 #include "packer/union_measures.hpp"
 
 namespace innersphere {
@@ -221,16 +221,7 @@ Covering coverSolid(const Solid& solid, const Packing& packing, const CoverOptio
 }
 
 Covering coverSurface(const Packing& packing, const CoverOptions& options, const Progress& progress) {
-  if (packing.surface.triangles.empty())
-    throw Error(ErrorCode::empty_input, "the packing has no surface that could be covered");
-  Mesh mesh;
-  for (const auto& v : packing.surface.vertices)
-    mesh.vertices.push_back(packing.origin + Vec3d{v[0], v[1], v[2]});
-  mesh.triangles = packing.surface.triangles;
-  MeshOptions repair;
-  repair.repair = true;  // single precision may have welded vertices
-  return coverSolid(*makeSolid(std::move(mesh), packing.provenance.source, repair), packing, options,
-                    progress);
+  return coverSolid(*solidOf(packing), packing, options, progress);
 }
 
 }  // namespace innersphere

@@ -255,11 +255,12 @@ def write_mjcf(
     name: str = "solid",
     density: float = 1000.0,
     cover: bool = False,
+    clump: bool = False,
     overwrite: bool = False,
 ) -> None:
     """Writes a solid for MuJoCo: a free body with spheres, and the mass properties of the solid, not of these.
 
-    density: [kg/m^3]. cover: as in spheres_of(). The body's frame is that of the solid.
+    density: [kg/m^3]. cover, clump: as in spheres_of(). The body's frame is that of the solid.
     """
     _check_density(density)
     root = ET.Element("mujoco", model=name)
@@ -273,7 +274,7 @@ def write_mjcf(
         mass=_words([density * packing.volume]),
         fullinertia=_words([i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]]),
     )
-    for ball in spheres_of(packing, cover=cover).spheres:
+    for ball in spheres_of(packing, cover=cover, clump=clump).spheres:
         ET.SubElement(body, "geom", type="sphere", pos=_words(ball[:3]), size=_words(ball[3:]))
     _write(path, _to_text(root), overwrite)
 
@@ -289,11 +290,12 @@ def write_dem_engine(
     *,
     density: float = 1000.0,
     cover: bool = False,
+    clump: bool = False,
     overwrite: bool = False,
 ) -> tuple[float, list[float]]:
     """Writes a clump for DEM-Engine (CSV), in the principal frame of the solid: its centre of mass and axes of inertia.
 
-    density: [kg/m^3]. cover: as in spheres_of().
+    density: [kg/m^3]. cover, clump: as in spheres_of().
 
     Returns mass [kg] and moments of inertia [kg m^2] of the solid: LoadClumpType(mass, moments, path, material). They
     stand in the file, too.
@@ -302,7 +304,7 @@ def write_dem_engine(
     moments, axes = np.linalg.eigh(density * packing.inertia)
     if np.linalg.det(axes) < 0:
         axes[:, 0] *= -1
-    found = spheres_of(packing, cover=cover)
+    found = spheres_of(packing, cover=cover, clump=clump)
     balls = found.spheres.copy()
     balls[:, :3] = (balls[:, :3] - packing.origin - packing.center_of_mass) @ axes
     mass = density * packing.volume
@@ -318,17 +320,18 @@ def write_liggghts(
     *,
     density: float = 1000.0,
     cover: bool = False,
+    clump: bool = False,
     overwrite: bool = False,
 ) -> str:
     """Writes the spheres of a particle for LIGGGHTS, about the centre of mass of the solid, along its axes.
 
-    density: [kg/m^3]. cover: as in spheres_of().
+    density: [kg/m^3]. cover, clump: as in spheres_of().
 
     Returns the words of `fix particletemplate/multisphere` that belong to it, with mass and inertia of the solid. They
     stand in the file as a comment, too.
     """
     _check_density(density)
-    balls = spheres_of(packing, cover=cover).spheres.copy()
+    balls = spheres_of(packing, cover=cover, clump=clump).spheres.copy()
     balls[:, :3] -= packing.origin + packing.center_of_mass
     i = density * packing.inertia
     words = (

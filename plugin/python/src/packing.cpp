@@ -14,6 +14,7 @@
 
 #include "bindings.hpp"
 #include "innersphere/check.hpp"
+#include "innersphere/clump_solid.hpp"
 #include "innersphere/cover_solid.hpp"
 #include "innersphere/mesh.hpp"
 #include "innersphere/pack_mesh.hpp"
@@ -160,27 +161,48 @@ nb::object copyOf(const T& numbers, std::initializer_list<std::size_t> shape) {
   return nb::cast(nb::ndarray<nb::numpy, double>(data, shape, owner));
 }
 
-/// Spheres that cover the solid, in its own coordinates (n, 4), and their largest overhang.
-nb::tuple coverPacking(const SharedPacking& self, double resolution) {
-  Covering covering;
-  {
-    const nb::gil_scoped_release release;
-    Packing first;
-    first.origin = self.packing().origin;
-    first.spheres.assign(self.packing().spheres.begin(), self.packing().spheres.begin() + self.count);
-    first.order = self.packing().order;
-    first.surface = self.packing().surface;
-    first.provenance = self.packing().provenance;
-    CoverOptions options;
-    options.resolution = resolution;
-    covering = coverSurface(first, options);
-  }
+/// What is needed of a packing to cover its solid.
+Packing spheresAndSurface(const SharedPacking& self) {
+  Packing first;
+  first.origin = self.packing().origin;
+  first.spheres.assign(self.packing().spheres.begin(), self.packing().spheres.begin() + self.count);
+  first.order = self.packing().order;
+  first.surface = self.packing().surface;
+  first.provenance = self.packing().provenance;
+  return first;
+}
+
+/// Spheres in the solid's own coordinates (n, 4), and their largest overhang.
+nb::tuple spheresOf(const Covering& covering) {
   std::vector<double> numbers;
   for (const Sphere& s : covering.spheres) {
     for (int k = 0; k < 3; ++k) numbers.push_back(covering.origin[k] + (&s.x)[k]);
     numbers.push_back(s.radius);
   }
   return nb::make_tuple(copyOf(numbers, {covering.spheres.size(), 4}), covering.overhang_max);
+}
+
+nb::tuple coverPacking(const SharedPacking& self, double resolution) {
+  Covering covering;
+  {
+    const nb::gil_scoped_release release;
+    CoverOptions options;
+    options.resolution = resolution;
+    covering = coverSurface(spheresAndSurface(self), options);
+  }
+  return spheresOf(covering);
+}
+
+nb::tuple clumpOfPacking(const SharedPacking& self, double outside_weight) {
+  Covering clump;
+  {
+    const nb::gil_scoped_release release;
+    ClumpOptions options;
+    options.spheres = self.count;
+    options.outside_weight = outside_weight;
+    clump = clumpSurface(spheresAndSurface(self), options);
+  }
+  return spheresOf(clump);
 }
 
 SharedPacking readShared(const std::filesystem::path& path) {
@@ -443,6 +465,7 @@ bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for 
              "order"_a, "delta"_a, "overlap_errors"_a, "threads"_a, "repair"_a, "cache"_a,
              "progress"_a.none());
   module.def("cover", &coverPacking, "packing"_a, "resolution"_a);
+  module.def("clump", &clumpOfPacking, "packing"_a, "outside_weight"_a);
   module.def("read", &readShared, "path"_a);
   const PackOptions defaults;
   module.attr("pack_defaults") = [&] {
