@@ -45,7 +45,7 @@ constexpr double kLeastWin = 1e-4;
 // last ones relative to a cell.
 constexpr double kFirstStep = 0.25;
 constexpr double kNextStep = 0.1;
-constexpr double kFinestStep = 0.1;
+constexpr double kFinestStep = 0.02;
 
 /// Seeks the balls of a clump.
 class ClumpSearch {
