@@ -25,7 +25,7 @@ struct ClumpOptions {
 /// from it least: a clump, or multi-sphere particle. Spheres are placed one after the other, each where the
 /// union wins most by it; then each in turn moves and changes its size as long as the union wins. Walls need
 /// about as many spheres as there are balls of their thickness in them. Throws Error: bad_argument (options,
-/// no volume), not_finite (the solid's distances), cancelled.
+/// no volume), no_sphere_fits (a sheet), not_finite (the solid's distances), cancelled.
 Covering clumpSolid(const Solid& solid, const ClumpOptions& options = {}, const Progress& progress = {});
 
 /// Does the same for the solid that the packing's own surface bounds, as coverSurface() does. Throws Error

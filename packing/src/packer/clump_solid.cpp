@@ -59,7 +59,7 @@ class ClumpSearch {
     std::vector<Ball> places =
         lattice_.innerBalls(std::max(kPlacesPerSphere * static_cast<double>(count), kLeastPlaces));
     std::vector<double> gains(places.size(), 0), gaps(places.size(), 2);  // wider than the unit cube
-    while (balls_.size() < count) {
+    while (balls_.size() < count && !places.empty()) {
       report_(static_cast<double>(balls_.size()) / static_cast<double>(2 * count));
       tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) {
         const Ball& last = balls_.empty() ? places[k] : balls_.back();
@@ -177,6 +177,11 @@ Covering clumpSolid(const Solid& solid, const ClumpOptions& options, const Progr
     search.place(options.spheres);
     search.improve(kLeastWin * cells);
     std::vector<Ball> balls = search.balls();
+    if (balls.empty()) {
+      throw Error(ErrorCode::no_sphere_fits,
+                  "'" + solid.name() +
+                      "' is too thin for a clump: no sphere of it would be more inside than outside");
+    }
     for (Ball& ball : balls) {
       ball = container.rounded(ball);
       clump.spheres.push_back(container.toSphere(ball));

@@ -120,6 +120,15 @@ TEST(ClumpSolid, MoreSpheresThanNeededDoNoHarm) {
   EXPECT_LT(clump.outside, 0.005);
 }
 
+TEST(ClumpSolid, ASheetHasNone) {
+  try {
+    clumpOf(*makeBox({1, 1, 1e-6}), 8);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::no_sphere_fits);
+  }
+}
+
 /// How far a point is outside of the box of this size around the origin.
 double outside(const Vec3d& size, const Vec3d& p) {
   Vec3d out;
