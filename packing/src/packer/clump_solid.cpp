@@ -29,6 +29,9 @@ constexpr double kMostWeight = 100;
 constexpr double kCellsPerSphere = 250;
 constexpr double kLeastCells = 100000;
 
+// Cells across a wall.
+constexpr double kCellsAcross = 4;
+
 // Places where a sphere may start: for each sphere, and in all at least.
 constexpr double kPlacesPerSphere = 16;
 constexpr double kLeastPlaces = 1000;
@@ -132,6 +135,21 @@ class ClumpSearch {
   std::vector<Ball> balls_;
 };
 
+/// Returns how large cells are to be, in units of the cube.
+double spacingFor(const Container& container, double volume, std::size_t spheres) {
+  const double cells = std::max(kCellsPerSphere * static_cast<double>(spheres), kLeastCells);
+  const Mesh mesh = container.solid().surface();
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3d& a = mesh.vertices[t[0]];
+    area += norm(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a)) / 2;
+  }
+  const double even = std::cbrt(volume / cells);
+  if (!(area > 0)) return even;
+  const double thickness = 2 * volume * container.side() * container.side() / area;
+  return std::min(even, thickness / kCellsAcross);
+}
+
 void checkOptions(const ClumpOptions& options) {
   const auto require = [](bool holds, const std::string& text) {
     if (!holds) throw Error(ErrorCode::bad_argument, text);
@@ -165,17 +183,16 @@ Covering clumpSolid(const Solid& solid, const ClumpOptions& options, const Progr
   const double volume = solid.massProperties().volume / std::pow(container.side(), 3);
   if (!(volume > 0))
     throw Error(ErrorCode::bad_argument, "the solid's mass properties must have a volume greater than 0");
-  const double cells = std::max(kCellsPerSphere * static_cast<double>(options.spheres), kLeastCells);
 
   Covering clump;
   clump.kind = CoveringKind::clump;
   clump.origin = container.origin();
   tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
   arena.execute([&] {
-    UnionLattice lattice(container, volume, cells, options.outside_weight);
+    UnionLattice lattice(container, spacingFor(container, volume, options.spheres), options.outside_weight);
     ClumpSearch search(lattice, report);
     search.place(options.spheres);
-    search.improve(kLeastWin * cells);
+    search.improve(kLeastWin * volume / std::pow(lattice.spacing(), 3));
     std::vector<Ball> balls = search.balls();
     if (balls.empty()) {
       throw Error(ErrorCode::no_sphere_fits,

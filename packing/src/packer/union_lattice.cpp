@@ -14,8 +14,8 @@ namespace {
 // The weight of a cell that is wholly inside. Weights are whole numbers, so that their sums are exact.
 constexpr std::int32_t kWholeCell = 64;
 
-// Cells along an edge of the unit cube, at most: 170 MB for a solid that fills it.
-constexpr double kFinestLattice = 256;
+// Cells in the solid's box, at most: 80 MB.
+constexpr double kMostInBox = 1 << 23;
 
 // Cells around the solid. Beyond them a ball pays for the outside even where others hold it.
 constexpr int kCellsAround = 4;
@@ -23,11 +23,11 @@ constexpr std::ptrdiff_t kBeyond = -1;
 
 }  // namespace
 
-UnionLattice::UnionLattice(const Container& container, double volume, double wanted, double outside_weight)
+UnionLattice::UnionLattice(const Container& container, double spacing, double outside_weight)
     : container_(container), outside_(static_cast<std::int32_t>(std::lround(-kWholeCell * outside_weight))) {
-  spacing_ = std::max(std::cbrt(volume / wanted), 1 / kFinestLattice);
   const Bounds box = container.solid().bounds();
   const Point low = container.fromWorld(box.min), high = container.fromWorld(box.max);
+  spacing_ = std::max(spacing, std::cbrt((high - low).prod() / kMostInBox));
   for (int k = 0; k < 3; ++k) {
     size_[k] = static_cast<Index>(std::ceil((high[k] - low[k]) / spacing_)) + 2 * kCellsAround;
     origin_[k] = (low[k] + high[k] - static_cast<double>(size_[k]) * spacing_) / 2;

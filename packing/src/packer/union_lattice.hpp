@@ -14,9 +14,9 @@ namespace innersphere {
 /// a root and two look-ups for each row that meets the ball.
 class UnionLattice {
  public:
-  /// Takes about `wanted` cells inside; fewer if the solid is thin. Volume outside of the solid counts
+  /// Takes cells of this size, larger ones where there would be too many. Volume outside of the solid counts
   /// `outside_weight` times against volume inside. Runs in the current TBB arena.
-  UnionLattice(const Container& container, double volume, double wanted, double outside_weight);
+  UnionLattice(const Container& container, double spacing, double outside_weight);
 
   double spacing() const { return spacing_; }
 

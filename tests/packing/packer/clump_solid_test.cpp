@@ -120,6 +120,12 @@ TEST(ClumpSolid, MoreSpheresThanNeededDoNoHarm) {
   EXPECT_LT(clump.outside, 0.005);
 }
 
+// A cube around it has few cells across the rod. 64 balls of its thickness fill a third of it.
+TEST(ClumpSolid, AThinRodIsFilled) {
+  const Covering clump = clumpOf(*makeBox({1, 0.01, 0.01}), 64);
+  EXPECT_GT(clump.inside - clump.outside, 64 * kPi / 6 * 0.01);
+}
+
 TEST(ClumpSolid, ASheetHasNone) {
   try {
     clumpOf(*makeBox({1, 1, 1e-6}), 8);
