@@ -14,8 +14,8 @@ namespace {
 // The weight of a cell that is wholly inside. Weights are whole numbers, so that their sums are exact.
 constexpr std::int32_t kWholeCell = 64;
 
-// Cells in the solid's box, at most: 80 MB.
-constexpr double kMostInBox = 1 << 23;
+// Cells, at most: 140 MB.
+constexpr double kMostCellsInAll = 1 << 24;
 
 // Cells around the solid. Beyond them a ball pays for the outside even where others hold it.
 constexpr int kCellsAround = 4;
@@ -27,7 +27,11 @@ UnionLattice::UnionLattice(const Container& container, double spacing, double ou
     : container_(container), outside_(static_cast<std::int32_t>(std::lround(-kWholeCell * outside_weight))) {
   const Bounds box = container.solid().bounds();
   const Point low = container.fromWorld(box.min), high = container.fromWorld(box.max);
-  spacing_ = std::max(spacing, std::cbrt((high - low).prod() / kMostInBox));
+  for (spacing_ = spacing;; spacing_ *= 1.25) {
+    double cells = 1;
+    for (int k = 0; k < 3; ++k) cells *= std::ceil((high[k] - low[k]) / spacing_) + 2 * kCellsAround;
+    if (cells <= kMostCellsInAll) break;
+  }
   for (int k = 0; k < 3; ++k) {
     size_[k] = static_cast<Index>(std::ceil((high[k] - low[k]) / spacing_)) + 2 * kCellsAround;
     origin_[k] = (low[k] + high[k] - static_cast<double>(size_[k]) * spacing_) / 2;
