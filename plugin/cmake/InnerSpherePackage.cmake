@@ -15,5 +15,5 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what the tool links
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libbullet-dev, libtbb-dev")  # what programs with the plug-in need to be built
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libassimp-dev, libembree-dev")  # and those that pack
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libassimp-dev")  # and those that pack
 include(CPack)

@@ -5,8 +5,7 @@
 //
 // and the same with scene_tests_float64. Promised where the arithmetic is the same: on the CPU, x86-64 with
 // FMA (the C library's sines differ without), Bullet 3.24, contraction off; and for solids given by a
-// formula, as meshes are measured by an Embree that differs from system to system. The other scenes are held
-// to their truths, with tolerance.
+// formula. The other scenes are held to their truths, with tolerance.
 #include <gtest/gtest.h>
 
 #include <cstdint>

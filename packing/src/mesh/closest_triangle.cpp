@@ -1,129 +1,204 @@
 #include "mesh/closest_triangle.hpp"
 
-#include <stdexcept>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
 
 namespace innersphere {
 namespace {
 
-// Covers the rounding of a query point to float and of Embree's box distances, both relative to unit
-// diagonal.
-constexpr double kFloatSlack = 1e-6;
+// Covers the rounding to float of a query point, of boxes and of heights above planes, all relative to unit
+// diagonal: a height has eight roundings of up to sqrt(3), and two heights make a distance.
+constexpr double kFloatSlack = 4e-6;
 
-float roundedDown(double x) {
-  return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
-}
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 float roundedUp(double x) {
-  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+  return std::nextafter(static_cast<float>(x), kInfinity);
 }
 
-struct Query {
-  const std::vector<Triangle>* triangles;
-  Vec3d p;
-  double to_unit;
-  double slack;
-  double best2 = std::numeric_limits<double>::infinity();
-  unsigned best = 0;
-  Vec3d point{};
-};
-
-float cullRadius(double distance_unit, double slack) {
-  return roundedUp(distance_unit * (1 + kFloatSlack) + slack);
-}
-
-bool visitTriangle(RTCPointQueryFunctionArguments* args) {
-  Query& query = *static_cast<Query*>(args->userPtr);
-  Vec3d point;
-  const double d2 = (*query.triangles)[args->primID].closest(query.p, point);
-  if (d2 > query.best2 || (d2 == query.best2 && args->primID > query.best)) return false;
-  query.best2 = d2;
-  query.best = args->primID;
-  query.point = point;
-  const float radius = cullRadius(std::sqrt(d2) * query.to_unit, query.slack);
-  if (!(radius < args->query->radius)) return false;
-  args->query->radius = radius;
-  return true;
+Vec3d unit(const Vec3d& v) {
+  return (1 / norm(v)) * v;
 }
 
 }  // namespace
 
-ClosestTriangle::ClosestTriangle(const Mesh& mesh, const char* embree) : device_(rtcNewDevice(embree)) {
-  Bounds box = emptyBounds();
-  triangles_.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    for (std::uint32_t v : t) extend(box, mesh.vertices[v]);
-    triangles_.emplace_back(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+/// Sorts the triangles and builds the tree.
+class ClosestTriangle::Builder {
+ public:
+  Builder(ClosestTriangle& tree, const Mesh& mesh) : tree_(tree), order_(tree.number_) {
+    for (const auto& t : mesh.triangles) {
+      Bounds& box = boxes_.emplace_back(emptyBounds());
+      for (const std::uint32_t v : t) extend(box, tree.to_unit_ * (mesh.vertices[v] - tree.centre_));
+    }
+    order_.resize(boxes_.size());
+    std::iota(order_.begin(), order_.end(), 0u);
   }
+
+  /// Appends the tree of triangles [first, end) and returns its root: a node, or a leaf.
+  std::uint32_t build(std::uint32_t first, std::uint32_t end) {
+    if (end - first <= kWidth) return first / kWidth | kLeaf;
+    const std::uint32_t half = halve(first, end);
+    const std::uint32_t cuts[] = {first, halve(first, half), half, halve(half, end), end};
+    Node node;
+    for (std::uint32_t k = 0; k < kWidth; ++k) {
+      if (cuts[k] == cuts[k + 1]) continue;
+      Bounds box = emptyBounds();
+      for (std::uint32_t i = cuts[k]; i < cuts[k + 1]; ++i) {
+        extend(box, boxes_[order_[i]].min);
+        extend(box, boxes_[order_[i]].max);
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        node.low[axis][node.count] = -roundedUp(-box.min[axis]);
+        node.high[axis][node.count] = roundedUp(box.max[axis]);
+      }
+      node.children[node.count++] = build(cuts[k], cuts[k + 1]);
+    }
+    tree_.nodes_.push_back(node);
+    return static_cast<std::uint32_t>(tree_.nodes_.size() - 1);
+  }
+
+ private:
+  double middle(std::uint32_t triangle, int axis) const {
+    return boxes_[triangle].min[axis] + boxes_[triangle].max[axis];
+  }
+
+  /// Sorts the triangles into two halves, across the axis along which they are spread most. The first one
+  /// fills whole leaves. Returns where the second one begins: at `end` if one leaf is enough.
+  std::uint32_t halve(std::uint32_t first, std::uint32_t end) {
+    if (end - first <= kWidth) return end;
+    Bounds middles = emptyBounds();
+    for (std::uint32_t i = first; i < end; ++i) extend(middles, centre(boxes_[order_[i]]));
+    const Vec3d size = middles.max - middles.min;
+    const int axis = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+    const std::uint32_t half = first + ((end - first) / 2 + kWidth - 1) / kWidth * kWidth;
+    std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + end,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                       const double of_a = middle(a, axis), of_b = middle(b, axis);
+                       return of_a != of_b ? of_a < of_b : a < b;
+                     });
+    return half;
+  }
+
+  ClosestTriangle& tree_;
+  std::vector<std::uint32_t>& order_;
+  std::vector<Bounds> boxes_;
+};
+
+void ClosestTriangle::Planes::set(std::uint32_t lane, const Vec3d& unit_normal, const Vec3d& place) {
+  for (int axis = 0; axis < 3; ++axis) normal[axis][lane] = static_cast<float>(unit_normal[axis]);
+  offset[lane] = static_cast<float>(dot(unit_normal, place));
+}
+
+ClosestTriangle::ClosestTriangle(const Mesh& mesh) {
+  const Bounds box = boundsOf(mesh);
   centre_ = centre(box);
   to_unit_ = 1 / diagonal(box);
-
-  if (!device_) throw std::runtime_error("Embree could not be started");
-  scene_.reset(rtcNewScene(device_.get()));
-  struct Source {
-    const ClosestTriangle* tree;
-    const Mesh* mesh;
-  } source{this, &mesh};
-  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(triangles_.size()));
-  rtcSetGeometryUserData(geometry, &source);
-  rtcSetGeometryBoundsFunction(
-      geometry,
-      [](const RTCBoundsFunctionArguments* args) {
-        const Source& source = *static_cast<const Source*>(args->geometryUserPtr);
-        const Bounds box = source.tree->unitBox(*source.mesh, args->primID);
-        RTCBounds& out = *args->bounds_o;
-        out.lower_x = roundedDown(box.min[0]);
-        out.lower_y = roundedDown(box.min[1]);
-        out.lower_z = roundedDown(box.min[2]);
-        out.upper_x = roundedUp(box.max[0]);
-        out.upper_y = roundedUp(box.max[1]);
-        out.upper_z = roundedUp(box.max[2]);
-      },
-      nullptr);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene_.get(), geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene_.get());
-  if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) {
-    throw std::runtime_error("Embree could not build its tree over " + std::to_string(triangles_.size()) +
-                             " triangles; is there enough memory?");
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  Builder(*this, mesh).build(0, count);
+  triangles_.reserve(count);
+  leaves_.resize((count + kWidth - 1) / kWidth);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Vec3d corners[3];
+    for (int k = 0; k < 3; ++k) corners[k] = mesh.vertices[mesh.triangles[number_[i]][k]];
+    const Triangle& triangle = triangles_.emplace_back(corners[0], corners[1], corners[2]);
+    if (!triangle.cornersIfNotThin()) continue;
+    for (Vec3d& corner : corners) corner = to_unit_ * (corner - centre_);
+    Leaf& leaf = leaves_[i / kWidth];
+    const Vec3d face = unit(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    leaf.faces.set(i % kWidth, face, corners[0]);
+    for (int k = 0; k < 3; ++k)
+      leaf.edges[k].set(i % kWidth, unit(cross(face, corners[(k + 1) % 3] - corners[k])), corners[k]);
   }
 }
 
-Bounds ClosestTriangle::unitBox(const Mesh& mesh, std::size_t triangle) const {
-  Bounds box = emptyBounds();
-  for (std::uint32_t v : mesh.triangles[triangle]) extend(box, to_unit_ * (mesh.vertices[v] - centre_));
-  return box;
-}
-
-ClosestTriangle::Hit ClosestTriangle::find(const Vec3d& p, double cutoff) const {
+ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
   const Vec3d q = to_unit_ * (p - centre_);
-  const double reach = std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])});
-  Query query{&triangles_, p, to_unit_, kFloatSlack * (1 + reach)};
+  const double slack = kFloatSlack * (1 + std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])}));
+  const FourFloats zero{};
+  const FourFloats at[3] = {zero + static_cast<float>(q[0]), zero + static_cast<float>(q[1]),
+                            zero + static_cast<float>(q[2])};
+  float limit;  // of squared distances
+  const auto limitTo = [&](double distance) {
+    const double reach = distance * to_unit_ * (1 + kFloatSlack) + slack;
+    limit = roundedUp(reach * reach);
+  };
+  limitTo(cutoff);
+  // A bit for each of the first ones that is not beyond the limit.
+  const auto within = [&](FourFloats squared, std::uint32_t size) {
+    return ~signBits(squared > limit) & ((1u << size) - 1);
+  };
 
-  RTCPointQuery ball;
-  ball.x = static_cast<float>(q[0]);
-  ball.y = static_cast<float>(q[1]);
-  ball.z = static_cast<float>(q[2]);
-  ball.time = 0;
-  ball.radius = cullRadius(cutoff * to_unit_, query.slack);
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(scene_.get(), &ball, &context, visitTriangle, &query);
+  double best2 = std::numeric_limits<double>::infinity();
+  std::uint32_t best = 0;
+  Vec3d nearest{};
+  const auto look = [&](std::uint32_t i) {
+    Vec3d point;
+    const double d2 = triangles_[i].closest(p, point);
+    if (d2 > best2 || (d2 == best2 && number_[i] > number_[best])) return;
+    best2 = d2;
+    best = i;
+    nearest = point;
+    limitTo(std::sqrt(d2));
+  };
 
-  return {query.best2, query.best, query.point};
+  struct Entry {
+    std::uint32_t child;
+    float squared;
+  };
+  // Children are of equal size, so the tree has less than 16 levels, of which each leaves up to three open.
+  std::array<Entry, 3 * 16 + 1> open;
+  std::size_t count = 0;
+  if (!leaves_.empty())
+    open[count++] = {nodes_.empty() ? kLeaf : static_cast<std::uint32_t>(nodes_.size() - 1), 0};
+  while (count > 0) {
+    const Entry entry = open[--count];
+    if (entry.squared > limit) continue;
+    if (entry.child & kLeaf) {
+      const std::uint32_t first = (entry.child & ~kLeaf) * kWidth;
+      const Leaf& leaf = leaves_[first / kWidth];
+      FourFloats beside = zero;
+      for (const Planes& edge : leaf.edges) beside = larger(beside, -edge.heights(at));
+      const FourFloats height = leaf.faces.heights(at), squared = height * height + beside * beside;
+      const auto size = std::min(kWidth, static_cast<std::uint32_t>(triangles_.size()) - first);
+      for (unsigned near = within(squared, size); near != 0; near &= within(squared, size)) {
+        // The nearest first.
+        auto k = std::countr_zero(near);
+        for (unsigned rest = near & (near - 1); rest != 0; rest &= rest - 1) {
+          if (squared[std::countr_zero(rest)] < squared[k]) k = std::countr_zero(rest);
+        }
+        look(first + static_cast<std::uint32_t>(k));
+        near &= ~(1u << k);
+      }
+      continue;
+    }
+    const Node& node = nodes_[entry.child];
+    FourFloats squared = zero;
+    for (int axis = 0; axis < 3; ++axis) {
+      const FourFloats away = larger(larger(node.low[axis] - at[axis], at[axis] - node.high[axis]), zero);
+      squared += away * away;
+    }
+    const std::size_t bottom = count;
+    for (unsigned near = within(squared, node.count); near != 0; near &= near - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(near));
+      // The nearest is on top.
+      std::size_t place = count++;
+      for (; place > bottom && open[place - 1].squared < squared[k]; --place) open[place] = open[place - 1];
+      open[place] = {node.children[k], squared[k]};
+    }
+  }
+
+  const double distance = std::sqrt(best2);
+  if (!(distance <= cutoff)) return {{std::numeric_limits<double>::infinity(), {}}};
+  return {{distance, nearest}, &triangles_[best]};
 }
 
 int ClosestTriangle::sideOf(const Vec3d& p, const Triangle& nearest) const {
   const double front = nearest.inFront(p);
   const double rounding = 1e-10 * (1 / to_unit_ + norm(p));
   return std::abs(front) <= rounding ? 0 : front > 0 ? 1 : -1;
-}
-
-ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
-  const Hit hit = find(p, cutoff);
-  const double distance = std::sqrt(hit.distance2);
-  if (!(distance <= cutoff)) return {{std::numeric_limits<double>::infinity(), {}}};
-  return {{distance, hit.point}, &triangles_[hit.triangle]};
 }
 
 }  // namespace innersphere

@@ -1,25 +1,23 @@
 // Finds the nearest point of a set of triangles.
 #pragma once
 
-#include <memory>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "innersphere/mesh.hpp"
 #include "innersphere/solid.hpp"
-#include "mesh/embree.hpp"
 #include "mesh/triangle.hpp"
+#include "surface/lanes.hpp"
 
 namespace innersphere {
 
-/// Holds Embree's tree over the triangles. Embree works in float, so the tree is built over a centred copy of
-/// unit diagonal with boxes rounded outwards, and serves only to leave out triangles that are certainly too
-/// far; distances and the choice among the rest are in double and equal brute force bit for bit (the lowest
-/// index wins a tie).
+/// Holds a tree of boxes over the triangles. It looks at a copy of unit diagonal, four boxes or triangles at
+/// a time and in float, and serves only to leave out triangles that are certainly too far; distances and the
+/// choice among the rest are in double and equal brute force bit for bit (the lowest index wins a tie).
 class ClosestTriangle {
  public:
-  /// Builds the tree. `embree` is Embree's own configuration: a test names instructions with it that it may
-  /// use. Throws std::runtime_error if Embree cannot be started or has no memory for it.
-  explicit ClosestTriangle(const Mesh& mesh, const char* embree = nullptr);
+  explicit ClosestTriangle(const Mesh& mesh);
 
   struct Nearest : ClosestPoint {
     const Triangle* triangle = nullptr;  ///< that the point lies on
@@ -32,25 +30,33 @@ class ClosestTriangle {
   int sideOf(const Vec3d& p, const Triangle& nearest) const;
 
  private:
-  struct Release {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  class Builder;
+  static constexpr std::uint32_t kWidth = 4, kLeaf = 1u << 31;
+
+  struct Node {
+    FourFloats low[3]{}, high[3]{};    ///< of the children's boxes
+    std::uint32_t children[kWidth]{};  ///< nodes, or leaves with the bit kLeaf
+    std::uint32_t count = 0;
+  };
+  /// The places x with normal . x = offset.
+  struct Planes {
+    FourFloats normal[3]{}, offset{};
+    void set(std::uint32_t lane, const Vec3d& unit_normal, const Vec3d& place);
+    FourFloats heights(const FourFloats (&x)[3]) const {
+      return normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2] - offset;
+    }
+  };
+  /// Leaf i has the triangles 4 i to 4 i + 3. Those too thin for a normal have none, and are not left out.
+  struct Leaf {
+    Planes faces, edges[3];  ///< the latter upright on the former; triangles are in front
   };
 
-  struct Hit {
-    double distance2 = std::numeric_limits<double>::infinity();
-    unsigned triangle = 0;
-    Vec3d point{};
-  };
-
-  Hit find(const Vec3d& p, double cutoff) const;
-  Bounds unitBox(const Mesh& mesh, std::size_t triangle) const;
-
-  std::vector<Triangle> triangles_;
+  std::vector<Triangle> triangles_;    ///< in the order of the tree
+  std::vector<std::uint32_t> number_;  ///< of each in the mesh
+  std::vector<Node> nodes_;            ///< the root is the last one
+  std::vector<Leaf> leaves_;
   Vec3d centre_{};
   double to_unit_ = 1;
-  std::unique_ptr<RTCDeviceTy, Release> device_;
-  std::unique_ptr<RTCSceneTy, Release> scene_;
 };
 
 }  // namespace innersphere

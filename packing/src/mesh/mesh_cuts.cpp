@@ -58,12 +58,14 @@ Cuts findCuts(const Mesh& mesh) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t i, std::uint32_t j) { return boxes[i].min[axis] < boxes[j].min[axis]; });
 
+  std::vector<Bounds> sorted;  // side by side as they are looked at
+  for (const std::uint32_t i : order) sorted.push_back(boxes[i]);
+
   Cuts cuts;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const Bounds& a = boxes[order[i]];
-    for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].min[axis] <= a.max[axis]; ++j) {
-      const Bounds& b = boxes[order[j]];
-      if (!meet(a, b)) continue;
+    const Bounds& a = sorted[i];
+    for (std::size_t j = i + 1; j < order.size() && sorted[j].min[axis] <= a.max[axis]; ++j) {
+      if (!meet(a, sorted[j])) continue;
       const Corners &s = mesh.triangles[order[i]], &t = mesh.triangles[order[j]];
       if (!hasEdgeThrough(mesh, s, t) && !hasEdgeThrough(mesh, t, s)) continue;
       if (cuts.pairs++ == 0) cuts.at = mesh.vertices[s[0]];

@@ -1,5 +1,8 @@
 #include "mesh/mesh_solid.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "common/bounds.hpp"
 #include "common/hash.hpp"
 #include "mesh/mass_properties.hpp"
@@ -9,6 +12,12 @@ namespace {
 
 // Cells along the longest side when a mesh is searched for points that it winds around more than once.
 constexpr int kOverlapCells = 64;
+
+// The points that were looked at last tell of the next one: the neighbours of a cell.
+constexpr std::size_t kKnown = 32;
+
+// More than the rounding of distances, in diagonals.
+constexpr double kRounding = 1e-12;
 
 }  // namespace
 
@@ -23,9 +32,23 @@ MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once)
   Moments moments = momentsOf(mesh_);
   if (count_once) {
     // The divergence theorem integrates the winding number; the solid counts as 1 where that exceeds 1/2.
+    // Within its distance from the surface the number around a point does not change.
+    struct Known {
+      Vec3d at;
+      double distance, winding;
+    };
+    std::array<Known, kKnown> known;
+    std::size_t count = 0;
+    const double rounding = kRounding * (diagonal(bounds_) + norm(bounds_.min));
     moments.add(integrate(bounds_, kOverlapCells, [&](const Vec3d& p, double reach, double) {
-      const double winding = std::round(winding_.windingNumber(p));
-      return Probe{(winding > 0.5 ? 1 : 0) - winding, tree_.closest(p, reach).distance};
+      const double distance = tree_.closest(p, reach).distance, clear = std::min(distance, reach);
+      const auto end = known.begin() + static_cast<std::ptrdiff_t>(std::min(count, kKnown));
+      const auto same = std::find_if(known.begin(), end, [&](const Known& other) {
+        return norm(p - other.at) < clear + other.distance - rounding;
+      });
+      const double winding = same != end ? same->winding : std::round(winding_.windingNumber(p));
+      known[count++ % kKnown] = {p, clear, winding};
+      return Probe{(winding > 0.5 ? 1 : 0) - winding, distance};
     }));
   }
   mass_ = moments.massProperties();

@@ -20,8 +20,11 @@ class BallTrees {
   /// centre of j to that of i.
   template <class Meet>
   void forMeeting(const Pose& pose, Meet&& meet) const {
+    Moved moved;
+    for (const Node& node : nodes_) moved.nodes.push_back(pose.apply(node.bounds.centre));
+    for (const Member& member : members_) moved.members.push_back(pose.apply(member.ball.centre));
     for (std::uint32_t a : roots_) {
-      for (std::uint32_t b : roots_) visit(pose, a, pose.apply(nodes_[a].bounds.centre), b, meet);
+      for (std::uint32_t b : roots_) visit(moved, a, b, meet);
     }
   }
 
@@ -38,27 +41,31 @@ class BallTrees {
     std::uint32_t index;  ///< as it was given
   };
 
+  /// Where the centres are in the copy that was moved.
+  struct Moved {
+    std::vector<Point> nodes, members;
+  };
+
   void build(std::uint32_t begin, std::uint32_t end);
 
   template <class Meet>
-  void visit(const Pose& pose, std::uint32_t moved, const Point& at, std::uint32_t other, Meet& meet) const {
-    const Node &a = nodes_[moved], &b = nodes_[other];
+  void visit(const Moved& moved, std::uint32_t mine, std::uint32_t other, Meet& meet) const {
+    const Node &a = nodes_[mine], &b = nodes_[other];
     const double reach = a.bounds.radius + b.bounds.radius;
-    if ((at - b.bounds.centre).squaredNorm() >= reach * reach) return;
+    if ((moved.nodes[mine] - b.bounds.centre).squaredNorm() >= reach * reach) return;
     if (a.second == 0 && b.second == 0) {
-      meetInLeaves(pose, a, b, meet);
+      meetInLeaves(moved, a, b, meet);
     } else if (b.second == 0 || (a.second > 0 && a.bounds.radius > b.bounds.radius)) {
-      for (std::uint32_t child : {moved + 1, a.second})
-        visit(pose, child, pose.apply(nodes_[child].bounds.centre), other, meet);
+      for (std::uint32_t child : {mine + 1, a.second}) visit(moved, child, other, meet);
     } else {
-      for (std::uint32_t child : {other + 1, b.second}) visit(pose, moved, at, child, meet);
+      for (std::uint32_t child : {other + 1, b.second}) visit(moved, mine, child, meet);
     }
   }
 
   template <class Meet>
-  void meetInLeaves(const Pose& pose, const Node& a, const Node& b, Meet& meet) const {
+  void meetInLeaves(const Moved& moved, const Node& a, const Node& b, Meet& meet) const {
     for (std::uint32_t i = a.begin; i < a.end; ++i) {
-      const Point x = pose.apply(members_[i].ball.centre);
+      const Point& x = moved.members[i];
       for (std::uint32_t j = b.begin; j < b.end; ++j) {
         const Point way = x - members_[j].ball.centre;
         const double reach = members_[i].ball.radius + members_[j].ball.radius, squared = way.squaredNorm();

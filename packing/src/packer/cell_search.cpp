@@ -187,16 +187,22 @@ bool CellSearch::flatten(double half) {
 }
 
 double CellSearch::provenBound(const Point& centre, double half) const {
-  double corners[8] = {}, behind = 0;
+  const CubeCorners corners = cornersOf(centre, half);
+  CornerValues sums = CornerValues::Zero();
+  double behind = 0;
   program_.forWeights([&](int k, double weight) {
-    const Prism* prism = cuts_[k].prism < 0 ? nullptr : &prisms_[cuts_[k].prism];
-    for (int corner = 0; corner < 8; ++corner) {
-      const Point v = centre + half * Point(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-      corners[corner] += weight * (prism ? prism->distance(v) : cuts_[k].ball.distance(v));
+    if (cuts_[k].prism < 0) {
+      const Ball& ball = cuts_[k].ball;
+      const CubeCorners way = corners.rowwise() - ball.centre.transpose().array();
+      sums +=
+          weight * ((way.col(0).square() + way.col(1).square() + way.col(2).square()).sqrt() - ball.radius);
+    } else {
+      CornerValues distances;
+      behind = std::max(behind, prisms_[cuts_[k].prism].farthestBehind(corners, distances));
+      sums += weight * distances;
     }
-    if (prism) behind = std::max(behind, prism->farthestBehind(centre, half));
   });
-  return std::max(behind, *std::max_element(corners, corners + 8)) + 4e-15;
+  return std::max(behind, sums.maxCoeff()) + 4e-15;
 }
 
 }  // namespace innersphere

@@ -52,6 +52,8 @@ class ClearanceCache {
   /// ball meets the empty ball of an entry, both are on the same side.
   int side(const Point& x, double clear) const {
     for (const Entry& entry : entries_) {
+      const double reach = std::abs(entry.distance) + clear;
+      if ((x - entry.at).squaredNorm() >= reach * reach) continue;  // most, without a root
       if (entry.clearance(x) + clear > margin_) return entry.distance > 0 ? 1 : -1;
     }
     return 0;

@@ -1,6 +1,5 @@
 #include "packer/dual_simplex.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,15 +19,11 @@ double rounded(double x, double unit) {
 }  // namespace
 
 void DualSimplex::restart(double half) {
-  half_ = half;
   unit_ = std::ldexp(1.0, std::ilogb(half));
-  rows_.clear();
-  for (int k = 0; k < 3; ++k) {
-    for (double sign : {1.0, -1.0}) {
-      Row face{Eigen::Vector4d::Zero(), half_};
-      face.normal[1 + k] = sign;
-      rows_.push_back(face);
-    }
+  rows_.resize(kFaces);
+  for (int k = 0; k < kFaces; ++k) {
+    rows_[k] = {Eigen::Vector4d::Zero(), half};
+    rows_[k].normal[1 + k / 2] = k % 2 ? -1 : 1;
   }
 }
 
@@ -57,17 +52,18 @@ void DualSimplex::add(double value, const Point& gradient) {
 }
 
 void DualSimplex::start() {
+  // Each face that the function rises to: the matrix of the normals is its own inverse, but for signs.
   const Row& first = rows_[kFaces];
-  Eigen::Matrix4d normals;
-  Eigen::Vector4d bounds;
   basis_[0] = kFaces;
-  for (int k = 0; k < 3; ++k) basis_[1 + k] = 2 * k + (first.normal[1 + k] <= 0 ? 0 : 1);
-  for (int i = 0; i < 4; ++i) {
-    normals.row(i) = rows_[basis_[i]].normal;
-    bounds[i] = rows_[basis_[i]].bound;
+  inverse_.setZero();
+  inverse_(0, 0) = 1;
+  for (int k = 1; k < 4; ++k) {
+    const bool rises = first.normal[k] <= 0;
+    basis_[k] = 2 * (k - 1) + (rises ? 0 : 1);
+    inverse_(k, k) = rises ? 1 : -1;
+    inverse_(0, k) = std::abs(first.normal[k]);
   }
-  inverse_ = normals.inverse();
-  optimum_ = inverse_ * bounds;
+  findOptimum();
 }
 
 void DualSimplex::enter(int row) {
@@ -90,6 +86,10 @@ void DualSimplex::enter(int row) {
   }
   inverse_.col(leaving) = column;
   basis_[leaving] = row;
+  findOptimum();
+}
+
+void DualSimplex::findOptimum() {
   Eigen::Vector4d bounds;
   for (int i = 0; i < 4; ++i) bounds[i] = rows_[basis_[i]].bound;
   optimum_ = inverse_ * bounds;

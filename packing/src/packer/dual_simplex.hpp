@@ -48,10 +48,11 @@ class DualSimplex {
 
   void start();
   void enter(int row);
+  void findOptimum();
   double weightAt(int i) const { return basis_[i] < kFaces ? 0.0 : std::max(0.0, inverse_(0, i)); }
 
-  double half_ = 0, unit_ = 1;  // the latter: of what is rounded
-  std::vector<Row> rows_;       // the faces of the cube, then the functions
+  double unit_ = 1;        // of what is rounded
+  std::vector<Row> rows_;  // the faces of the cube, then the functions
   int basis_[4] = {};
   Eigen::Matrix4d inverse_;  // of the matrix of the basis' normals; its first row holds the dual variables
   Eigen::Vector4d optimum_;  // (value, y)

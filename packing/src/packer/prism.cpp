@@ -15,38 +15,44 @@ Prism::Prism(const std::array<Point, 3>& corners, const Point& inwards)
   }
 }
 
-double Prism::beside(const Point& x) const {
+CubeCorners cornersOf(const Point& centre, double half) {
+  CubeCorners corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    for (int k = 0; k < 3; ++k) corners(corner, k) = centre[k] + (corner >> k & 1 ? half : -half);
+  }
+  return corners;
+}
+
+double Prism::beside(const Point& x, double height) const {
   double nearest2 = std::numeric_limits<double>::infinity();
   bool inside = true;
   for (int k = 0; k < 3; ++k) {
     if (outwards_[k].dot(x - corners_[k]) <= 0) continue;
     inside = false;
     const Point edge = corners_[(k + 1) % 3] - corners_[k];
-    const Point foot = x - corners_[k] - height(x) * inwards_;
+    const Point foot = x - corners_[k] - height * inwards_;
     const double along = std::clamp(foot.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
     nearest2 = std::min(nearest2, (foot - along * edge).squaredNorm());
   }
   return inside ? 0 : std::sqrt(nearest2);
 }
 
-double Prism::distance(const Point& x) const {
-  const double h = height(x), away = beside(x);
-  if (away > 0) return h > 0 ? std::hypot(h, away) : away;
-  double most = h;
-  if (h < 0) {
-    for (int k = 0; k < 3; ++k) most = std::max(most, outwards_[k].dot(x - corners_[k]));
-  }
-  return most;
-}
-
-double Prism::farthestBehind(const Point& centre, double half) const {
-  double depth = 0, away = 0;
+double Prism::farthestBehind(const CubeCorners& cube, CornerValues& distances) const {
+  double depth = 0, farthest = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const Point x = centre + half * Point(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-    depth = std::max(depth, -height(x));
-    away = std::max(away, beside(x));
+    const Point x = cube.row(corner).matrix();
+    const double height = inwards_.dot(x - corners_[0]), away = beside(x, height);
+    depth = std::max(depth, -height);
+    farthest = std::max(farthest, away);
+    if (away > 0) {
+      distances[corner] = height > 0 ? std::hypot(height, away) : away;
+      continue;
+    }
+    distances[corner] = height;
+    for (int k = 0; height < 0 && k < 3; ++k)
+      distances[corner] = std::max(distances[corner], outwards_[k].dot(x - corners_[k]));
   }
-  return depth > 0 ? std::hypot(depth, away) : 0;
+  return depth > 0 ? std::hypot(depth, farthest) : 0;
 }
 
 }  // namespace innersphere

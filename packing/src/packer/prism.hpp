@@ -7,6 +7,11 @@
 
 namespace innersphere {
 
+/// The corners of a cube, a row for each, and a number for each.
+using CubeCorners = Eigen::Array<double, 8, 3>;
+using CornerValues = Eigen::Array<double, 8, 1>;
+CubeCorners cornersOf(const Point& centre, double half);
+
 /// This is the prism behind a triangle of the surface, without end. A point in front of the triangle is at
 /// least as near to the triangle as to the prism, so no sphere about it is larger than its distance from the
 /// prism, a convex function. Behind the triangle that need not hold, for what lies there may be inside of the
@@ -17,18 +22,14 @@ class Prism {
   /// Builds the prism. `inwards` is the unit normal of the triangle that points into the solid.
   Prism(const std::array<Point, 3>& corners, const Point& inwards);
 
-  /// Returns the distance from the prism; it is negative inside.
-  double distance(const Point& x) const;
-
-  /// Returns the largest distance from the triangle that a point of the cube behind the triangle's plane can
-  /// have; 0 if there is none.
-  double farthestBehind(const Point& centre, double half) const;
+  /// Finds the distances of a cube's corners from the prism; they are negative inside. Returns the largest
+  /// distance from the triangle that a point of the cube behind the triangle's plane can have; 0 if there is
+  /// none.
+  double farthestBehind(const CubeCorners& cube, CornerValues& distances) const;
 
  private:
-  double height(const Point& x) const { return inwards_.dot(x - corners_[0]); }
-
-  /// Returns how far x is beside the prism; if it is not, 0.
-  double beside(const Point& x) const;
+  /// Returns how far x is beside the prism, and `height` above the triangle; if it is not, 0.
+  double beside(const Point& x, double height) const;
 
   std::array<Point, 3> corners_;
   Point inwards_;

@@ -15,8 +15,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Calls job(i) for each i below `count`. The caller may hold a lock: while it waits it takes on no work but
 /// this, which might want the same lock. Jobs compute in the caller's floating-point mode. Otherwise it would
-/// be the mode of whoever was the first to use the scheduler: Embree, which a packer uses, takes tiny numbers
-/// for 0 at that time, so bodies would move in another way in a program that packs.
+/// be the mode of whoever was the first to use the scheduler: Embree, say, takes tiny numbers for 0 at that
+/// time, so bodies would move in another way in a program that uses both.
 template <typename Job>
 void inParallel(std::size_t count, const Job& job) {
   tbb::task_group_context as_here(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);

@@ -174,19 +174,30 @@ TEST(Prism, BoundsTheDistanceFromItsTriangle) {
     const auto world = [](const Point& x) { return Vec3d{x[0], x[1], x[2]}; };
     const Triangle triangle(world(corners[0]), world(corners[1]), world(corners[2]));
     const Point centre = point();
-    const double half = 0.5, behind = prism.farthestBehind(centre, half);
+    CornerValues distances;
+    const double half = 0.5, behind = prism.farthestBehind(cornersOf(centre, half), distances);
+    const auto distance = [&](const Point& x) {
+      prism.farthestBehind(cornersOf(x, 0), distances);
+      return distances[0];
+    };
+    for (int corner = 0; corner < 8; ++corner) {
+      const Point x = cornersOf(centre, half).row(corner).matrix();
+      prism.farthestBehind(cornersOf(centre, half), distances);
+      const double of_cube = distances[corner];
+      EXPECT_EQ(distance(x), of_cube);
+    }
     for (int i = 0; i < 50; ++i) {
       const Point x = centre + half * point(), y = centre + half * point();
       Vec3d nearest;
       const double away = std::sqrt(triangle.closest(world(x), nearest));
       // In front, nothing is nearer than the triangle itself; behind, the cube ends.
       const bool front = inwards.dot(x - corners[0]) > 0;
-      EXPECT_LE(away, (front ? prism.distance(x) : behind) + 1e-9);
+      EXPECT_LE(away, (front ? distance(x) : behind) + 1e-9);
       if (front) {
-        EXPECT_NEAR(prism.distance(x), away, 1e-9);
+        EXPECT_NEAR(distance(x), away, 1e-9);
       }
-      EXPECT_LE(prism.distance(x), away + 1e-9);
-      EXPECT_LE(prism.distance((x + y) / 2), (prism.distance(x) + prism.distance(y)) / 2 + 1e-12);
+      EXPECT_LE(distance(x), away + 1e-9);
+      EXPECT_LE(distance((x + y) / 2), (distance(x) + distance(y)) / 2 + 1e-12);
     }
   }
 }

@@ -125,7 +125,7 @@ TEST(FloatingPointMode, IsThatOfTheCallerInAllThreads) {
   });
 }
 
-/// Who was the first to use the scheduler may have had another mode: Embree, in a packer.
+/// Who was the first to use the scheduler may have had another mode, as Embree has.
 TEST(FloatingPointMode, OfTheSchedulerDoesNotMoveBodies) {
   const auto places = [](int mode) {
     std::vector<std::array<btScalar, 3>> all;
