@@ -118,8 +118,8 @@ void requireVersion(const Entry& document) {
   if (format == kClumpFormat) {
     throw Error(ErrorCode::bad_format,
                 "these spheres are a clump: they overlap each other and reach out of their solid, so the "
-                "volumes that "
-                "they share mean nothing; this needs a packing, from `innersphere pack` without --clump");
+                "volumes that they share mean nothing; this needs a packing, from `innersphere pack` without "
+                "--clump");
   }
   if (format != kPackingFormat) {
     throw Error(ErrorCode::bad_format,
