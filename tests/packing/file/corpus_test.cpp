@@ -29,7 +29,7 @@ TEST(FileCorpus, EveryInputIsSurvived) {
 }
 
 TEST(FileMutation, Json) {
-  feed("errors_by_depth_json");
+  feed("planes_json");
 }
 TEST(FileMutation, Cbor) {
   feed("measures_cbor");
