@@ -98,7 +98,7 @@ class FourPoints {
   /// Of points that widen the patch: less the farther they are from touching, compared with the deepest. What
   /// the step alone would drive into the other body has to be held in it, so depths are those at its end, and
   /// where bodies have sunk in, or will, all that has counts. But a place on a hill is not another one than
-  /// the top of that hill, unless bodies are so fast that all of it might sink in.
+  /// the top of that hill, unless bodies are so fast that all of it might sink in, or it is driven in itself.
   void findWorths() {
     worth_.clear();
     btScalar deepest = -BT_LARGE_FLOAT;
@@ -109,7 +109,9 @@ class FourPoints {
     const btScalar falls = btMax(kWorthFalls * spacing_, deepest);
     const btScalar hill = step_.motion.isSwept() ? btMax(spacing_, step_.needed) : spacing_;
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      const btScalar below = (deepest - worth_[i]) / falls + found_[i].below_top / (kWorthFalls * hill);
+      const btScalar driven = worth_[i] > kDrivenIn * step_.size ? worth_[i] : btScalar(0);
+      const btScalar below =
+          (deepest - worth_[i]) / falls + found_[i].below_top / btMax(kWorthFalls * hill, driven);
       worth_[i] = (isOld(found_[i]) ? kKeepSpan : btScalar(1)) * btExp(-below);
     }
   }
