@@ -18,9 +18,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// bodies where they are then: so joints turn as exactly as the substep is short. Their step is the substep.
 /// Error reduction (ERP) and constraint force mixing (CFM) act in each.
 ///
-/// What reduces an error gives bodies a speed that is not theirs, which passes after the bodies have
-/// moved take back. It is told from the speed of motors by asking twice, with half of the error reduction: rows are
-/// linear in it. Where a constraint has an error reduction of its own it stays, as with Bullet's solver.
+/// What reduces an error gives bodies a speed that is not theirs, which passes after the bodies have moved
+/// take back. It is told from the speed of motors by asking twice, with half of the error reduction: rows
+/// are linear in it. Where a constraint has an error reduction of its own it stays, as with Bullet's solver.
 ///
 /// Rows of a joint that no limit bounds are solved together, exactly: those of a pendulum that is thin for
 /// its length all but depend on each other, and one after the other they would need hundreds of passes.

@@ -59,7 +59,7 @@ class ContactRows {
   void beginStep(const btContactSolverInfo& info, int substeps, btScalar depth);
   /// Fills the rows of a block.
   void prepare(int block, const SolverBodies& bodies);
-  /// Adds the impulses that points have borne to what the next substep begins with. Pass::finish does so, too.
+  /// Adds the impulses that points have borne to what the next substep begins with, as Pass::finish does.
   void carry(int block, std::vector<BodyState>& states);
   /// Returns true if bodies are thrown back by some points, as restitution says.
   bool bounces() const { return bounces_; }
