@@ -21,6 +21,9 @@ constexpr double kGapSamples = 16;
 // A block is the smallest cube that is looked at as a whole: 4 x 4 x 4 samples.
 constexpr int kSampleBlock = 4;
 
+// With more balls than this the nearest one takes longer to find than the side of the surface.
+constexpr std::size_t kManyBalls = 8;
+
 using Index = std::array<std::uint32_t, 3>;
 
 // The samples are dealt into two halves, whose difference tells the sampling error.
@@ -65,12 +68,15 @@ class Sampler {
  private:
   void sampleBlock(const Index& block, double half, bool inside, const NearBalls& balls) const {
     ClearanceCache clearances(container_.margin());
+    const bool many = balls.size() > kManyBalls;
     for (std::uint32_t k = 0; k < kSampleBlock * kSampleBlock * kSampleBlock; ++k) {
       const Index at{block[0] + k % kSampleBlock, block[1] + k / kSampleBlock % kSampleBlock,
                      block[2] + k / (kSampleBlock * kSampleBlock)};
       const Point x = Point(at[0] + jitter(at, 0), at[1] + jitter(at, 1), at[2] + jitter(at, 2)) * spacing_;
+      const auto isOutside = [&] { return !inside && !clearances.contains(container_, x, half); };
+      if (many && isOutside()) continue;
       const NearBalls::Nearest hit = balls.nearest(x);
-      if (hit.distance <= 0 || (!inside && !clearances.contains(container_, x, half))) continue;
+      if (hit.distance <= 0 || (!many && isOutside())) continue;
       counts_[hit.index][(at[0] + at[1] + at[2]) % 2].fetch_add(1, std::memory_order_relaxed);
     }
   }

@@ -25,6 +25,13 @@ constexpr std::size_t kMostTightCells = 1000;
 // more work where the solid is equally thick everywhere.
 constexpr double kUndecided = 0.25;
 
+// Where one of this many parts of a round has as many candidates as it would take for all spheres, the others
+// are left for later. Fewer: more is searched in vain; more: one part tells less.
+constexpr std::uint64_t kParts = 16;
+
+// Rounds with no more blocks than this are searched whole.
+constexpr std::size_t kMostWholeBlocks = 64 * kParts;
+
 // Side of a block, in wanted radii, at least. Larger blocks: fewer look-ups of spheres, longer lists of them.
 constexpr double kBlockSide = 4;
 
@@ -54,6 +61,14 @@ std::vector<std::size_t> sortIntoBlocks(std::vector<Active>& active, int level) 
   return begins;
 }
 
+/// Returns true for one of kParts blocks, spread at random, other ones in each turn.
+bool isInPart(std::uint64_t block, std::uint64_t turn) {
+  std::uint64_t x = block * kParts + turn % kParts;  // mixed as in SplitMix64
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return (x ^ (x >> 31)) % kParts == 0;
+}
+
 /// Larger candidates come first, equal ones in the order of the Z-order curve.
 void sortCandidates(std::vector<CellSearch::Candidate>& candidates) {
   std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
@@ -71,16 +86,47 @@ struct GreedyRounds::Round {
   double wanted;
 };
 
-std::vector<CellSearch::Result> GreedyRounds::search(std::vector<Active>& active, const Round& round,
-                                                     const SphereGrid& grid) const {
+/// The cells that are live after a search, searched or not, and the candidates.
+struct GreedyRounds::Found {
+  std::vector<Cell> cells;
+  std::vector<CellSearch::Candidate> candidates;
+};
+
+GreedyRounds::Found GreedyRounds::search(std::vector<Active> active, const Round& round, std::uint64_t turn,
+                                         const SphereGrid& grid) const {
   const std::vector<std::size_t> begins = sortIntoBlocks(active, blockLevel(round.wanted));
-  std::vector<CellSearch::Result> results(begins.size() - 1);
-  tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t block) {
-    std::vector<Cell> cells;
-    for (std::size_t i = begins[block]; i < begins[block + 1]; ++i) cells.push_back(active[i].cell);
-    results[block] = CellSearch(container_, grid, round.top, round.bound, round.wanted).search(cells);
-  });
-  return results;
+  const std::size_t blocks = begins.size() - 1;
+  std::vector<CellSearch::Result> results(blocks);
+  std::vector<bool> first(blocks, true);
+  if (blocks > kMostWholeBlocks) {
+    for (std::size_t b = 0; b < blocks; ++b) first[b] = isInPart(active[begins[b]].block, turn);
+  }
+  const auto searchBlocks = [&](bool part) {
+    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
+      if (first[b] != part) return;
+      std::vector<Cell> cells;
+      for (std::size_t i = begins[b]; i < begins[b + 1]; ++i) cells.push_back(active[i].cell);
+      results[b] = CellSearch(container_, grid, round.top, round.bound, round.wanted).search(cells);
+    });
+  };
+  searchBlocks(true);
+  std::size_t count = 0;
+  for (const CellSearch::Result& result : results) count += result.candidates.size();
+  const bool whole = count <= most_ / kParts;
+  if (whole) searchBlocks(false);
+
+  Found found;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    if (whole || first[b]) {
+      const CellSearch::Result& result = results[b];
+      found.cells.insert(found.cells.end(), result.cells.begin(), result.cells.end());
+      found.candidates.insert(found.candidates.end(), result.candidates.begin(), result.candidates.end());
+    } else {
+      for (std::size_t i = begins[b]; i < begins[b + 1]; ++i) found.cells.push_back(active[i].cell);
+    }
+  }
+  sortCandidates(found.candidates);
+  return found;
 }
 
 bool GreedyRounds::insert(const std::vector<CellSearch::Candidate>& candidates, float top, const Stop& stop,
@@ -121,24 +167,19 @@ GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop,
     placed.largest_missing = top;
     std::vector<Active> active;
     for (const Cell& cell : queue.takeAbove(next)) active.push_back({0, cell});
-    while (!active.empty()) {
+    for (std::uint64_t turn = 0; !active.empty(); ++turn) {
       if (pause(placed, bound)) return placed;
-      std::vector<CellSearch::Result> results;
-      arena.execute([&] { results = search(active, round, placed.grid); });
+      Found found;
+      arena.execute([&] { found = search(std::move(active), round, turn, placed.grid); });
       active.clear();
-      std::vector<CellSearch::Candidate> candidates;
-      for (const CellSearch::Result& result : results) {
-        for (const Cell& cell : result.cells) {
-          if (cell.upper > bound) {
-            active.push_back({0, cell});
-          } else {
-            queue.push(cell);
-          }
+      for (const Cell& cell : found.cells) {
+        if (cell.upper > bound) {
+          active.push_back({0, cell});
+        } else {
+          queue.push(cell);
         }
-        candidates.insert(candidates.end(), result.candidates.begin(), result.candidates.end());
       }
-      sortCandidates(candidates);
-      if (insert(candidates, top, stop, add, placed)) return placed;
+      if (insert(found.candidates, top, stop, add, placed)) return placed;
     }
     placed.largest_missing = bound;
   }

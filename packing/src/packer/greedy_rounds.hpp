@@ -25,8 +25,9 @@ class GreedyRounds {
     float largest_missing = 0;  ///< nothing larger is possible now
   };
 
-  GreedyRounds(const Container& container, double delta, double min_radius)
-      : container_(container), delta_(delta), min_radius_(min_radius) {}
+  /// `most`: how many spheres are wanted in all.
+  GreedyRounds(const Container& container, double delta, double min_radius, std::size_t most)
+      : container_(container), delta_(delta), min_radius_(min_radius), most_(most) {}
 
   using Stop = std::function<bool(const Placed&)>;
   using Pause = std::function<bool(const Placed&, double)>;
@@ -46,10 +47,12 @@ class GreedyRounds {
 
  private:
   struct Round;
+  struct Found;
 
-  /// Searches all active cells, which it sorts into blocks, in parallel.
-  std::vector<CellSearch::Result> search(std::vector<Active>& active, const Round& round,
-                                         const SphereGrid& grid) const;
+  /// Searches the cells in parallel, in blocks: first a part of these, spread over the solid, and then the
+  /// others, unless that part has given too many candidates.
+  Found search(std::vector<Active> active, const Round& round, std::uint64_t turn,
+               const SphereGrid& grid) const;
   /// Inserts the candidates that do not overlap what was placed before them. Returns true if `stop` or `add`
   /// say so.
   bool insert(const std::vector<CellSearch::Candidate>& candidates, float top, const Stop& stop,
@@ -58,6 +61,7 @@ class GreedyRounds {
   const Container& container_;
   double delta_;
   double min_radius_;
+  std::size_t most_;
 };
 
 }  // namespace innersphere

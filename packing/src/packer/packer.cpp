@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -146,7 +147,8 @@ GreedyRounds::Placed place(const Problem& problem, tbb::task_arena& arena, const
     });
   };
   const bool covers = options.order == SphereOrder::coverage;
-  return GreedyRounds(problem.container, options.delta, problem.smallest)
+  const std::size_t most = options.spheres > 0 ? options.spheres : std::numeric_limits<std::size_t>::max();
+  return GreedyRounds(problem.container, options.delta, problem.smallest, most)
       .run(arena, stop, pause, covers ? add : GreedyRounds::Add());
 }
 

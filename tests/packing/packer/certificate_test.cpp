@@ -3,6 +3,7 @@
 
 #include "analytic_solids.hpp"
 #include "innersphere/packer.hpp"
+#include "innersphere/solids.hpp"
 #include "packer_oracles.hpp"
 
 namespace innersphere::test {
@@ -39,6 +40,26 @@ TYPED_TEST(PackerCertificate, EveryPrefixIsGreedy) {
               packing.spheres[count].radius * (1 + packing.certificate.delta))
         << count;
   }
+}
+
+// A wall of one thickness: its last round has room for ten times as many spheres as are wanted, and is not
+// searched whole.
+TEST(PackerCertificate, AWallOfOneThicknessIsFilledAllOver) {
+  const auto plate = makeBox({1, 1, 0.008});
+  PackOptions options;
+  options.spheres = 1500;
+  options.overlap_errors = false;
+  options.threads = 1;
+  const Packing packing = pack(*plate, options);
+  EXPECT_LE(packing.certificate.delta, options.delta);
+  EXPECT_LE(worstOverlap(packing), 0);
+  int in_part[4][4] = {};
+  for (const Sphere& s : packing.spheres) ++in_part[static_cast<int>(4 * (s.x + 0.5f))][static_cast<int>(4 * (s.y + 0.5f))];
+  for (const auto& row : in_part) {
+    for (const int count : row) EXPECT_NEAR(count, 1500 / 16, 60);
+  }
+  options.threads = 3;
+  EXPECT_TRUE(sameBytes(packing, pack(*plate, options)));
 }
 
 // The search is not blind: the largest sphere of an empty cube is known, and so is the next one.
