@@ -23,9 +23,6 @@ constexpr int kProbes = 12;
 // until it is at the second, about two rounds later.
 constexpr double kWorthAPoint = 0.05, kLowEnough = 0.85;
 
-// Radius of the balls put behind walls, in wanted radii. Larger: less curved, but they find less room.
-constexpr double kBehind = 8;
-
 // Cosine between a wall's direction and a triangle's, from which on the wall is the triangle.
 constexpr double kFacing = 1 - 1e-6;
 
@@ -177,7 +174,7 @@ bool CellSearch::flatten(double half) {
   bool flatter = false;
   program_.forWeights([&](int k, double) {
     if (!cuts_[k].at_wall) return;
-    const Ball behind = ballBehind(cuts_[k].wall, -cuts_[k].gradient, kBehind * std::max(half, wanted_));
+    const Ball behind = ballBehind(cuts_[k].wall, -cuts_[k].gradient, behind_ * std::max(half, wanted_));
     if (behind.radius <= cuts_[k].ball.radius) return;
     cuts_[k].ball = behind;
     cuts_[k].prism = -1;

@@ -39,13 +39,16 @@ class CellSearch {
 
   /// Prepares a search. `top`: no sphere larger than this fits. `wanted`: spheres larger than this are looked
   /// for. `bound`: a cell that holds none larger than this is done. As bound > wanted, a cell is decided
-  /// before it is much smaller than their difference.
-  CellSearch(const Container& container, const SphereGrid& placed, double top, double bound, double wanted)
+  /// before it is much smaller than their difference. `behind`: radius of the balls put behind walls, in
+  /// wanted radii.
+  CellSearch(const Container& container, const SphereGrid& placed, double top, double bound, double wanted,
+             double behind)
       : container_(container),
         placed_(placed),
         top_(top),
         bound_(bound),
         wanted_(wanted),
+        behind_(behind),
         clearances_(container.margin()) {}
 
   /// Searches the cells of one block.
@@ -107,7 +110,7 @@ class CellSearch {
 
   const Container& container_;
   const SphereGrid& placed_;
-  const double top_, bound_, wanted_;
+  const double top_, bound_, wanted_, behind_;
   Result result_;
   ClearanceCache clearances_;
   // A stack: the balls that can matter in the block, those of them that can matter in its cell being visited,

@@ -32,6 +32,12 @@ constexpr std::uint64_t kParts = 16;
 // Rounds with no more blocks than this are searched whole.
 constexpr std::size_t kMostWholeBlocks = 64 * kParts;
 
+// Radius of the balls that a search puts behind walls, in wanted radii. Larger: less curved, so that cells
+// need not be as small, but dearer to find. That pays where the solid is equally thick everywhere: where a
+// round looks at more than so many cells for each sphere placed, and for a thousand more.
+constexpr double kBehind = 8, kFarBehind = 64;
+constexpr std::size_t kManyCells = 15, kFewSpheres = 1000;
+
 // Side of a block, in wanted radii, at least. Larger blocks: fewer look-ups of spheres, longer lists of them.
 constexpr double kBlockSide = 4;
 
@@ -83,7 +89,7 @@ void sortCandidates(std::vector<CellSearch::Candidate>& candidates) {
 /// What a round is certain of, wants and has to prove; see CellSearch.
 struct GreedyRounds::Round {
   float top, bound;
-  double wanted;
+  double wanted, behind;
 };
 
 /// The cells that are live after a search, searched or not, and the candidates.
@@ -106,7 +112,8 @@ GreedyRounds::Found GreedyRounds::search(std::vector<Active> active, const Round
       if (first[b] != part) return;
       std::vector<Cell> cells;
       for (std::size_t i = begins[b]; i < begins[b + 1]; ++i) cells.push_back(active[i].cell);
-      results[b] = CellSearch(container_, grid, round.top, round.bound, round.wanted).search(cells);
+      results[b] =
+          CellSearch(container_, grid, round.top, round.bound, round.wanted, round.behind).search(cells);
     });
   };
   searchBlocks(true);
@@ -163,10 +170,12 @@ GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop,
     const bool early = placed.top.size() < kTightSpheres && queue.countAbove(step + 1) < kMostTightCells;
     const std::size_t next = step + (early ? 1 : strides);
     const float top = schedule[step], bound = schedule[next];
-    const Round round{top, bound, std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_)};
     placed.largest_missing = top;
     std::vector<Active> active;
     for (const Cell& cell : queue.takeAbove(next)) active.push_back({0, cell});
+    const bool equally_thick = active.size() > kManyCells * (placed.top.size() + kFewSpheres);
+    const Round round{top, bound, std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_),
+                      equally_thick ? kFarBehind : kBehind};
     for (std::uint64_t turn = 0; !active.empty(); ++turn) {
       if (pause(placed, bound)) return placed;
       Found found;
