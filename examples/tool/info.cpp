@@ -12,13 +12,15 @@ Command infoCommand() {
     std::string file;
     bool json = false;
   };
-  Command command("info", "Say what a packing file holds and how good it is");
+  Command command("info", "Say what a packing file holds, or a covering or clump, and how good it is");
   auto arguments = std::make_shared<Arguments>();
   addPackingArgument(command, "FILE", arguments->file);
   command.flag("--json", arguments->json, "Print JSON, lengths in metres");
   command.examples = {"innersphere info bunny.cbor --json"};
   command.run = [arguments] {
-    describe(loadPacking(arguments->file)).print(arguments->json);
+    const std::optional<Covering> covering = loadCovering(arguments->file);
+    const Report report = covering ? describe(*covering) : describe(loadPacking(arguments->file));
+    report.print(arguments->json);
     return kOk;
   };
   return command;

@@ -121,6 +121,11 @@ Packing loadPacking(const std::string& source) {
       source + " is no packing: that is read from .json, .cbor or .xyzr; `innersphere pack` makes one");
 }
 
+std::optional<Covering> loadCovering(const std::string& source) {
+  if (isStream(source) || endingOf(source) != ".json") return std::nullopt;
+  return readCovering(source);
+}
+
 Packing loadOrPack(const std::string& source, std::size_t spheres) {
   if (isPacking(source)) return loadPacking(source);
   PackOptions options;

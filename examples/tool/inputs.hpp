@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "command.hpp"
+#include "innersphere/covering.hpp"
 #include "innersphere/mesh.hpp"
 #include "innersphere/packing.hpp"
 #include "innersphere/solid.hpp"
@@ -30,6 +32,9 @@ bool isPacking(const std::string& source);
 /// Reads a packing from a file (.json, .cbor, .xyzr), a pipe or stdin ("-"), whose content shows the format.
 /// Throws Error.
 Packing loadPacking(const std::string& source);
+
+/// Reads a covering or clump; nothing if that is not what the file holds. Throws Error.
+std::optional<Covering> loadCovering(const std::string& source);
 
 /// Reads a packing; packs what is none, which is then a mesh or a solid's name, with this many spheres.
 /// Throws Error.

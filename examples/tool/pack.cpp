@@ -67,42 +67,6 @@ void checkOutputOf(const Arguments& arguments, const PackingOutput& output) {
   }
 }
 
-Report reportOf(const Covering& covering, double diagonal) {
-  Report report;
-  const Provenance& from = covering.provenance;
-  const bool clump = covering.kind == CoveringKind::clump;
-  report.add("kind", "kind",
-             clump ? "clump: the union of the spheres is near to the solid; they overlap each other"
-                   : "covering: the spheres contain the solid and overlap each other");
-  report.add("source", "source", from.source);
-  report.add("options", "options", from.options);
-  report.add("spheres", "spheres", covering.spheres.size());
-  const auto addLength = [&](const std::string& key, const std::string& label, double length) {
-    report.add(key, label, length,
-               number(length, "m") + ", " + percent(length / diagonal) + " of the diagonal");
-  };
-  report.add("inside", "of the solid inside", covering.inside, percent(covering.inside));
-  report.add("outside", "outside of the solid", covering.outside,
-             percent(covering.outside) + " of its volume");
-  addLength("overhang_mean", "overhang, mean", covering.overhang_mean);
-  addLength("overhang_max", "overhang, max", covering.overhang_max);
-  addLength("gap_mean", "surface gap, mean", covering.gap_mean);
-  addLength("gap_max", "surface gap, max", covering.gap_max);
-  const MassProperties &solid = covering.solid, &united = covering.united;
-  report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
-  report.add("union_volume", "volume of the union", united.volume, number(united.volume, "m^3"));
-  addLength("union_centre_off", "its centre is off by", norm(united.centre_of_mass - solid.centre_of_mass));
-  double off = 0, whole = 0;
-  for (std::size_t i = 0; i < solid.inertia.size(); ++i) {
-    off += std::pow(united.inertia[i] - solid.inertia[i], 2);
-    whole += std::pow(solid.inertia[i], 2);
-  }
-  const double inertia_off = std::sqrt(off / whole);
-  report.add("union_inertia_off", "its inertia is off by", inertia_off, percent(inertia_off));
-  addMassWeights(covering.mass_weights, report);
-  return report;
-}
-
 Covering covered(const Solid& solid, const Arguments& arguments) {
   PackOptions options = arguments.pack;
   if (options.spheres == 0 && options.density == 0 && options.gap == 0) options.spheres = kCoveringSpheres;
@@ -131,7 +95,7 @@ void coverInto(const PackingOutput& output, bool say_where, const Solid& solid, 
                    [&](const std::string& path, bool force) { writeCovering(covering, path, force); });
   if (say_where) say("wrote " + output.path);
   const Bounds box = solid.bounds();
-  reportOf(covering, norm(box.max - box.min)).print(arguments.json, isStdout(output.path) ? stderr : stdout);
+  describe(covering, norm(box.max - box.min)).print(arguments.json, isStdout(output.path) ? stderr : stdout);
 }
 
 void packInto(const PackingOutput& output, bool say_where, const Solid& solid, const Arguments& arguments) {

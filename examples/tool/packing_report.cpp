@@ -74,8 +74,7 @@ void addCoverage(const Packing& packing, double diagonal, Report& report) {
   }
 }
 
-}  // namespace
-
+// Adds the range of the spheres' densities, or that there are none.
 void addMassWeights(const std::vector<float>& weights, Report& report) {
   if (weights.empty()) {
     report.add("mass_weights", "mass weights", nullptr, "none");
@@ -85,6 +84,8 @@ void addMassWeights(const std::vector<float>& weights, Report& report) {
   report.add("mass_weights", "mass weights", {{"min", *low}, {"max", *high}},
              number(*low) + " to " + number(*high) + " times the density of the solid");
 }
+
+}  // namespace
 
 Report describe(const Packing& packing) {
   const Quality& quality = packing.quality;
@@ -148,6 +149,43 @@ Report describe(const Packing& packing) {
   report.add("triangles", "triangles", packing.surface.triangles.size());
   report.add("warnings", "", packing.warnings, "");
   for (const std::string& warning : packing.warnings) report.addLine("WARNING", warning);
+  return report;
+}
+
+Report describe(const Covering& covering, double diagonal) {
+  Report report;
+  const Provenance& from = covering.provenance;
+  const bool clump = covering.kind == CoveringKind::clump;
+  report.add("kind", "kind",
+             clump ? "clump: the union of the spheres is near to the solid; they overlap each other"
+                   : "covering: the spheres contain the solid and overlap each other");
+  report.add("source", "source", from.source);
+  report.add("options", "options", from.options);
+  report.add("spheres", "spheres", covering.spheres.size());
+  const auto addLength = [&](const std::string& key, const std::string& label, double length) {
+    report.add(
+        key, label, length,
+        number(length, "m") + (diagonal > 0 ? ", " + percent(length / diagonal) + " of the diagonal" : ""));
+  };
+  report.add("inside", "of the solid inside", covering.inside, percent(covering.inside));
+  report.add("outside", "outside of the solid", covering.outside,
+             percent(covering.outside) + " of its volume");
+  addLength("overhang_mean", "overhang, mean", covering.overhang_mean);
+  addLength("overhang_max", "overhang, max", covering.overhang_max);
+  addLength("gap_mean", "surface gap, mean", covering.gap_mean);
+  addLength("gap_max", "surface gap, max", covering.gap_max);
+  const MassProperties &solid = covering.solid, &united = covering.united;
+  report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
+  report.add("union_volume", "volume of the union", united.volume, number(united.volume, "m^3"));
+  addLength("union_centre_off", "its centre is off by", norm(united.centre_of_mass - solid.centre_of_mass));
+  double off = 0, whole = 0;
+  for (std::size_t i = 0; i < solid.inertia.size(); ++i) {
+    off += std::pow(united.inertia[i] - solid.inertia[i], 2);
+    whole += std::pow(solid.inertia[i], 2);
+  }
+  const double inertia_off = std::sqrt(off / whole);
+  report.add("union_inertia_off", "its inertia is off by", inertia_off, percent(inertia_off));
+  addMassWeights(covering.mass_weights, report);
   return report;
 }
 

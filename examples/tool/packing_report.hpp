@@ -1,8 +1,7 @@
 // What there is to say about a packing.
 #pragma once
 
-#include <vector>
-
+#include "innersphere/covering.hpp"
 #include "innersphere/packing.hpp"
 #include "report.hpp"
 
@@ -10,7 +9,8 @@ namespace innersphere::tool {
 
 Report describe(const Packing& packing);
 
-/// Adds the range of the spheres' densities, or that there are none.
-void addMassWeights(const std::vector<float>& weights, Report& report);
+/// Describes a covering or clump. `diagonal`: that of its solid [m]; lengths are compared with it unless it
+/// is 0.
+Report describe(const Covering& covering, double diagonal = 0);
 
 }  // namespace innersphere::tool

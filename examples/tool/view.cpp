@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "coverage_film.hpp"
@@ -36,11 +37,23 @@ std::string titleOf(const std::string& source) {
   return title;
 }
 
-demo::Film filmOf(const Packing& packing, const std::string& title, bool y_up, Colouring colour) {
+std::string captionOf(const Packing& packing) {
+  return std::to_string(packing.spheres.size()) + " spheres fill " + percent(packing.quality.density) +
+         " of it. ";
+}
+
+std::string captionOf(const Covering& covering) {
+  std::string caption = std::to_string(covering.spheres.size()) + " spheres that overlap ";
+  caption +=
+      covering.kind == CoveringKind::clump ? "hold " + percent(covering.inside) + " of it" : "contain it";
+  return caption + " and reach out by up to " + number(covering.overhang_max, "m") + ". ";
+}
+
+demo::Film filmOf(const Packing& packing, const std::string& title, const std::string& caption, bool y_up,
+                  Colouring colour) {
   demo::Film film;
   film.title = title;
-  film.caption = std::to_string(packing.spheres.size()) + " spheres fill " +
-                 percent(packing.quality.density) + " of it. ";
+  film.caption = caption;
   if (colour == Colouring::coverage) {
     film.caption += addCoverage(packing, film);
   } else {
@@ -74,10 +87,18 @@ void run(Arguments& arguments) {
   }
   if (arguments.colour == Colouring::coverage) pictures.render.view = demo::View::surface;
   checkPictures(pictures, arguments.force);
-  const Packing packing = loadOrPack(arguments.source, arguments.spheres);
+  const std::optional<Covering> covering = loadCovering(arguments.source);
+  Packing packing;
+  if (covering) {
+    packing.spheres = covering->spheres;
+    pictures.render.view = demo::View::spheres;  // all that there is
+  } else {
+    packing = loadOrPack(arguments.source, arguments.spheres);
+  }
+  const std::string caption = covering ? captionOf(*covering) : captionOf(packing);
   say(arguments.y_up ? "the y axis points up; --up z turns that" : "the z axis points up; --up y turns that");
-  writePictures(filmOf(packing, titleOf(arguments.source), arguments.y_up, arguments.colour), pictures,
-                arguments.force);
+  writePictures(filmOf(packing, titleOf(arguments.source), caption, arguments.y_up, arguments.colour),
+                pictures, arguments.force);
 }
 
 }  // namespace
@@ -87,7 +108,7 @@ Command viewCommand() {
   auto arguments = std::make_shared<Arguments>();
   command
       .argument("FILE", arguments->source,
-                "Packing file, or a mesh or a solid's name to pack first; -: stdin")
+                "Packing file, covering or clump, or a mesh or a solid's name to pack first; -: stdin")
       .withFile()
       .withSuggestions(namedSolids());
   command.count("--spheres", arguments->spheres, {1}, "Of what is packed first");

@@ -104,6 +104,13 @@ TEST_F(View, NamesCannotBreakThePage) {
   EXPECT_EQ(readFile(path("page.html")).find("<script>alert"), std::string::npos);
 }
 
+TEST_F(View, ShowsTheSpheresOfAClump) {
+  succeed("pack lbracket --clump --spheres 12 -o bracket.json");
+  succeed("view bracket.json --width 160 --height 90 --samples 4");
+  EXPECT_GT(colours(readPng(path("bracket.png"))), 30u);
+  EXPECT_NE(readFile(path("bracket.html")).find("12 spheres that overlap hold "), std::string::npos);
+}
+
 TEST_F(View, PacksASolidByName) {
   succeed("view lbracket --spheres 50 --png bracket.png --width 40 --height 30 --samples 1");
   EXPECT_EQ(files().count("bracket.png"), 1u);

@@ -2,6 +2,7 @@
 // miss a collision, and those whose union is as near to it as can be, for grains and haptics.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,11 @@ struct Covering {
   std::vector<float> mass_weights;
   Provenance provenance;  ///< Where the covering comes from.
 };
+
+/// Reads what writeCovering() has written as .json, bit for bit; nothing if the file is JSON, but of another
+/// kind, as a packing is. No bytes in a file crash it. Throws Error: file_not_found, bad_format,
+/// unsupported_version.
+std::optional<Covering> readCovering(const std::string& path);
 
 /// Writes a covering or clump; the format follows from the ending: .json, which says what it is, or .ply and
 /// .xyzr with the spheres only. readPacking() refuses the first. The file appears under its name only when it

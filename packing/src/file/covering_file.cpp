@@ -1,6 +1,8 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "file/file_io.hpp"
+#include "file/json_entry.hpp"
 #include "file/packing_schema.hpp"
 #include "file/packing_text.hpp"
 #include "innersphere/covering.hpp"
@@ -40,7 +42,49 @@ std::string toJson(const Covering& covering) {
   return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
+std::optional<Covering> coveringOf(const JsonEntry& document) {
+  const std::string format = document.has("format") ? document["format"].text() : "";
+  if (format != kClumpFormat && format != kCoveringFormat) return std::nullopt;
+  if (document["version"].number() > kCoveringFormatVersion) {
+    throw Error(ErrorCode::unsupported_version,
+                "the file is of a later version than this program reads; use a newer one");
+  }
+  Covering covering;
+  covering.kind = format == kClumpFormat ? CoveringKind::clump : CoveringKind::contains;
+  covering.origin = document["origin"].vector();
+  for (const JsonEntry& entry : document["spheres"].items()) {
+    const auto s = entry.numbers<4>();
+    const auto at = [&](int k) { return static_cast<float>(s[k]); };
+    const Sphere& sphere = covering.spheres.emplace_back(Sphere{at(0), at(1), at(2), at(3)});
+    if (!std::isfinite(sphere.x + sphere.y + sphere.z + sphere.radius) || !(sphere.radius > 0))
+      damaged("a sphere has no place or radius");
+  }
+  if (covering.spheres.empty()) damaged("there are no spheres");
+  covering.inside = document["inside"].number();
+  covering.outside = document["outside"].number();
+  covering.overhang_mean = document["overhang_mean"].number();
+  covering.overhang_max = document["overhang_max"].number();
+  covering.gap_mean = document["gap_mean"].number();
+  covering.gap_max = document["gap_max"].number();
+  covering.solid = massPropertiesOf(document["solid"]);
+  covering.united = massPropertiesOf(document["union"]);
+  covering.mass_weights = document["mass_weights"].floats(1);
+  if (!covering.mass_weights.empty() && covering.mass_weights.size() != covering.spheres.size())
+    damaged("there are not as many masses as spheres");
+  covering.provenance = provenanceOf(document["provenance"]);
+  return covering;
+}
+
 }  // namespace
+
+std::optional<Covering> readCovering(const std::string& path) {
+  const std::string bytes = readFile(path);
+  try {
+    return readJson(bytes, nlohmann::json::input_format_t::json, coveringOf);
+  } catch (const Error& error) {
+    throw Error(error.code(), path + ": " + error.what());
+  }
+}
 
 void writeCovering(const Covering& covering, const std::string& path, bool overwrite) {
   const std::string ending = endingOf(path);

@@ -54,7 +54,8 @@ TEST(PackerCertificate, AWallOfOneThicknessIsFilledAllOver) {
   EXPECT_LE(packing.certificate.delta, options.delta);
   EXPECT_LE(worstOverlap(packing), 0);
   int in_part[4][4] = {};
-  for (const Sphere& s : packing.spheres) ++in_part[static_cast<int>(4 * (s.x + 0.5f))][static_cast<int>(4 * (s.y + 0.5f))];
+  for (const Sphere& s : packing.spheres)
+    ++in_part[static_cast<int>(4 * (s.x + 0.5f))][static_cast<int>(4 * (s.y + 0.5f))];
   for (const auto& row : in_part) {
     for (const int count : row) EXPECT_NEAR(count, 1500 / 16, 60);
   }

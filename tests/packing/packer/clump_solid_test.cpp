@@ -288,6 +288,53 @@ TEST(ClumpSolid, IsNotTakenForAPacking) {
   EXPECT_THROW(writeCovering(clump, scratch.path("box.cbor")), Error);
 }
 
+TEST(ClumpSolid, IsReadBackBitForBit) {
+  const Scratch scratch;
+  const auto gear = makeNamedSolid("gear");
+  const Covering clump = clumpOf(*gear, 20);
+  const std::string path = scratch.path("gear.json");
+  writeCovering(clump, path);
+  const Covering read = readCovering(path).value();
+  EXPECT_EQ(read.kind, CoveringKind::clump);
+  ASSERT_EQ(read.spheres.size(), 20u);
+  for (std::size_t i = 0; i < 20; ++i) {
+    const Sphere &a = read.spheres[i], &b = clump.spheres[i];
+    EXPECT_TRUE(a.x == b.x && a.y == b.y && a.z == b.z && a.radius == b.radius) << i;
+  }
+  for (const auto number : {&Covering::inside, &Covering::outside, &Covering::overhang_mean,
+                            &Covering::overhang_max, &Covering::gap_mean, &Covering::gap_max})
+    EXPECT_EQ(read.*number, clump.*number);
+  EXPECT_EQ(read.origin, clump.origin);
+  EXPECT_EQ(read.solid.inertia, clump.solid.inertia);
+  EXPECT_EQ(read.united.centre_of_mass, clump.united.centre_of_mass);
+  EXPECT_EQ(read.mass_weights, clump.mass_weights);
+  EXPECT_EQ(read.provenance.options, clump.provenance.options);
+
+  writePacking(pack(*gear, {.spheres = 5, .overlap_errors = false}), scratch.path("packing.json"));
+  EXPECT_FALSE(readCovering(scratch.path("packing.json")));
+  EXPECT_THROW(readCovering(scratch.path("none.json")), Error);
+}
+
+TEST(ClumpSolid, NoBytesInItsFileDoHarm) {
+  const Scratch scratch;
+  writeCovering(clumpOf(*makeBox({1, 2, 3}), 2), scratch.path("box.json"));
+  const std::string good = bytesOf(scratch.path("box.json"));
+  int refused = 0;
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    for (const char c : {'[', '"', '9', '-'}) {
+      std::string bytes = good;
+      bytes[i] = c;
+      try {
+        readCovering(scratch.write("bad.json", bytes));
+      } catch (const Error& error) {
+        EXPECT_TRUE(error.code() == ErrorCode::bad_format || error.code() == ErrorCode::unsupported_version);
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 1000);
+}
+
 TEST(ClumpSolid, NamesBadOptions) {
   const auto box = makeBox({1, 1, 1});
   const auto codeOf = [&](const ClumpOptions& options, const Progress& progress = {}) {

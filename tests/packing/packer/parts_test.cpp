@@ -132,7 +132,7 @@ TEST(CellSearch, CandidatesOverlapNoPlacedBallByADigit) {
     }
     const SphereGrid placed(balls);
     const std::vector<Cell> all(1);
-    const CellSearch::Result found = CellSearch(container, placed, 1, 0.15, 0.1).search(all);
+    const CellSearch::Result found = CellSearch(container, placed, 1, 0.15, 0.1, 8).search(all);
     for (const CellSearch::Candidate& candidate : found.candidates) {
       for (const Ball& ball : balls) EXPECT_GE(ball.distance(candidate.ball.centre), candidate.ball.radius);
     }
