@@ -120,7 +120,8 @@ std::optional<btVector3> startNearer(const LineStarts& lines, const btVector3& s
 /// Moves a sample uphill along lines beside that from `shift` beside its sphere; not where slopes above
 /// `steepest` say that the top is far. Notes whether it got there. What is out of reach of its sphere is
 /// probed from another one. Over edges the slope may fall suddenly, so a step which loses the surface there
-/// is taken again, shorter.
+/// is taken again, shorter. What has all but reached a top goes on to it beyond `steps`: as deep as that but
+/// for rounding, it would be taken for the top, with a normal that leans.
 void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shift, ProbedSample& sample) {
   const SurfaceProbe& probe = lines.probe;
   const bool over_edges = probe.hasEdges();
@@ -130,7 +131,11 @@ void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shif
     return;
   const btScalar fall = hillAt(probe, sample).fall(0);
   Falls falls(sample.direction, fall > 0 ? fall : sample.points.curvature_a + sample.points.curvature_b);
-  for (int i = 0; i < steps && here.slope.length2() > kLevel * kLevel; ++i) {
+  const auto goesOn = [&](int i) {
+    const btScalar slope = here.slope.length();
+    return slope > kLevel && (i < steps || (i < kAscentSteps && slope < kReached));
+  };
+  for (int i = 0; goesOn(i); ++i) {
     OpposedPoints points;
     points.triangle_a = sample.points.triangle_a;
     points.triangle_b = sample.points.triangle_b;
