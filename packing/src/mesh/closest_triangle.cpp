@@ -195,8 +195,8 @@ ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff)
   return {{distance, nearest}, &triangles_[best]};
 }
 
-int ClosestTriangle::sideOf(const Vec3d& p, const Triangle& nearest) const {
-  const double front = nearest.inFront(p);
+int ClosestTriangle::sideOf(const Vec3d& p, const Triangle& nearest, bool gentle) const {
+  const double front = nearest.inFront(p, gentle);
   const double rounding = 1e-10 * (1 / to_unit_ + norm(p));
   return std::abs(front) <= rounding ? 0 : front > 0 ? 1 : -1;
 }

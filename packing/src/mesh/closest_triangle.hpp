@@ -26,8 +26,10 @@ class ClosestTriangle {
   /// Returns the nearest point; beyond `cutoff` [m] the distance is infinity.
   Nearest closest(const Vec3d& p, double cutoff) const;
   /// Returns 1 in front of the triangle, which is the nearest one, and -1 behind it, if the nearest point is
-  /// clearly inside of it and farther than rounding; else 0.
-  int sideOf(const Vec3d& p, const Triangle& nearest) const;
+  /// clearly inside of it, or it is `gentle` (as of BesideTriangle), and farther than rounding; else 0.
+  int sideOf(const Vec3d& p, const Triangle& nearest, bool gentle) const;
+  /// Returns which of the mesh's triangles one is that closest() returned.
+  std::uint32_t indexOf(const Triangle& triangle) const { return number_[&triangle - triangles_.data()]; }
 
  private:
   class Builder;

@@ -26,7 +26,8 @@ void mendOpenEdges(Mesh& mesh, Topology& topology, MeshReport& report) {
   Bounds box = emptyBounds();
   for (const Vec3d& v : mesh.vertices) extend(box, v);
   const double tolerance = kWeldTolerance * diagonal(box);
-  const auto keepIfBetter = [&](Mesh&& mended, const std::string& note) {
+  const auto keepIfBetter = [&](std::size_t changes, Mesh&& mended, const std::string& note) {
+    if (changes == 0) return;
     const Topology after = topologyOf(mended);
     if (mended.triangles.empty() || after.unbalanced.size() >= topology.unbalanced.size()) return;
     mesh = std::move(mended);
@@ -37,17 +38,18 @@ void mendOpenEdges(Mesh& mesh, Topology& topology, MeshReport& report) {
   Mesh welded = mesh;
   const std::size_t merged = weldClose(welded, tolerance);
   const std::size_t collapsed = dropCollapsed(welded);
-  keepIfBetter(std::move(welded), counted(merged, "vertex pair") + " closer than " + text(tolerance) +
-                                      " m merged, because the mesh was open between them, and " +
-                                      counted(collapsed, "triangle") + " that collapsed removed");
+  keepIfBetter(merged + collapsed, std::move(welded),
+               counted(merged, "vertex pair") + " closer than " + text(tolerance) +
+                   " m merged, because the mesh was open between them, and " +
+                   counted(collapsed, "triangle") + " that collapsed removed");
   if (topology.unbalanced.empty()) return;
   Mesh without_flat = mesh;
   const std::size_t flat = dropFlat(without_flat);
-  keepIfBetter(std::move(without_flat), counted(flat, "triangle") + " without area removed");
+  keepIfBetter(flat, std::move(without_flat), counted(flat, "triangle") + " without area removed");
   if (topology.unbalanced.empty()) return;
   Mesh split = mesh;
   const std::size_t edges = splitAtVertices(split, topology, tolerance);
-  keepIfBetter(std::move(split), counted(edges, "edge") + " split at vertices that lie on them");
+  keepIfBetter(edges, std::move(split), counted(edges, "edge") + " split at vertices that lie on them");
 }
 
 // A triangle that is there twice counts twice. Two with the same corners that face away from each other count
@@ -176,10 +178,11 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
   }
   const ShellsReport shells = orderShells(mesh, topology);
   noteShells(shells, report);
-  noteCuts(findCuts(mesh), report);
+  const Cuts cuts = findCuts(mesh);
+  noteCuts(cuts, report);
   const bool may_overlap = report.cuts > 0 || shells.boxes_meet || report.non_manifold_edges > 0;
 
-  auto solid = std::make_unique<MeshSolid>(std::move(mesh), name, may_overlap);
+  auto solid = std::make_unique<MeshSolid>(std::move(mesh), name, may_overlap, cuts.touched);
   const double size = diagonal(solid->bounds());
   if (!(solid->massProperties().volume > 1e-12 * size * size * size)) {
     throw Error(ErrorCode::not_a_solid, name + " encloses no volume (" +

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "innersphere/mesh.hpp"
 
@@ -11,6 +12,8 @@ namespace innersphere {
 struct Cuts {
   std::size_t pairs = 0;
   Vec3d at{};  ///< a corner of one of the first pair [m]
+  /// Of each triangle: whether others may cut or touch it elsewhere than in common corners and sides.
+  std::vector<bool> touched;
 };
 
 /// Finds the pairs of triangles of which one has an edge that passes through the other, away from common

@@ -21,13 +21,13 @@ constexpr double kRounding = 1e-12;
 
 }  // namespace
 
-MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once)
+MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once, const std::vector<bool>& touched)
     : mesh_(std::move(closed)),
       name_(name),
-      count_once_(count_once),
       bounds_(emptyBounds()),
       tree_(mesh_),
-      winding_(mesh_) {
+      winding_(mesh_),
+      beside_(findBeside(mesh_, touched, count_once, tree_, winding_)) {
   for (const Vec3d& v : mesh_.vertices) extend(bounds_, v);
   Moments moments = momentsOf(mesh_);
   if (count_once) {
@@ -41,12 +41,13 @@ MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once)
     std::size_t count = 0;
     const double rounding = kRounding * (diagonal(bounds_) + norm(bounds_.min));
     moments.add(integrate(bounds_, kOverlapCells, [&](const Vec3d& p, double reach, double) {
-      const double distance = tree_.closest(p, reach).distance, clear = std::min(distance, reach);
+      const ClosestTriangle::Nearest nearest = tree_.closest(p, reach);
+      const double distance = nearest.distance, clear = std::min(distance, reach);
       const auto end = known.begin() + static_cast<std::ptrdiff_t>(std::min(count, kKnown));
       const auto same = std::find_if(known.begin(), end, [&](const Known& other) {
         return norm(p - other.at) < clear + other.distance - rounding;
       });
-      const double winding = same != end ? same->winding : std::round(winding_.windingNumber(p));
+      const double winding = same != end ? same->winding : std::round(windingNumber(p, nearest.triangle));
       known[count++ % kKnown] = {p, clear, winding};
       return Probe{(winding > 0.5 ? 1 : 0) - winding, distance};
     }));
@@ -59,18 +60,24 @@ ClosestPoint MeshSolid::closestPoint(const Vec3d& p, double cutoff) const {
 }
 
 bool MeshSolid::contains(const Vec3d& p) const {
-  if (!holds(bounds_, p)) return false;
-  const Triangle* nearest =
-      count_once_ ? nullptr : tree_.closest(p, std::numeric_limits<double>::infinity()).triangle;
-  return nearest ? contains(p, *nearest) : winding_.windingNumber(p) > 0.5;
+  return holds(bounds_, p) &&
+         contains(p, *tree_.closest(p, std::numeric_limits<double>::infinity()).triangle);
 }
 
 bool MeshSolid::contains(const Vec3d& p, const Triangle& nearest) const {
-  if (!holds(bounds_, p)) return false;
-  // The winding number is expensive where large triangles lie beside small ones. Where no triangle passes
-  // through another, the nearest one tells the side, unless that is nearest with its edge.
-  const int side = count_once_ ? 0 : tree_.sideOf(p, nearest);
-  return side != 0 ? side < 0 : winding_.windingNumber(p) > 0.5;
+  return holds(bounds_, p) && windingNumber(p, &nearest) > 0.5;
+}
+
+double MeshSolid::windingNumber(const Vec3d& p, const Triangle* nearest) const {
+  // It is expensive where large triangles lie beside small ones. The nearest triangle tells it, unless that
+  // is nearest with a sharp edge, or touches another one.
+  if (nearest) {
+    const BesideTriangle& beside = beside_[tree_.indexOf(*nearest)];
+    const int side = tree_.sideOf(p, *nearest, beside.gentle);
+    if (side != 0 && beside.winding_in_front != kUnknownWinding)
+      return beside.winding_in_front + (side < 0 ? 1 : 0);
+  }
+  return winding_.windingNumber(p);
 }
 
 std::string MeshSolid::hash() const {

@@ -3,6 +3,7 @@
 
 #include "innersphere/mesh.hpp"
 #include "innersphere/solid.hpp"
+#include "mesh/beside_triangles.hpp"
 #include "mesh/closest_triangle.hpp"
 #include "mesh/winding_tree.hpp"
 
@@ -12,8 +13,8 @@ class MeshSolid : public Solid {
  public:
   /// Makes a solid of a closed mesh: each edge is used as often in one direction as in the other. Inside is
   /// where the winding number exceeds 1/2. If it may be other than 0 and 1 somewhere, `count_once` corrects
-  /// the mass properties for that by sampling.
-  MeshSolid(Mesh closed, const std::string& name, bool count_once);
+  /// the mass properties for that by sampling; `touched`: as of Cuts.
+  MeshSolid(Mesh closed, const std::string& name, bool count_once, const std::vector<bool>& touched);
 
   ClosestPoint closestPoint(const Vec3d& p, double cutoff) const override;
   ClosestTriangle::Nearest closestTriangle(const Vec3d& p, double cutoff) const {
@@ -29,12 +30,15 @@ class MeshSolid : public Solid {
   std::string hash() const override;
 
  private:
+  /// About a whole number. The triangle is the nearest one, or none.
+  double windingNumber(const Vec3d& p, const Triangle* nearest) const;
+
   Mesh mesh_;
   std::string name_;
-  bool count_once_;
   Bounds bounds_;
   ClosestTriangle tree_;
   WindingTree winding_;
+  std::vector<BesideTriangle> beside_;
   MassProperties mass_;
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 #include "mesh/mesh_clean.hpp"
 
@@ -55,15 +55,27 @@ std::size_t numberSets(DisjointSets& sets, const std::vector<std::uint32_t>& ite
 }  // namespace
 
 std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
-  std::vector<HalfEdge> half_edges;
-  half_edges.reserve(3 * mesh.triangles.size());
+  // Where those of each lower vertex begin.
+  std::vector<std::uint32_t> begin(mesh.vertices.size() + 1);
+  for (const auto& v : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) ++begin[std::min(v[k], v[(k + 1) % 3]) + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<HalfEdge> half_edges(3 * mesh.triangles.size());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& v = mesh.triangles[t];
-    for (int k = 0; k < 3; ++k) half_edges.push_back({v[k], v[(k + 1) % 3], t});
+    for (int k = 0; k < 3; ++k) {
+      const HalfEdge e{v[k], v[(k + 1) % 3], t};
+      half_edges[next[e.low()]++] = e;
+    }
   }
-  std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return std::tuple(a.low(), a.high(), a.triangle) < std::tuple(b.low(), b.high(), b.triangle);
-  });
+  for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
+    std::sort(half_edges.begin() + begin[v], half_edges.begin() + begin[v + 1],
+              [](const HalfEdge& a, const HalfEdge& b) {
+                return std::pair(a.high(), a.triangle) < std::pair(b.high(), b.triangle);
+              });
+  }
   return half_edges;
 }
 

@@ -67,7 +67,10 @@ class TrueOverlap {
   TrueOverlap(const Container& container, const Surface& surface, double volume)
       : few_(container, volume, kFewPoints), volume_(volume), scale_(1 / container.side()) {
     shift_ = container.fromWorld(container.origin());
-    if (!surface.triangles.empty() && isClosedSurface(surface)) tree_.emplace(surface);
+    if (!surface.triangles.empty() && isClosedSurface(surface)) {
+      tree_.emplace(surface);
+      for (const auto& v : surface.vertices) vertices_.push_back(scale_ * Point(v[0], v[1], v[2]) + shift_);
+    }
     if (!tree_ || std::abs(below(Point::UnitZ(), 2) - 1) > kOff)
       many_.emplace(container, volume, kManyPoints);
   }
@@ -79,16 +82,17 @@ class TrueOverlap {
 
   /// The fraction of the solid that is below a plane. The surface must be known.
   double below(const Point& normal, double height) const {
+    // Seen from a point of the plane: so the part of the plane in the solid adds nothing.
+    const Point from = height * normal;
+    std::vector<double> above(vertices_.size());
+    for (std::size_t i = 0; i < above.size(); ++i) above[i] = normal.dot(vertices_[i] - from);
     double sum = 0;
     for (const SurfaceTree::Triangle& triangle : tree_->triangles()) {
-      // Seen from a point of the plane: so the part of the plane in the solid adds nothing.
-      Point corners[3];
       double heights[3];
-      for (int k = 0; k < 3; ++k) {
-        const SurfaceTree::Lanes& v = tree_->vertices()[triangle[k]];
-        corners[k] = scale_ * Point(v[0], v[1], v[2]) + shift_ - height * normal;
-        heights[k] = normal.dot(corners[k]);
-      }
+      for (int k = 0; k < 3; ++k) heights[k] = above[triangle[k]];
+      if (heights[0] >= 0 && heights[1] >= 0 && heights[2] >= 0) continue;
+      Point corners[3];
+      for (int k = 0; k < 3; ++k) corners[k] = vertices_[triangle[k]] - from;
       Point polygon[4];
       int count = 0;
       for (int k = 0; k < 3; ++k) {
@@ -139,6 +143,7 @@ class TrueOverlap {
   Voxels few_;
   std::optional<Voxels> many_;
   std::optional<SurfaceTree> tree_;
+  std::vector<Point> vertices_;  // of the surface, in the cube
   double volume_, scale_;
   Point shift_;  // of the packing's frame
 };

@@ -161,6 +161,51 @@ TEST(MeshSign, WindingTreeIsCloseToTheExactSum) {
   EXPECT_LT(worst, 0.2);
 }
 
+// Mostly the nearest triangle tells the side. Where parts cut, touch or hold each other it may not.
+TEST(MeshSign, MatchesTheExactSumWherePartsMeet) {
+  const Mesh box = boxMesh({0, 0, 0}, {1, 1, 1});
+  Mesh cut = torusMesh(1, 0.4, 24, 12), split = box;
+  append(cut, boxMesh({0.3, -0.2, -0.3}, {1.9, 0.9, 0.2}));
+  split.vertices[split.triangles[0][0]] = {0.4, 0.45, 0.55};  // a dent with sharp edges
+  std::vector<Mesh> meshes{cut, split, torusMesh(1, 0.4, 24, 12)};
+  for (const Vec3d& low : {Vec3d{1, 0, 0}, Vec3d{1, 0.3, 0.2}, Vec3d{1, 1, 0}, Vec3d{1, 1, 1},
+                           Vec3d{0.5, 0, 0}, Vec3d{0.5, 0.5, 0.5}, Vec3d{1 + 1e-11, 0.2, 0}}) {
+    meshes.push_back(box);
+    append(meshes.back(), boxMesh(low, low + Vec3d{1, 1, 1}));
+  }
+  meshes.push_back(boxMesh({0, 0, 0}, {3, 3, 3}));
+  append(meshes.back(), inverted(boxMesh({1, 1, 1}, {2, 2, 2})));
+  append(meshes.back(), boxMesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
+
+  std::mt19937 random(7);
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const Mesh& mesh = meshes[i];
+    const auto solid = makeSolid(mesh, "parts");
+    const Mesh surface = solid->surface();
+    const Bounds box_around = solid->bounds();
+    for (int trial = 0; trial < 3000; ++trial) {
+      Vec3d p = randomPoint(random, box_around.min, box_around.max);
+      if (trial % 4 != 0) {
+        // Near a triangle, half of the times near one of its edges, and far more often than not nearer than
+        // it is long.
+        const auto& t = surface.triangles[random() % surface.triangles.size()];
+        const Vec3d u = randomPoint(random, {0, 0, 0}, {1, 1, 1});
+        const double b = u[0] * u[1], c = trial % 2 ? 0 : u[0] - b;
+        const Vec3d &corner = surface.vertices[t[0]], ab = surface.vertices[t[1]] - corner,
+                    ac = surface.vertices[t[2]] - corner;
+        p = corner + b * ab + c * ac +
+            std::pow(10, -7 * u[2]) * randomPoint(random, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+      }
+      if (solid->closestPoint(p).distance < 1e-9) continue;
+      double exact = 0;
+      for (const auto& t : surface.triangles)
+        exact += windingNumber(p, surface.vertices[t[0]], surface.vertices[t[1]], surface.vertices[t[2]]);
+      EXPECT_EQ(solid->contains(p), exact > 0.5)
+          << "mesh " << i << ": " << p[0] << " " << p[1] << " " << p[2];
+    }
+  }
+}
+
 TEST(MeshMass, BoxAndFarBox) {
   for (const double shift : {0.0, 1e4}) {
     const auto solid = makeSolid(boxMesh({shift, shift, shift}, {shift + 1, shift + 2, shift + 3}), "box");
