@@ -151,42 +151,54 @@ ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff)
   // Children are of equal size, so the tree has less than 16 levels, of which each leaves up to three open.
   std::array<Entry, 3 * 16 + 1> open;
   std::size_t count = 0;
-  if (!leaves_.empty())
-    open[count++] = {nodes_.empty() ? kLeaf : static_cast<std::uint32_t>(nodes_.size() - 1), 0};
-  while (count > 0) {
-    const Entry entry = open[--count];
-    if (entry.squared > limit) continue;
-    if (entry.child & kLeaf) {
-      const std::uint32_t first = (entry.child & ~kLeaf) * kWidth;
-      const Leaf& leaf = leaves_[first / kWidth];
-      FourFloats beside = zero;
-      for (const Planes& edge : leaf.edges) beside = larger(beside, -edge.heights(at));
-      const FourFloats height = leaf.faces.heights(at), squared = height * height + beside * beside;
-      const auto size = std::min(kWidth, static_cast<std::uint32_t>(triangles_.size()) - first);
-      for (unsigned near = within(squared, size); near != 0; near &= within(squared, size)) {
-        // The nearest first.
-        auto k = std::countr_zero(near);
-        for (unsigned rest = near & (near - 1); rest != 0; rest &= rest - 1) {
-          if (squared[std::countr_zero(rest)] < squared[k]) k = std::countr_zero(rest);
-        }
-        look(first + static_cast<std::uint32_t>(k));
-        near &= ~(1u << k);
+  Entry next{nodes_.empty() ? kLeaf : static_cast<std::uint32_t>(nodes_.size() - 1), 0};
+  const auto takeOpen = [&] {
+    while (count > 0) {
+      next = open[--count];
+      if (next.squared <= limit) return true;
+    }
+    return false;
+  };
+  // Always on with the nearest child. The others stay open, in any order: to sort them takes longer.
+  const auto goToLeaf = [&] {
+    while (!(next.child & kLeaf)) {
+      const Node& node = nodes_[next.child];
+      FourFloats squared = zero;
+      for (int axis = 0; axis < 3; ++axis) {
+        const FourFloats away = larger(larger(node.low[axis] - at[axis], at[axis] - node.high[axis]), zero);
+        squared += away * away;
       }
-      continue;
+      unsigned near = within(squared, node.count);
+      if (near == 0) return false;
+      const auto entry = [&] {
+        const auto k = static_cast<std::uint32_t>(std::countr_zero(near));
+        return Entry{node.children[k], squared[k]};
+      };
+      next = entry();
+      for (near &= near - 1; near != 0; near &= near - 1) {
+        Entry other = entry();
+        if (other.squared < next.squared) std::swap(other, next);
+        open[count++] = other;
+      }
     }
-    const Node& node = nodes_[entry.child];
-    FourFloats squared = zero;
-    for (int axis = 0; axis < 3; ++axis) {
-      const FourFloats away = larger(larger(node.low[axis] - at[axis], at[axis] - node.high[axis]), zero);
-      squared += away * away;
-    }
-    const std::size_t bottom = count;
-    for (unsigned near = within(squared, node.count); near != 0; near &= near - 1) {
-      const auto k = static_cast<std::uint32_t>(std::countr_zero(near));
-      // The nearest is on top.
-      std::size_t place = count++;
-      for (; place > bottom && open[place - 1].squared < squared[k]; --place) open[place] = open[place - 1];
-      open[place] = {node.children[k], squared[k]};
+    return true;
+  };
+  for (bool more = !leaves_.empty(); more; more = takeOpen()) {
+    if (!goToLeaf()) continue;
+    const std::uint32_t first = (next.child & ~kLeaf) * kWidth;
+    const Leaf& leaf = leaves_[first / kWidth];
+    FourFloats beside = zero;
+    for (const Planes& edge : leaf.edges) beside = larger(beside, -edge.heights(at));
+    const FourFloats height = leaf.faces.heights(at), squared = height * height + beside * beside;
+    const auto size = std::min(kWidth, static_cast<std::uint32_t>(triangles_.size()) - first);
+    for (unsigned near = within(squared, size); near != 0; near &= within(squared, size)) {
+      // The nearest first.
+      auto k = std::countr_zero(near);
+      for (unsigned rest = near & (near - 1); rest != 0; rest &= rest - 1) {
+        if (squared[std::countr_zero(rest)] < squared[k]) k = std::countr_zero(rest);
+      }
+      look(first + static_cast<std::uint32_t>(k));
+      near &= ~(1u << k);
     }
   }
 

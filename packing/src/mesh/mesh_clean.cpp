@@ -95,6 +95,7 @@ std::size_t weldClose(Mesh& mesh, double tolerance) {
   const std::size_t before = mesh.vertices.size();
   const Vec3d origin = mesh.vertices.empty() ? Vec3d{} : mesh.vertices.front();
   std::unordered_multimap<Cell, std::uint32_t, HashCell> cells;
+  cells.reserve(before);
   renumber(mesh, [&](const Vec3d& p, std::vector<Vec3d>& vertices) {
     Cell home;
     for (int k = 0; k < 3; ++k) home[k] = std::llround((p[k] - origin[k]) / tolerance);

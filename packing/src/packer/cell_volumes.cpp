@@ -40,8 +40,9 @@ class Sampler {
   void descend(const Index& at, std::uint32_t lattice, bool inside, const NearBalls& around) const {
     const double half = lattice * spacing_ / 2;
     const Point centre = Point(at[0], at[1], at[2]) * spacing_ + Point::Constant(half);
+    Container::Nearest wall;
     if (!inside) {
-      const Container::Nearest wall = container_.closest(centre, 1.01 * std::numbers::sqrt3 * half);
+      wall = container_.closest(centre, 1.01 * std::numbers::sqrt3 * half);
       if (wall.distance > std::numbers::sqrt3 * half) {
         if (!container_.contains(centre, wall)) return;
         inside = true;
@@ -50,7 +51,9 @@ class Sampler {
     const NearBalls balls(around, centre, half);
     if (balls.insideOne()) return;
     if (lattice == kSampleBlock) {
-      sampleBlock(at, half, inside, balls);
+      ClearanceCache clearances(container_.margin());
+      if (!inside) clearances.add(centre, container_.contains(centre, wall) ? wall.distance : -wall.distance);
+      sampleBlock(at, half, inside, balls, clearances);
       return;
     }
     const std::uint32_t step = lattice / 2;
@@ -66,8 +69,8 @@ class Sampler {
   }
 
  private:
-  void sampleBlock(const Index& block, double half, bool inside, const NearBalls& balls) const {
-    ClearanceCache clearances(container_.margin());
+  void sampleBlock(const Index& block, double half, bool inside, const NearBalls& balls,
+                   ClearanceCache& clearances) const {
     const bool many = balls.size() > kManyBalls;
     for (std::uint32_t k = 0; k < kSampleBlock * kSampleBlock * kSampleBlock; ++k) {
       const Index at{block[0] + k % kSampleBlock, block[1] + k / kSampleBlock % kSampleBlock,

@@ -87,12 +87,17 @@ class TrueOverlap {
     std::vector<double> above(vertices_.size());
     for (std::size_t i = 0; i < above.size(); ++i) above[i] = normal.dot(vertices_[i] - from);
     double sum = 0;
+    const auto add = [&](const Point& a, const Point& b, const Point& c) { sum += a.dot(b.cross(c)) / 6; };
     for (const SurfaceTree::Triangle& triangle : tree_->triangles()) {
       double heights[3];
       for (int k = 0; k < 3; ++k) heights[k] = above[triangle[k]];
       if (heights[0] >= 0 && heights[1] >= 0 && heights[2] >= 0) continue;
       Point corners[3];
       for (int k = 0; k < 3; ++k) corners[k] = vertices_[triangle[k]] - from;
+      if (heights[0] < 0 && heights[1] < 0 && heights[2] < 0) {
+        add(corners[0], corners[1], corners[2]);
+        continue;
+      }
       Point polygon[4];
       int count = 0;
       for (int k = 0; k < 3; ++k) {
@@ -102,7 +107,7 @@ class TrueOverlap {
         const double part = heights[k] / (heights[k] - heights[next]);
         polygon[count++] = corners[k] + part * (corners[next] - corners[k]);
       }
-      for (int k = 2; k < count; ++k) sum += polygon[0].dot(polygon[k - 1].cross(polygon[k])) / 6;
+      for (int k = 2; k < count; ++k) add(polygon[0], polygon[k - 1], polygon[k]);
     }
     return sum / volume_;
   }
