@@ -7,6 +7,7 @@
 
 #include "packer/clearance_cache.hpp"
 #include "packer/jitter.hpp"
+#include "surface/lanes.hpp"
 
 namespace innersphere {
 namespace {
@@ -92,26 +93,22 @@ Point Voxels::point(double part) const {
 }
 
 Voxels::Shared Voxels::shared(const Pose& pose) const {
-  // Into the lattice of the original; in single precision, which is far finer than the cells. Plain numbers:
-  // with sanitizers Eigen's products would take most of the packer's time.
-  Eigen::Matrix<float, 4, 3> to;
-  to << (pose.rotation / spacing_).transpose().cast<float>(),
-      ((pose.shift - origin_) / spacing_).transpose().cast<float>();
-  const float* const rows = to.data();
+  // Into the lattice of the original; in single precision, which is far finer than the cells. All axes side
+  // by side, and a last number that is always 0.
+  FourFloats columns[4]{}, sizes{0, 0, 0, 1};
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) columns[i][k] = static_cast<float>(pose.rotation(k, i) / spacing_);
+    columns[3][k] = static_cast<float>((pose.shift - origin_)[k] / spacing_);
+    sizes[k] = static_cast<float>(size_[k]);
+  }
   const Point extent = Point(size_[0], size_[1], size_[2]) * spacing_;
-  const float sizes[] = {static_cast<float>(size_[0]), static_cast<float>(size_[1]),
-                         static_cast<float>(size_[2])};
   const auto hit = [&](const Eigen::Vector3f& point) {
     const float* const x = point.data();
-    Index at;
-    bool within = true;  // without branches, which no processor foresees
-    for (int k = 0; k < 3; ++k) {
-      const float* const row = rows + 4 * k;
-      const float along = row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3];
-      within &= along >= 0 && along < sizes[k];
-      at[k] = static_cast<std::uint32_t>(static_cast<std::int64_t>(along));
-    }
-    return within && isInside(bit(at));
+    const FourFloats along = columns[0] * x[0] + columns[1] * x[1] + columns[2] * x[2] + columns[3];
+    if (signBits((along >= FourFloats{}) & (along < sizes)) != 15) return false;
+    const FourInts at = __builtin_convertvector(along, FourInts);
+    return isInside(bit({static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]),
+                         static_cast<std::uint32_t>(at[2])}));
   };
   std::size_t hits[2] = {};
   for (const Run& run : runs_) {
