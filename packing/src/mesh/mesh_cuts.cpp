@@ -1,7 +1,9 @@
 #include "mesh/mesh_cuts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "common/bounds.hpp"
 
