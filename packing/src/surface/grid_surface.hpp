@@ -29,18 +29,28 @@ Similarity after(const Similarity& a, const Similarity& b);
 /// one. Half of a number is the high side, half minus the low one, in an order that differs between the
 /// surfaces: boxes of both meet if the sums of all halves are not negative.
 struct LaneBoxes {
+  using Halves = std::int16_t __attribute__((vector_size(sizeof(FourInts))));
   FourInts sides[6];
-  /// Returns which of the boxes meet one of the other surface, a bit for each.
-  std::uint32_t meeting(const LaneBoxes& other, std::uint32_t child, int axes = 6) const {
-    using Halves = std::int16_t __attribute__((vector_size(sizeof(FourInts))));
+
+  /// Returns which of the boxes meet four times the same one of the other surface, a bit for each, on the
+  /// grid of the first.
+  std::uint32_t meeting(const FourInts (&box)[3]) const {
     Halves gaps{};
-    for (int k = 0; k < axes; ++k) {
-      const FourInts same = FourInts{} + other.sides[k][child];
-      gaps |= reinterpret_cast<Halves>(sides[k]) + reinterpret_cast<Halves>(same);
+    for (int k = 0; k < 3; ++k) {
+      const FourInts there = box[k];
+      gaps |= reinterpret_cast<Halves>(sides[k]) + reinterpret_cast<Halves>(there);
     }
     const auto gap = reinterpret_cast<FourInts>(gaps);
     return ~signBits(gap | (gap << 16)) & 15;
   }
+};
+
+/// Leads from a surface to the coarse grid of the other one. Each number is there four times: for all
+/// children of a node.
+struct ToCoarseGrid {
+  FourFloats matrix[3][4]{}, absolute[3][4]{};  ///< column after column; in the last row zeros
+  FourFloats translation[4]{};
+  float slack;  ///< what rounding may do to places there
 };
 
 /// Here the other surface crosses an edge of a triangle.
@@ -55,7 +65,8 @@ struct Crossing {
 /// left, seen from outside of the triangle's own one.
 struct Segment {
   Vec3d from, to;
-  std::uint32_t next;  ///< of the same triangle
+  std::uint32_t other;  ///< where that triangle is
+  std::uint32_t next;   ///< of the same triangle
 };
 
 /// Holds one of two surfaces, in the frame of the first one, in cells of a grid. Vertices, nodes and
@@ -79,9 +90,12 @@ class GridSurface {
   };
 
   /// Begins a query. `placed`: in the frame of the first surface; `in_other`: in that of the other one;
-  /// `cells` of the grid for a unit of length; `moved`: what the points of the other surface are asked for.
+  /// `cells` of the grid for a unit of length; `moved`: what the points of the other surface are asked for;
+  /// `wide`: with AVX-512.
   void begin(const SurfaceTree& tree, const SurfaceTree& other, const Similarity& placed,
-             const Similarity& in_other, double cells, Moved moved);
+             const Similarity& in_other, double cells, Moved moved, bool wide);
+
+  bool isWide() const { return wide_; }
 
   const SurfaceTree& tree() const { return *tree_; }
   /// Returns the place of a vertex on the grid.
@@ -106,8 +120,8 @@ class GridSurface {
     return nodes_[index];
   }
 
-  void addSegment(Triangle& t, const Vec3d& from, const Vec3d& to) {
-    segments_.push_back({from, to, t.first_segment});
+  void addSegment(Triangle& t, const Vec3d& from, const Vec3d& to, Index other) {
+    segments_.push_back({from, to, other, t.first_segment});
     t.first_segment = static_cast<Index>(segments_.size() - 1);
   }
   void addCrossing(Triangle& t, const Vec3d& at, int edge, int change) {
@@ -136,8 +150,8 @@ class GridSurface {
 
   const SurfaceTree *tree_ = nullptr, *other_ = nullptr;
   Similarity to_grid_;
-  FourFloats matrix_[9], absolute_[9], translation_[3];  ///< to the other surface's coarse grid
-  float slack_;                                          ///< what rounding may do to places there
+  ToCoarseGrid to_other_;
+  bool wide_ = false;
   double cells_;
   Moved moved_;
   Index query_ = 0, asked_ = 0;

@@ -29,7 +29,7 @@ Bounds placed(const Bounds& box, const Similarity& place) {
 
 }  // namespace
 
-SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b) {
+SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b, bool wide) {
   // All is done in the frame of A.
   const Similarity identity{{{1, 0, 0, 0, 1, 0, 0, 0, 1}}, {0, 0, 0}};
   const Similarity b_to_a = after(a.place.inverse(), b.place);
@@ -39,8 +39,8 @@ SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b) {
   if (!(reach > 0)) return {};
   const double cells = std::exp2(kGridBits - 1 - std::ilogb(reach));
   static thread_local GridSurface on_grid_a, on_grid_b;
-  on_grid_a.begin(a.tree, b.tree, identity, b_to_a.inverse(), cells, Moved::point);
-  on_grid_b.begin(b.tree, a.tree, b_to_a, b_to_a, cells, Moved::triangle);
+  on_grid_a.begin(a.tree, b.tree, identity, b_to_a.inverse(), cells, Moved::point, wide);
+  on_grid_b.begin(b.tree, a.tree, b_to_a, b_to_a, cells, Moved::triangle, wide);
   findMeeting(on_grid_a, on_grid_b);
 
   const std::vector<Segment>& meeting = on_grid_a.segments();

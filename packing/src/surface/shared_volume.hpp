@@ -5,6 +5,7 @@
 
 #include "innersphere/geometry.hpp"
 #include "surface/grid_surface.hpp"
+#include "surface/lanes.hpp"
 #include "surface/surface_tree.hpp"
 
 namespace innersphere {
@@ -35,7 +36,8 @@ struct SharedSums {
 /// meet. So only pairs of triangles that meet are looked at one by one; to all others w_B comes over the
 /// edges that they share. Where a surface encloses a part of space twice, that part counts twice.
 ///
-/// All sums are zero if what they leave is no more than rounding. The result has the same bits on every run.
-SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b);
+/// All sums are zero if what they leave is no more than rounding. The result has the same bits on every run,
+/// also with AVX-512 (`wide`).
+SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b, bool wide = hasAvx512());
 
 }  // namespace innersphere

@@ -13,8 +13,8 @@ namespace {
 
 /// Half the distance from 1 to the next number.
 constexpr double kUnit = 0x1p-53;
-/// Bounds of rounding: of a sum of three products of differences, and of one difference of two products.
-constexpr double kRounding3 = 32 * kUnit, kRounding2 = 4 * kUnit;
+/// A bound of rounding of one difference of two products.
+constexpr double kRounding2 = 4 * kUnit;
 
 using Wide = __int128;
 struct WideVector {
@@ -66,8 +66,8 @@ int facing(const GridTriangle& t) {
 }
 
 /// Returns what EdgeOrder::comesBefore() does, exactly.
-[[gnu::noinline]] bool isBefore(const GridTriangle& t, const Corners& at_u, bool from_alone_t,
-                                const GridTriangle& u, const Corners& at_t, bool from_alone_u) {
+bool isBefore(const GridTriangle& t, const Corners& at_u, bool from_alone_t, const GridTriangle& u,
+              const Corners& at_t, bool from_alone_u) {
   // From a, above u, down to b, and from c, above t, down to d.
   int a = at_u.alone, b = at_u.far(from_alone_t), c = at_t.alone, d = at_t.far(from_alone_u);
   if (!at_u.isAbove(a)) std::swap(a, b);
@@ -101,33 +101,11 @@ bool GridTriangle::isAbove(const Vec3d& point, Moved moved) const {
   return (signAlongMove(exact_normal) > 0) == (moved == Moved::point);
 }
 
-EdgeOrder::EdgeOrder(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t) {
-  // The signs of the volumes between both edges, seen from the corner of t that is alone.
-  const Vec3d from = t.corner(at_u.alone), to_alone = u.corner(at_t.alone) - from;
-  const auto toOthers = [&](const GridTriangle& triangle, int alone, int axis) {
-    return twoAt(triangle.places[axis] + alone + 1) - from[axis];
-  };
-  TwoDoubles tx = toOthers(t, at_u.alone, 0), ty = toOthers(t, at_u.alone, 1),
-             tz = toOthers(t, at_u.alone, 2);
-  const TwoDoubles ux = toOthers(u, at_t.alone, 0), uy = toOthers(u, at_t.alone, 1),
-                   uz = toOthers(u, at_t.alone, 2);
-  const TwoDoubles area_x = to_alone.y * uz - to_alone.z * uy, area_y = to_alone.z * ux - to_alone.x * uz,
-                   area_z = to_alone.x * uy - to_alone.y * ux;
-  // No way from a corner of t to one of u is longer; and an edge between the others is up to twice the size.
-  const double farthest = largest(u.corner(0) - t.corner(0)) + t.size + u.size;
-  const double rounding = kRounding3 * 2 * t.size * farthest * farthest;
-  unsigned above = 0, below = 0;
-  for (const int first : {0, 2}) {
-    const TwoDoubles volume = tx * area_x + ty * area_y + tz * area_z;
-    above |= bitsAbove(volume, rounding) << first;
-    below |= bitsAbove(-volume, rounding) << first;
-    tx = exchanged(tx), ty = exchanged(ty), tz = exchanged(tz);
-  }
-  before_ = at_u.isAbove(at_u.alone) == at_t.isAbove(at_t.alone) ? above : below;
-  if ((above | below) == 15) return;
+void EdgeOrder::decide(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t,
+                       unsigned known) {
   for (const bool from_t : {true, false}) {
     for (const bool from_u : {true, false}) {
-      if (((above | below) >> bit(from_t, from_u) & 1) != 0) continue;
+      if ((known >> bit(from_t, from_u) & 1) != 0) continue;
       if (isBefore(t, at_u, from_t, u, at_t, from_u)) before_ |= 1U << bit(from_t, from_u);
     }
   }

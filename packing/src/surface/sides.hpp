@@ -2,10 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 
 #include "innersphere/geometry.hpp"
-#include "surface/lanes.hpp"
+#include "surface/box.hpp"
 
 namespace innersphere {
 
@@ -17,17 +16,21 @@ namespace innersphere {
 /// Coordinates are at most 2^kGridBits. Then six times the product of three differences is less than 2^127.
 constexpr int kGridBits = 39;
 
+/// A bound of rounding, of a sum of three products of differences.
+constexpr double kVolumeRounding = 32 * 0x1p-53;
+
 /// Says which of two surfaces is the one that is moved.
 enum class Moved { point, triangle };
 
 /// This is a triangle with its corners on the grid.
 struct GridTriangle {
   GridTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
-  double places[3][5];  ///< along each axis those of all corners, and of the first two again
-  Vec3d normal;         ///< of twice its area
-  double offset;        ///< of its plane, times the length of the normal
-  double size;          ///< the largest component of a way from the first corner to another
-  double rounding;      ///< of the normal's components
+  static constexpr int kRow = 5;
+  double places[3][kRow];  ///< along each axis those of all corners, and of the first two again
+  Vec3d normal;            ///< of twice its area
+  double offset;           ///< of its plane, times the length of the normal
+  double size;             ///< the largest component of a way from the first corner to another
+  double rounding;         ///< of the normal's components
 
   Vec3d corner(int k) const { return {places[0][k], places[1][k], places[2][k]}; }
   /// Returns heights above the plane, times the length of the normal; rounded by up to heightRounding().
@@ -43,12 +46,8 @@ struct GridTriangle {
 
 /// Says how the corners of a triangle lie to the plane of another one.
 struct Corners {
-  /// `moved` names the surface of the triangle.
-  Corners(const GridTriangle& plane, const GridTriangle& triangle, Moved moved);
-
-  double heights[4];  ///< above the plane, times the length of its normal; rounded
-  unsigned above;     ///< a bit for each of those above it, exact
-  int alone;          ///< this one lies on its own side, -1 if all lie on one
+  std::uint8_t above;  ///< a bit for each of those above the plane, exact
+  std::int8_t alone;   ///< this one lies on its own side, -1 if all lie on one
 
   bool isAbove(int corner) const { return (above >> corner & 1) != 0; }
   /// Returns the edge that leads from the corner that is alone, or to it. Edge k leads from corner k to the
@@ -62,10 +61,24 @@ struct Corners {
   static int previous(int corner) { return corner > 0 ? corner - 1 : 2; }
 };
 
+/// `moved` names the surface of the triangle.
+template <class Kernels>
+Corners cornersAt(const GridTriangle& plane, const GridTriangle& triangle, Moved moved) {
+  const unsigned sides = Kernels::sides(plane, triangle);
+  unsigned above = sides & 7;
+  if (((sides | sides >> 4) & 7) != 7) {
+    for (int k = 0; k < 3; ++k) {
+      if (((sides | sides >> 4) >> k & 1) == 0 && plane.isAbove(triangle.corner(k), moved)) above |= 1U << k;
+    }
+  }
+  return {static_cast<std::uint8_t>(above), Corners::kAlone[above]};
+}
+
 /// The planes of t, of A, and u, of B, meet in a line, which two edges of each cross.
 class EdgeOrder {
  public:
-  EdgeOrder(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t);
+  template <class Kernels>
+  static EdgeOrder of(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t);
   /// Returns whether along the line, in the direction normal of t x normal of u, an edge of t comes before
   /// one of u. Each leads from or to the corner that is alone.
   bool comesBefore(bool from_alone_t, bool from_alone_u) const {
@@ -77,30 +90,33 @@ class EdgeOrder {
   static int bit(bool from_alone_t, bool from_alone_u) {
     return (from_alone_t == from_alone_u ? 0 : 2) + (from_alone_u ? 0 : 1);
   }
-  unsigned before_;
+  /// Adds the signs that are not in `known`, exactly.
+  void decide(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t,
+              unsigned known);
+
+  std::uint8_t before_;
 };
+
+template <class Kernels>
+EdgeOrder EdgeOrder::of(const GridTriangle& t, const Corners& at_u, const GridTriangle& u,
+                        const Corners& at_t) {
+  // The signs of the volumes between both edges, seen from the corner of t that is alone.
+  const Vec3d from = t.corner(at_u.alone), to_alone = u.corner(at_t.alone) - from;
+  // No way from a corner of t to one of u is longer; and an edge between the others is up to twice the size.
+  const double farthest = largest(u.corner(0) - t.corner(0)) + t.size + u.size;
+  const double rounding = kVolumeRounding * 2 * t.size * farthest * farthest;
+  const unsigned volumes =
+      Kernels::volumes(from, to_alone, t.places[0] + at_u.alone + 1, u.places[0] + at_t.alone + 1, rounding);
+  const bool same = at_u.isAbove(at_u.alone) == at_t.isAbove(at_t.alone);
+  const unsigned known = (volumes | volumes >> 4) & 15;
+  EdgeOrder order;
+  order.before_ = static_cast<std::uint8_t>((same ? volumes : volumes >> 4) & 15);
+  if (known != 15) order.decide(t, at_u, u, at_t, known);
+  return order;
+}
 
 /// Returns by how much a triangle adds to the winding number of a point: 1 where it is above it, in the
 /// direction z, and faces up, -1 where it faces down, 0 elsewhere.
 int windingBelow(const GridTriangle& triangle, const Vec3d& point, Moved moved);
-
-inline Corners::Corners(const GridTriangle& plane, const GridTriangle& triangle, Moved moved) : above(0) {
-  unsigned below = 0;
-  const double rounding = plane.heightRounding();
-  for (const int k : {0, 2}) {
-    const auto& at = triangle.places;
-    const TwoDoubles height = plane.height(twoAt(at[0] + k), twoAt(at[1] + k), twoAt(at[2] + k));
-    std::memcpy(heights + k, &height, sizeof height);
-    above |= bitsAbove(height, rounding) << k;
-    below |= bitsAbove(-height, rounding) << k;
-  }
-  above &= 7;
-  if (((above | below) & 7) != 7) {
-    for (int k = 0; k < 3; ++k) {
-      if (((above | below) >> k & 1) == 0 && plane.isAbove(triangle.corner(k), moved)) above |= 1U << k;
-    }
-  }
-  alone = kAlone[above];
-}
 
 }  // namespace innersphere

@@ -26,6 +26,9 @@ static_assert(kCoarseHalf < SurfaceTree::CoarseGrid::kEnd && 2 * SurfaceTree::Co
 /// More cells than this are none in single precision.
 constexpr double kMostCells = 1e30;
 
+/// Of a part of a triangle.
+constexpr std::size_t kMostCorners = 4;
+
 double areaOf(const Bounds& box) {
   const Vec3d d = box.max - box.min;
   return d.x * d.y + d.y * d.z + d.z * d.x;
@@ -70,15 +73,21 @@ class SurfaceTree::Builder {
  private:
   struct Part {
     std::uint32_t triangle;
+    std::uint32_t corners;  ///< where they are
     Bounds box;
     double middle(int axis) const { return box.min[axis] + box.max[axis]; }
   };
+  void addCorners(Node& node, std::uint32_t first, std::uint32_t end);
   std::uint32_t halve(std::uint32_t first, std::uint32_t end);
   void addParts(std::uint32_t triangle, const std::vector<Vec3d>& polygon, double most);
 
   SurfaceTree& tree_;
+  struct PartCorners {
+    Vec3d at[kMostCorners];
+    std::uint8_t count;
+  };
   std::vector<Part> parts_;
-  std::vector<bool> in_several_;  ///< of the triangles
+  std::vector<PartCorners> corners_;
   std::vector<Part> best_;
   std::vector<double> costs_;
 };
@@ -100,20 +109,23 @@ SurfaceTree::Builder::Builder(SurfaceTree& tree) : tree_(tree) {
     const Vec3d corners[3] = {at(t[0]), at(t[1]), at(t[2])};
     addParts(i, {corners, corners + 3}, most);
   }
-  in_several_.assign(tree.triangles_.size(), false);
-  for (std::size_t k = 1; k < parts_.size(); ++k) {
-    if (parts_[k].triangle == parts_[k - 1].triangle) in_several_[parts_[k].triangle] = true;
-  }
 }
 
-/// Adds the box of a part of a triangle, or those of both halves of it.
+/// Adds a part of a triangle, or both halves of it.
 void SurfaceTree::Builder::addParts(std::uint32_t triangle, const std::vector<Vec3d>& polygon, double most) {
   Bounds box = nothing();
   for (const Vec3d& corner : polygon) include({corner, corner}, box);
   const Vec3d size = box.max - box.min;
   const int axis = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
   if (size[axis] <= most) {
-    parts_.push_back({triangle, box});
+    for (std::size_t i = 1; i + 1 < polygon.size(); i += kMostCorners - 2) {
+      Part& part =
+          parts_.emplace_back(Part{triangle, static_cast<std::uint32_t>(corners_.size()), nothing()});
+      PartCorners& corners = corners_.emplace_back(PartCorners{{polygon[0]}, 1});
+      for (std::size_t k = i; k < std::min(i + kMostCorners - 1, polygon.size()); ++k)
+        corners.at[corners.count++] = polygon[k];
+      for (int c = 0; c < corners.count; ++c) include({corners.at[c], corners.at[c]}, part.box);
+    }
     return;
   }
   const double middle = box.min[axis] + size[axis] / 2;
@@ -133,6 +145,7 @@ std::uint32_t SurfaceTree::Builder::build(std::uint32_t first, std::uint32_t end
   std::vector<Node>& nodes = tree_.nodes_;
   const auto index = static_cast<std::uint32_t>(nodes.size());
   nodes.emplace_back().are_triangles = end - first <= kWidth;
+  Bounds boxes[kWidth];
   std::array<std::uint32_t, kWidth + 1> cuts;
   if (end - first <= kWidth) {
     for (std::uint32_t k = 0; k <= kWidth; ++k) cuts[k] = std::min(first + k, end);
@@ -145,22 +158,26 @@ std::uint32_t SurfaceTree::Builder::build(std::uint32_t first, std::uint32_t end
     std::uint32_t child = parts_[cuts[k]].triangle;
     if (!nodes[index].are_triangles) {
       child = build(cuts[k], cuts[k + 1]);
-      nodes[child].parent = index;
-      nodes[child].place = nodes[index].count;
     }
-    const Bounds box = boundsOf(cuts[k], cuts[k + 1]);
-    Node& node = nodes[index];
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto low = static_cast<float>(box.min[axis]), high = static_cast<float>(box.max[axis]);
-      const float centre = low + (high - low) / 2;
-      node.centre[axis][node.count] = centre;
-      node.half[axis][node.count] = std::max(high - centre, centre - low);
-    }
-    if (node.are_triangles && in_several_[child]) node.in_several |= 1U << node.count;
-    node.children[node.count++] = child;
+    boxes[nodes[index].count] = boundsOf(cuts[k], cuts[k + 1]);
+    nodes[index].children[nodes[index].count++] = child;
   }
-  tree_.placeOnGrid(nodes[index]);
+  if (nodes[index].are_triangles) addCorners(nodes[index], first, end);
+  tree_.addBoxes(nodes[index], boxes);
   return index;
+}
+
+void SurfaceTree::Builder::addCorners(Node& node, std::uint32_t first, std::uint32_t end) {
+  for (std::uint32_t i = first; i < end; ++i)
+    node.corners = std::max(node.corners, corners_[parts_[i].corners].count);
+  for (std::uint32_t i = first; i < end; ++i) {
+    const PartCorners& corners = corners_[parts_[i].corners];
+    for (int c = 0; c < node.corners; ++c) {
+      const Vec3d& corner = corners.at[std::min(c, corners.count - 1)];
+      for (int axis = 0; axis < 3; ++axis)
+        node.extent[3 * c + axis][i - first] = static_cast<float>(corner[axis]);
+    }
+  }
 }
 
 /// Sorts triangles [first, end) into two parts, so that the areas of their boxes, times the numbers of
@@ -228,14 +245,24 @@ SurfaceTree::SurfaceTree(const Surface& surface) {
   findParts();
 }
 
-void SurfaceTree::placeOnGrid(Node& node) const {
+void SurfaceTree::addBoxes(Node& node, const Bounds* boxes) const {
   const auto per = static_cast<float>(grid_.per);
   const auto slack = static_cast<float>(kSingleRounding * grid_.per * largest(bounds_));
-  for (int k = 0; k < 3; ++k) {
-    const Lanes centre = per * (node.centre[k] - static_cast<float>(grid_.middle[k])),
-                half = per * node.half[k] + slack;
-    node.sides[k] = grid_.sides(half + centre, half - centre);
+  Lanes centre[3]{}, half[3]{};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < node.count; ++i) {
+      const auto low = static_cast<float>(boxes[i].min[axis]), high = static_cast<float>(boxes[i].max[axis]);
+      centre[axis][i] = low + (high - low) / 2;
+      half[axis][i] = std::max(high - centre[axis][i], centre[axis][i] - low);
+    }
+    const Lanes at = per * (centre[axis] - static_cast<float>(grid_.middle[axis])),
+                size = per * half[axis] + slack;
+    node.sides[axis] = grid_.sides(size + at, size - at);
   }
+  for (std::uint32_t i = node.count; i < kWidth; ++i) node.sides[0][i] = CoarseGrid::kNoBox;
+  if (node.are_triangles) return;
+  std::copy(centre, centre + 3, node.extent);
+  std::copy(half, half + 3, node.extent + 3);
 }
 
 void SurfaceTree::link() {

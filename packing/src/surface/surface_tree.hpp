@@ -16,8 +16,7 @@ constexpr double kSingleRounding = 2e-6;
 /// Returns whether each edge is run along as often in one direction as in the other.
 bool isClosedSurface(const Surface& surface);
 
-/// Holds a closed surface: its triangles, in the order of a tree of boxes, and which of them meet in a
-/// vertex.
+/// Holds a closed surface: its triangles, a tree of boxes, and which triangles meet in a vertex.
 class SurfaceTree {
  public:
   using Triangle = std::array<std::uint32_t, 3>;  ///< indices of vertices
@@ -30,18 +29,18 @@ class SurfaceTree {
   static constexpr std::uint32_t kWidth = 4;
   using Lanes = FourFloats;
 
-  /// Says what is below a node, and above it.
+  /// Says what is below a node.
   struct Links {
     std::array<std::uint32_t, kWidth> children{};
-    std::uint32_t parent = 0;     ///< not of the first node
-    std::uint8_t place = 0;       ///< among the parent's children
-    std::uint8_t count = 0;       ///< of the children
-    bool are_triangles = false;   ///< or nodes
-    std::uint8_t in_several = 0;  ///< a bit for each triangle that is the child of several nodes
+    std::uint8_t count = 0;      ///< of the children
+    bool are_triangles = false;  ///< or nodes
   };
   struct Node : Links {
-    Lanes centre[3]{}, half[3]{};  ///< of the children's boxes
-    FourInts sides[3]{};           ///< of the boxes in the coarse grid
+    std::uint8_t corners = 0;  ///< 3 or 4, of triangles, or of parts of them
+    FourInts sides[3]{};       ///< of the children's boxes in the coarse grid
+    /// Three numbers for each corner of the children if they are triangles; those for centre and half size of
+    /// their boxes if they are nodes.
+    Lanes extent[12]{};
   };
 
   /// Boxes are compared on a grid so coarse that its numbers have 15 bits.
@@ -49,9 +48,11 @@ class SurfaceTree {
     Vec3d middle{};                       ///< of the surface
     double per = 0;                       ///< cells for a unit of length
     static constexpr float kEnd = 16300;  ///< behind all of the surface: boxes reach no farther
+    /// The sides of what is behind the end of any grid.
+    static constexpr std::int32_t kNoBox = -16384 * 0x10001;
     /// Returns the high sides of boxes, and minus their low ones, in the halves of a number. They are
     /// rounded up.
-    FourInts sides(Lanes high, Lanes minus_low) const;
+    static FourInts sides(Lanes high, Lanes minus_low);
   };
 
   /// The root is the first one.
@@ -74,7 +75,7 @@ class SurfaceTree {
 
  private:
   class Builder;
-  void placeOnGrid(Node& node) const;
+  void addBoxes(Node& node, const Bounds* boxes) const;
   void link();
   void findParts();
 
@@ -87,7 +88,7 @@ class SurfaceTree {
   CoarseGrid grid_;
 };
 
-inline FourInts SurfaceTree::CoarseGrid::sides(Lanes high, Lanes minus_low) const {
+inline FourInts SurfaceTree::CoarseGrid::sides(Lanes high, Lanes minus_low) {
   const Lanes last = Lanes{} + kEnd;
   // What is not a number is at the end, too.
   const auto up = [&](Lanes x) {
