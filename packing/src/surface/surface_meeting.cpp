@@ -142,7 +142,8 @@ void Meeting<Kernels>::keepMeeting(std::vector<Candidate>& candidates) {
     to.at_t = at_t;
     to.at_u = at_u;
     to.order = order;
-    kept += order.comesBefore(first_t, !first_u) & !order.comesBefore(!first_t, first_u) ? 1 : 0;
+    const int starts = order.comesBefore(first_t, !first_u), is_over = order.comesBefore(!first_t, first_u);
+    kept += static_cast<std::size_t>(starts & ~is_over);
   }
   count_ = kept;
 }
