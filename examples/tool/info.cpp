@@ -18,9 +18,8 @@ Command infoCommand() {
   command.flag("--json", arguments->json, "Print JSON, lengths in metres");
   command.examples = {"innersphere info bunny.cbor --json"};
   command.run = [arguments] {
-    const std::optional<Covering> covering = loadCovering(arguments->file);
-    const Report report = covering ? describe(*covering) : describe(loadPacking(arguments->file));
-    report.print(arguments->json);
+    std::visit([&](const auto& spheres) { describe(spheres).print(arguments->json); },
+               loadSpheres(arguments->file));
     return kOk;
   };
   return command;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "file_names.hpp"
 #include "innersphere/error.hpp"
@@ -121,9 +122,16 @@ Packing loadPacking(const std::string& source) {
       source + " is no packing: that is read from .json, .cbor or .xyzr; `innersphere pack` makes one");
 }
 
-std::optional<Covering> loadCovering(const std::string& source) {
-  if (isStream(source) || endingOf(source) != ".json") return std::nullopt;
-  return readCovering(source);
+std::variant<Packing, Covering> loadSpheres(const std::string& source) {
+  // Packings first: they may be large, and are not to be read twice.
+  try {
+    return loadPacking(source);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_format || isStream(source) || endingOf(source) != ".json") throw;
+    std::optional<Covering> covering = readCovering(source);
+    if (!covering) throw;
+    return *std::move(covering);
+  }
 }
 
 Packing loadOrPack(const std::string& source, std::size_t spheres) {

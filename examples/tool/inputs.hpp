@@ -2,8 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
+#include <variant>
 
 #include "command.hpp"
 #include "innersphere/covering.hpp"
@@ -33,8 +33,8 @@ bool isPacking(const std::string& source);
 /// Throws Error.
 Packing loadPacking(const std::string& source);
 
-/// Reads a covering or clump; nothing if that is not what the file holds. Throws Error.
-std::optional<Covering> loadCovering(const std::string& source);
+/// Reads a packing as loadPacking() does, or a covering or clump from a .json file. Throws Error.
+std::variant<Packing, Covering> loadSpheres(const std::string& source);
 
 /// Reads a packing; packs what is none, which is then a mesh or a solid's name, with this many spheres.
 /// Throws Error.

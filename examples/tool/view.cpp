@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <optional>
+#include <utility>
+#include <variant>
 
 #include "commands.hpp"
 #include "coverage_film.hpp"
@@ -87,15 +88,20 @@ void run(Arguments& arguments) {
   }
   if (arguments.colour == Colouring::coverage) pictures.render.view = demo::View::surface;
   checkPictures(pictures, arguments.force);
-  const std::optional<Covering> covering = loadCovering(arguments.source);
+  std::variant<Packing, Covering> loaded;
+  if (isPacking(arguments.source)) {
+    loaded = loadSpheres(arguments.source);
+  } else {
+    loaded = loadOrPack(arguments.source, arguments.spheres);
+  }
+  const std::string caption = std::visit([](const auto& spheres) { return captionOf(spheres); }, loaded);
   Packing packing;
-  if (covering) {
-    packing.spheres = covering->spheres;
+  if (Covering* covering = std::get_if<Covering>(&loaded)) {
+    packing.spheres = std::move(covering->spheres);
     pictures.render.view = demo::View::spheres;  // all that there is
   } else {
-    packing = loadOrPack(arguments.source, arguments.spheres);
+    packing = std::get<Packing>(std::move(loaded));
   }
-  const std::string caption = covering ? captionOf(*covering) : captionOf(packing);
   say(arguments.y_up ? "the y axis points up; --up z turns that" : "the z axis points up; --up y turns that");
   writePictures(filmOf(packing, titleOf(arguments.source), caption, arguments.y_up, arguments.colour),
                 pictures, arguments.force);
