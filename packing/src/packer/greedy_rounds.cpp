@@ -47,24 +47,26 @@ int blockLevel(double wanted) {
   return std::clamp(static_cast<int>(std::floor(-steady::log2(kBlockSide * wanted))), 0, 20);
 }
 
-// Active cells in the order of blocks, and where each block begins.
-std::vector<std::size_t> sortIntoBlocks(std::vector<Active>& active, int level) {
-  tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t i) {
-    active[i].block = mortonCode(active[i].cell, level) << 1 | (active[i].cell.level < level);
-  });
-  tbb::parallel_sort(active.begin(), active.end(), [](const Active& a, const Active& b) {
-    const auto key = [](const Active& c) {
-      return std::make_tuple(c.block, c.cell.level, c.cell.at[2], c.cell.at[1], c.cell.at[0]);
-    };
-    return key(a) < key(b);
-  });
+/// Returns the place of the cell's block along the Z-order curve. A cell larger than a block is one by
+/// itself.
+std::uint64_t blockOf(const Cell& cell, int level) {
+  return mortonCode(cell, level) << 1 | (cell.level < level);
+}
+
+/// Returns where each block begins, and the end.
+std::vector<std::size_t> beginsOf(const std::vector<Active>& active) {
   std::vector<std::size_t> begins;
   for (std::size_t i = 0; i < active.size(); ++i) {
-    const bool large = active[i].cell.level < level;  // larger than a block: alone
-    if (i == 0 || large || active[i].block != active[i - 1].block) begins.push_back(i);
+    if (i == 0 || active[i].block != active[i - 1].block) begins.push_back(i);
   }
   begins.push_back(active.size());
   return begins;
+}
+
+/// Sorts the cells of one block, so that nothing depends on the order in which they were found.
+void sortCells(std::vector<Cell>& cells) {
+  const auto key = [](const Cell& c) { return std::make_tuple(c.level, c.at[2], c.at[1], c.at[0]); };
+  std::sort(cells.begin(), cells.end(), [&](const Cell& a, const Cell& b) { return key(a) < key(b); });
 }
 
 /// Returns true for one of kParts blocks, spread at random, other ones in each turn.
@@ -90,17 +92,28 @@ void sortCandidates(std::vector<CellSearch::Candidate>& candidates) {
 struct GreedyRounds::Round {
   float top, bound;
   double wanted, behind;
+  int level;  ///< of the blocks
 };
 
-/// The cells that are live after a search, searched or not, and the candidates.
+/// The cells that are live after a search, searched or not, in the order of blocks, and the candidates.
 struct GreedyRounds::Found {
-  std::vector<Cell> cells;
+  std::vector<Active> active;
   std::vector<CellSearch::Candidate> candidates;
 };
 
-GreedyRounds::Found GreedyRounds::search(std::vector<Active> active, const Round& round, std::uint64_t turn,
-                                         const SphereGrid& grid) const {
-  const std::vector<std::size_t> begins = sortIntoBlocks(active, blockLevel(round.wanted));
+std::vector<GreedyRounds::Active> GreedyRounds::sortIntoBlocks(const std::vector<Cell>& cells, int level) {
+  std::vector<Active> active(cells.size());
+  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+    active[i] = {blockOf(cells[i], level), cells[i]};
+  });
+  tbb::parallel_sort(active.begin(), active.end(),
+                     [](const Active& a, const Active& b) { return a.block < b.block; });
+  return active;
+}
+
+GreedyRounds::Found GreedyRounds::search(const std::vector<Active>& active, const Round& round,
+                                         std::uint64_t turn, const SphereGrid& grid) const {
+  const std::vector<std::size_t> begins = beginsOf(active);
   const std::size_t blocks = begins.size() - 1;
   std::vector<CellSearch::Result> results(blocks);
   std::vector<bool> first(blocks, true);
@@ -112,6 +125,7 @@ GreedyRounds::Found GreedyRounds::search(std::vector<Active> active, const Round
       if (first[b] != part) return;
       std::vector<Cell> cells;
       for (std::size_t i = begins[b]; i < begins[b + 1]; ++i) cells.push_back(active[i].cell);
+      sortCells(cells);
       results[b] =
           CellSearch(container_, grid, round.top, round.bound, round.wanted, round.behind).search(cells);
     });
@@ -126,10 +140,13 @@ GreedyRounds::Found GreedyRounds::search(std::vector<Active> active, const Round
   for (std::size_t b = 0; b < blocks; ++b) {
     if (whole || first[b]) {
       const CellSearch::Result& result = results[b];
-      found.cells.insert(found.cells.end(), result.cells.begin(), result.cells.end());
+      const Active& whole_block = active[begins[b]];
+      const bool large = whole_block.cell.level < round.level;
+      for (const Cell& cell : result.cells)
+        found.active.push_back({large ? blockOf(cell, round.level) : whole_block.block, cell});
       found.candidates.insert(found.candidates.end(), result.candidates.begin(), result.candidates.end());
     } else {
-      for (std::size_t i = begins[b]; i < begins[b + 1]; ++i) found.cells.push_back(active[i].cell);
+      for (std::size_t i = begins[b]; i < begins[b + 1]; ++i) found.active.push_back(active[i]);
     }
   }
   sortCandidates(found.candidates);
@@ -171,21 +188,22 @@ GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop,
     const std::size_t next = step + (early ? 1 : strides);
     const float top = schedule[step], bound = schedule[next];
     placed.largest_missing = top;
+    const std::vector<Cell> cells = queue.takeAbove(next);
+    const bool equally_thick = cells.size() > kManyCells * (placed.top.size() + kFewSpheres);
+    const double wanted = std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_);
+    const Round round{top, bound, wanted, equally_thick ? kFarBehind : kBehind, blockLevel(wanted)};
     std::vector<Active> active;
-    for (const Cell& cell : queue.takeAbove(next)) active.push_back({0, cell});
-    const bool equally_thick = active.size() > kManyCells * (placed.top.size() + kFewSpheres);
-    const Round round{top, bound, std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_),
-                      equally_thick ? kFarBehind : kBehind};
+    arena.execute([&] { active = sortIntoBlocks(cells, round.level); });
     for (std::uint64_t turn = 0; !active.empty(); ++turn) {
       if (pause(placed, bound)) return placed;
       Found found;
-      arena.execute([&] { found = search(std::move(active), round, turn, placed.grid); });
+      arena.execute([&] { found = search(active, round, turn, placed.grid); });
       active.clear();
-      for (const Cell& cell : found.cells) {
-        if (cell.upper > bound) {
-          active.push_back({0, cell});
+      for (const Active& live : found.active) {
+        if (live.cell.upper > bound) {
+          active.push_back(live);
         } else {
-          queue.push(cell);
+          queue.push(live.cell);
         }
       }
       if (insert(found.candidates, top, stop, add, placed)) return placed;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -71,6 +72,7 @@ class SurfaceTree::Builder {
   std::uint32_t size() const { return static_cast<std::uint32_t>(parts_.size()); }
 
  private:
+  using Order = std::vector<std::uint32_t>;
   struct Part {
     std::uint32_t triangle;
     std::uint32_t corners;  ///< where they are
@@ -88,7 +90,11 @@ class SurfaceTree::Builder {
   };
   std::vector<Part> parts_;
   std::vector<PartCorners> corners_;
-  std::vector<Part> best_;
+  Order order_;         ///< of the parts in the tree
+  Order by_middle_[3];  ///< of the parts of each node along an axis
+  Order rest_;
+  std::vector<bool> is_second_;  ///< whether each part is in the second half
+  std::vector<Bounds> boxes_;    ///< of what fills whole nodes
   std::vector<double> costs_;
 };
 
@@ -108,6 +114,15 @@ SurfaceTree::Builder::Builder(SurfaceTree& tree) : tree_(tree) {
     const Triangle& t = tree.triangles_[i];
     const Vec3d corners[3] = {at(t[0]), at(t[1]), at(t[2])};
     addParts(i, {corners, corners + 3}, most);
+  }
+  order_.resize(parts_.size());
+  std::iota(order_.begin(), order_.end(), 0U);
+  is_second_.resize(parts_.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    by_middle_[axis] = order_;
+    std::stable_sort(by_middle_[axis].begin(), by_middle_[axis].end(), [&](std::uint32_t a, std::uint32_t b) {
+      return parts_[a].middle(axis) < parts_[b].middle(axis);
+    });
   }
 }
 
@@ -155,7 +170,7 @@ std::uint32_t SurfaceTree::Builder::build(std::uint32_t first, std::uint32_t end
   }
   for (std::uint32_t k = 0; k < kWidth; ++k) {
     if (cuts[k] == cuts[k + 1]) continue;
-    std::uint32_t child = parts_[cuts[k]].triangle;
+    std::uint32_t child = parts_[order_[cuts[k]]].triangle;
     if (!nodes[index].are_triangles) {
       child = build(cuts[k], cuts[k + 1]);
     }
@@ -169,9 +184,9 @@ std::uint32_t SurfaceTree::Builder::build(std::uint32_t first, std::uint32_t end
 
 void SurfaceTree::Builder::addCorners(Node& node, std::uint32_t first, std::uint32_t end) {
   for (std::uint32_t i = first; i < end; ++i)
-    node.corners = std::max(node.corners, corners_[parts_[i].corners].count);
+    node.corners = std::max(node.corners, corners_[parts_[order_[i]].corners].count);
   for (std::uint32_t i = first; i < end; ++i) {
-    const PartCorners& corners = corners_[parts_[i].corners];
+    const PartCorners& corners = corners_[parts_[order_[i]].corners];
     for (int c = 0; c < node.corners; ++c) {
       const Vec3d& corner = corners.at[std::min(c, corners.count - 1)];
       for (int axis = 0; axis < 3; ++axis)
@@ -185,41 +200,53 @@ void SurfaceTree::Builder::addCorners(Node& node, std::uint32_t first, std::uint
 /// second one begins: at `end` if one node is enough.
 std::uint32_t SurfaceTree::Builder::halve(std::uint32_t first, std::uint32_t end) {
   if (end - first <= kWidth) return end;
-  const auto at = [&](std::uint32_t i) { return parts_.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto in = [&](Order& order) { return std::span(order).subspan(first, end - first); };
   const std::uint32_t full = (end - first + kWidth - 1) / kWidth;
   // Neither part has less than this: the tree cannot become a list.
   const std::uint32_t least_full = std::max(1U, full / 8);
-  const auto boxOf = [&](std::uint32_t k) {
-    return boundsOf(first + k * kWidth, std::min(first + (k + 1) * kWidth, end));
-  };
   double least = std::numeric_limits<double>::infinity();
   std::uint32_t cut = 0;
+  int across = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    std::stable_sort(at(first), at(end),
-                     [&](const Part& a, const Part& b) { return a.middle(axis) < b.middle(axis); });
+    boxes_.assign(full, nothing());
+    for (std::uint32_t i = first; i < end; ++i)
+      include(parts_[by_middle_[axis][i]].box, boxes_[(i - first) / kWidth]);
     costs_.assign(full, 0);
     Bounds low = nothing(), high = nothing();
     for (std::uint32_t k = 0; k + 1 < full; ++k) {
-      include(boxOf(k), low);
+      include(boxes_[k], low);
       costs_[k + 1] += areaOf(low) * (k + 1);
     }
     for (std::uint32_t k = full; k-- > 1;) {
-      include(boxOf(k), high);
+      include(boxes_[k], high);
       costs_[k] += areaOf(high) * (full - k);
     }
     const auto best = std::min_element(costs_.begin() + least_full, costs_.end() - (least_full - 1));
     if (!(*best < least)) continue;
     least = *best;
     cut = first + static_cast<std::uint32_t>(best - costs_.begin()) * kWidth;
-    best_.assign(at(first), at(end));
+    across = axis;
   }
-  std::copy(best_.begin(), best_.end(), at(first));
+  std::ranges::copy(in(by_middle_[across]), in(order_).begin());
+  for (std::uint32_t i = first; i < end; ++i) is_second_[order_[i]] = i >= cut;
+  for (Order& order : by_middle_) {
+    rest_.clear();
+    auto to = in(order).begin();
+    for (const std::uint32_t part : in(order)) {
+      if (is_second_[part]) {
+        rest_.push_back(part);
+      } else {
+        *to++ = part;
+      }
+    }
+    std::ranges::copy(rest_, to);
+  }
   return cut;
 }
 
 Bounds SurfaceTree::Builder::boundsOf(std::uint32_t first, std::uint32_t end) const {
   Bounds box = nothing();
-  for (std::uint32_t i = first; i < end; ++i) include(parts_[i].box, box);
+  for (std::uint32_t i = first; i < end; ++i) include(parts_[order_[i]].box, box);
   return box;
 }
 
