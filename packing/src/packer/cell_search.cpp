@@ -66,7 +66,7 @@ float roundUp(double x) {
 
 CellSearch::Result CellSearch::search(std::span<const Cell> cells) {
   gather(cells);
-  for (const Cell& cell : cells) visit(cell, 0, block_balls_);
+  for (const Cell& cell : cells) visit(cell, 0, block_balls_, 0);
   return std::move(result_);
 }
 
@@ -87,7 +87,7 @@ void CellSearch::gather(std::span<const Cell> cells) {
   block_balls_ = balls_.size();
 }
 
-void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end) {
+void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end, std::size_t parent) {
   const double half = cell.side() / 2;
   const Cube cube{cell.centre(), half};
   Cell now = cell;
@@ -111,7 +111,7 @@ void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end) {
     if (cube.near(balls_[i], now.upper))
       balls_.push_back(Ball(balls_[i]));  // copied first: the stack may move
   }
-  const Verdict verdict = bound(now, mine);
+  const Verdict verdict = bound(now, mine, parent);
   // A cell not larger than the sphere found in it waits for the next look. The deepest level is never
   // reached, unless the solid's distances contradict each other.
   if (now.level == Cell::kDeepest) now.upper = std::min(now.upper, roundUp(bound_));
@@ -119,13 +119,15 @@ void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end) {
       (verdict == Verdict::found && half < 0.5 * wanted_)) {
     if (now.upper > 0) result_.cells.push_back(now);
   } else {
-    const std::size_t last = balls_.size();
-    for (int octant = 0; octant < 8; ++octant) visit(now.child(octant), mine, last);
+    const std::size_t last = balls_.size(), ours = inherited_.size();
+    for (const Probe& cut : cuts_) inherited_.push_back(cut.ball);
+    for (int octant = 0; octant < 8; ++octant) visit(now.child(octant), mine, last, ours);
+    inherited_.resize(ours);
   }
   balls_.resize(mine);
 }
 
-CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
+CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin, std::size_t parent) {
   const Point centre = cell.centre();
   const double half = cell.side() / 2;
   program_.restart(half);
@@ -134,6 +136,13 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin) {
     cell.upper = std::min(cell.upper, roundUp(provenBound(centre, half)));
     return cell.upper <= bound_;
   };
+  for (std::size_t i = parent; i < inherited_.size(); ++i) {
+    const Ball& ball = inherited_[i];
+    const Point gradient = direction(ball.centre, centre);
+    program_.add(ball.distance(centre), gradient);
+    cuts_.push_back({ball.distance(centre), gradient, ball});
+  }
+  if (!cuts_.empty() && program_.optimum() <= bound_ && prove()) return Verdict::below;
   Point x = centre;
   double before = std::numeric_limits<double>::infinity();
   const int probes = half > kLarge * wanted_ ? 1 : kProbes;

@@ -73,11 +73,13 @@ class CellSearch {
 
   void gather(std::span<const Cell> cells);
 
-  /// Decides a cell, or divides it. The balls that can matter in it are among balls_[begin, end).
-  void visit(const Cell& cell, std::size_t begin, std::size_t end);
+  /// Decides a cell, or divides it. The balls that can matter in it are among balls_[begin, end), those that
+  /// its parent was bounded by are inherited_[parent, ...).
+  void visit(const Cell& cell, std::size_t begin, std::size_t end, std::size_t parent);
 
-  /// Lowers the cell's bound. The balls that can matter in it are balls_[begin, ...).
-  Verdict bound(Cell& cell, std::size_t begin);
+  /// Lowers the cell's bound. The balls that can matter in it are balls_[begin, ...). What bounded its parent
+  /// may be enough; else single points are looked at.
+  Verdict bound(Cell& cell, std::size_t begin, std::size_t parent);
 
   /// Returns the bound proven by the programme's dual variables. Cut k of the programme is cuts_[k].
   double provenBound(const Point& centre, double half) const;
@@ -117,6 +119,7 @@ class CellSearch {
   // and so on.
   std::vector<Ball> balls_;
   std::size_t block_balls_ = 0;
+  std::vector<Ball> inherited_;  // a stack, too: by these, cells were bounded that had to be divided
   // Of the cell being bounded, and of the cube of a climb.
   std::vector<Probe> cuts_;
   std::vector<Prism> prisms_;
