@@ -69,20 +69,26 @@ void sortCells(std::vector<Cell>& cells) {
   std::sort(cells.begin(), cells.end(), [&](const Cell& a, const Cell& b) { return key(a) < key(b); });
 }
 
-/// Returns true for one of kParts blocks, spread at random, other ones in each turn.
-bool isInPart(std::uint64_t block, std::uint64_t turn) {
-  std::uint64_t x = block * kParts + turn % kParts;  // mixed as in SplitMix64
+/// Mixes the bits of a number, as in SplitMix64.
+std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
   x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return (x ^ (x >> 31)) % kParts == 0;
+  return x ^ (x >> 31);
 }
 
-/// Larger candidates come first, equal ones in the order of the Z-order curve.
-void sortCandidates(std::vector<CellSearch::Candidate>& candidates) {
-  std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+/// Returns true for one of kParts blocks, spread at random, other ones in each turn.
+bool isInPart(std::uint64_t block, std::uint64_t turn) {
+  return mixed(block * kParts + turn % kParts) % kParts == 0;
+}
+
+/// Larger candidates come first, equal ones in the order of the Z-order curve; those of a part at random, as
+/// there may be more than are wanted.
+void sortCandidates(std::vector<CellSearch::Candidate>& candidates, bool whole) {
+  const auto order = [&](const CellSearch::Candidate& c) { return whole ? c.order : mixed(c.order); };
+  std::sort(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
     // In single precision: what differs by rounding only is equal.
     const auto r = static_cast<float>(a.ball.radius), s = static_cast<float>(b.ball.radius);
-    return r != s ? r > s : a.order < b.order;
+    return r != s ? r > s : order(a) < order(b);
   });
 }
 
@@ -133,23 +139,23 @@ GreedyRounds::Found GreedyRounds::search(const std::vector<Active>& active, cons
   searchBlocks(true);
   std::size_t count = 0;
   for (const CellSearch::Result& result : results) count += result.candidates.size();
-  const bool whole = count <= most_ / kParts;
+  const bool whole = blocks <= kMostWholeBlocks || count <= most_ / kParts;
   if (whole) searchBlocks(false);
 
   Found found;
   for (std::size_t b = 0; b < blocks; ++b) {
     if (whole || first[b]) {
       const CellSearch::Result& result = results[b];
-      const Active& whole_block = active[begins[b]];
-      const bool large = whole_block.cell.level < round.level;
+      const Active& block = active[begins[b]];
+      const bool large = block.cell.level < round.level;
       for (const Cell& cell : result.cells)
-        found.active.push_back({large ? blockOf(cell, round.level) : whole_block.block, cell});
+        found.active.push_back({large ? blockOf(cell, round.level) : block.block, cell});
       found.candidates.insert(found.candidates.end(), result.candidates.begin(), result.candidates.end());
     } else {
       for (std::size_t i = begins[b]; i < begins[b + 1]; ++i) found.active.push_back(active[i]);
     }
   }
-  sortCandidates(found.candidates);
+  sortCandidates(found.candidates, whole);
   return found;
 }
 
