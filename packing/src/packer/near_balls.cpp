@@ -69,16 +69,22 @@ NearBalls::NearBalls(std::span<const Ball> balls) : balls_(balls), near_(balls.s
 
 NearBalls::NearBalls(const NearBalls& parent, const Point& centre, double half) : balls_(parent.balls_) {
   const double reach = std::numbers::sqrt3 * half;
-  std::vector<double> distances(parent.near_.size());
+  static thread_local std::vector<double> distances;
+  distances.resize(std::max(distances.size(), parent.near_.size()));
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < distances.size(); ++i) {
+  for (std::size_t i = 0; i < parent.near_.size(); ++i) {
     distances[i] = balls_[parent.near_[i]].distance(centre);
     least = std::min(least, distances[i]);
   }
   // A distance differs by no more than `reach` between the middle and any point of the cube.
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    if (distances[i] <= least + 2 * reach + kDistanceRounding) near_.push_back(parent.near_[i]);
+  const double most = least + 2 * reach + kDistanceRounding;
+  near_.resize(parent.near_.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    near_[count] = parent.near_[i];
+    count += distances[i] <= most;
   }
+  near_.resize(count);
   inside_one_ = least <= -reach;
 }
 
