@@ -71,7 +71,7 @@ void GridSurface::begin(const SurfaceTree& tree, const SurfaceTree& other, const
   if (marks_.size() < tree.triangles().size()) marks_.resize(tree.triangles().size());
   triangles_.clear();
   segments_.clear();
-  crossings_.clear();
+  crossings_.assign(1, {});
 }
 
 void GridSurface::place(Index v) {
@@ -83,7 +83,7 @@ void GridSurface::place(Index v) {
 void GridSurface::placeTriangle(Index triangle) {
   marks_[triangle] = {query_, static_cast<Index>(triangles_.size()), 0};
   const SurfaceTree::Triangle& v = tree_->triangles()[triangle];
-  triangles_.emplace_back(vertex(v[0]), vertex(v[1]), vertex(v[2]), v);
+  triangles_.emplace_back(vertex(v[0]), vertex(v[1]), vertex(v[2]), v, triangle);
 }
 
 void GridSurface::placeNode(Index index) {
@@ -111,22 +111,22 @@ void GridSurface::placeNode(Index index) {
 int GridSurface::windingAt(const Vec3d& point) {
   ++asked_;
   int winding = 0;
-  // What is above the point, in the frame of the first surface.
-  const bool is_first = moved_ == Moved::point;
+  // What is above or below the point, in the frame of the first surface: the shorter way out.
+  const bool is_first = moved_ == Moved::point, up = point.z > to_grid_(tree_->grid().middle).z;
   const SurfaceTree::CoarseGrid& grid = (is_first ? tree_ : other_)->grid();
   const Vec3d at = grid.per * ((1 / cells_) * point - grid.middle);
-  FourInts above[3];
+  FourInts way[3];
   for (int k = 0; k < 3; ++k) {
-    const Lanes here = Lanes{} + static_cast<float>(at[k]);
-    above[k] = grid.sides(k < 2 ? here : Lanes{} + grid.kEnd, -here);
-    if (is_first) above[k] = exchanged(above[k]);
+    const Lanes here = Lanes{} + static_cast<float>(at[k]), end = Lanes{} + grid.kEnd;
+    way[k] = grid.sides(k == 2 && up ? end : here, k == 2 && !up ? end : -here);
+    if (is_first) way[k] = exchanged(way[k]);
   }
   open_.assign(1, 0);
   while (!open_.empty()) {
     const Index index = open_.back();
     open_.pop_back();
     const Node& node = this->node(index);
-    for (Index met = node.meeting(above) & ((1U << node.count) - 1); met != 0; met &= met - 1) {
+    for (Index met = node.meeting(way) & ((1U << node.count) - 1); met != 0; met &= met - 1) {
       const Index child = node.children[std::countr_zero(met)];
       if (!node.are_triangles) {
         open_.push_back(child);
@@ -135,7 +135,7 @@ int GridSurface::windingAt(const Vec3d& point) {
       // A triangle that is in several boxes counts once.
       const Index place = find(child);
       if (std::exchange(marks_[child].asked, asked_) == asked_) continue;
-      winding += windingBelow(triangles_[place], point, moved_);
+      winding += windingSeen(triangles_[place], point, moved_, up);
     }
   }
   return winding;

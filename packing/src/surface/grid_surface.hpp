@@ -1,6 +1,7 @@
 // Declares a surface that stands somewhere, with its vertices rounded to a grid.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -56,16 +57,16 @@ struct ToCoarseGrid {
 /// Here the other surface crosses an edge of a triangle.
 struct Crossing {
   Vec3d at;
-  int edge;            ///< from this corner to the next
   int change;          ///< of the winding number in the other solid
-  std::uint32_t next;  ///< of the same triangle
+  std::uint32_t next;  ///< of the same edge, 0 if there is no other
 };
 
 /// In this part of a line a triangle meets one of the other surface. What is in the other solid lies to the
 /// left, seen from outside of the triangle's own one.
 struct Segment {
   Vec3d from, to;
-  std::uint32_t other;  ///< where that triangle is
+  std::uint32_t own;    ///< the triangle, in the tree
+  std::uint32_t other;  ///< where that of the other surface is
   std::uint32_t next;   ///< of the same triangle
 };
 
@@ -78,11 +79,14 @@ class GridSurface {
 
   /// This is a triangle, and where the other surface meets it.
   struct Triangle : GridTriangle {
-    Triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, const SurfaceTree::Triangle& v)
-        : GridTriangle(a, b, c), vertices(v) {}
+    Triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, const SurfaceTree::Triangle& v, Index i)
+        : GridTriangle(a, b, c), vertices(v), index(i) {}
     SurfaceTree::Triangle vertices;
-    Index first_segment = kNone, first_crossing = kNone;
-    bool isCut() const { return first_segment != kNone; }
+    Index index;  ///< in the tree
+    Index first_segment = kNone;
+    std::array<Index, 3>
+        first_crossings{};         ///< of the edges from each corner to the next, 0 if there is none
+    std::array<int, 3> changes{};  ///< of the winding number in the other solid along these edges
   };
 
   struct Node : LaneBoxes, SurfaceTree::Links {
@@ -108,12 +112,7 @@ class GridSurface {
     if (marks_[triangle].query != query_) placeTriangle(triangle);
     return marks_[triangle].place;
   }
-  /// Returns its place if it was asked for, or kNone.
-  Index found(Index triangle) const {
-    return marks_[triangle].query == query_ ? marks_[triangle].place : kNone;
-  }
   Triangle& at(Index place) { return triangles_[place]; }
-  std::size_t foundCount() const { return triangles_.size(); }
 
   const Node& node(Index index) {
     if (nodes_[index].query != query_) placeNode(index);
@@ -121,14 +120,16 @@ class GridSurface {
   }
 
   void addSegment(Triangle& t, const Vec3d& from, const Vec3d& to, Index other) {
-    segments_.push_back({from, to, other, t.first_segment});
+    segments_.push_back({from, to, t.index, other, t.first_segment});
     t.first_segment = static_cast<Index>(segments_.size() - 1);
   }
   void addCrossing(Triangle& t, const Vec3d& at, int edge, int change) {
-    crossings_.push_back({at, edge, change, t.first_crossing});
-    t.first_crossing = static_cast<Index>(crossings_.size() - 1);
+    crossings_.push_back({at, change, t.first_crossings[edge]});
+    t.first_crossings[edge] = static_cast<Index>(crossings_.size() - 1);
+    t.changes[edge] += change;
   }
   const std::vector<Segment>& segments() const { return segments_; }
+  /// The first one is none.
   const std::vector<Crossing>& crossings() const { return crossings_; }
 
   /// Returns how often the surface encloses a point of the other one.

@@ -111,7 +111,7 @@ void EdgeOrder::decide(const GridTriangle& t, const Corners& at_u, const GridTri
   }
 }
 
-int windingBelow(const GridTriangle& triangle, const Vec3d& point, Moved moved) {
+int windingSeen(const GridTriangle& triangle, const Vec3d& point, Moved moved, bool up) {
   const Vec3d a = triangle.corner(0), b = triangle.corner(1), c = triangle.corner(2);
   const bool left = isLeft(a, b, point, moved);
   if (isLeft(b, c, point, moved) != left || isLeft(c, a, point, moved) != left) return 0;
@@ -120,7 +120,8 @@ int windingBelow(const GridTriangle& triangle, const Vec3d& point, Moved moved) 
   const double height = triangle.height(point.x, point.y, point.z);
   const bool above =
       std::abs(height) > triangle.heightRounding() ? height > 0 : triangle.isAbove(point, moved);
-  return above == (side > 0) ? 0 : side;
+  const bool is_up = above != (side > 0);
+  return is_up != up ? 0 : up ? side : -side;
 }
 
 }  // namespace innersphere

@@ -52,13 +52,16 @@ struct Corners {
   bool isAbove(int corner) const { return (above >> corner & 1) != 0; }
   /// Returns the edge that leads from the corner that is alone, or to it. Edge k leads from corner k to the
   /// next.
-  int edge(bool from_alone) const { return from_alone ? alone : previous(alone); }
+  int edge(bool from_alone) const { return turned(alone, from_alone ? 0 : 2); }
   /// Returns the other corner of such an edge.
-  int far(bool from_alone) const { return from_alone ? next(alone) : previous(alone); }
+  int far(bool from_alone) const { return turned(alone, from_alone ? 1 : 2); }
 
   static constexpr std::int8_t kAlone[8] = {-1, 0, 1, 2, 2, 1, 0, -1};  ///< by `above`
-  static int next(int corner) { return corner < 2 ? corner + 1 : 0; }
-  static int previous(int corner) { return corner > 0 ? corner - 1 : 2; }
+  // From a table: no processor foresees which corner it is.
+  static constexpr std::int8_t kTurned[5] = {0, 1, 2, 0, 1};
+  static int turned(int corner, int by) { return kTurned[corner + by]; }
+  static int next(int corner) { return turned(corner, 1); }
+  static int previous(int corner) { return turned(corner, 2); }
 };
 
 /// `moved` names the surface of the triangle.
@@ -88,7 +91,7 @@ class EdgeOrder {
  private:
   /// The first two bits are of edges that both lead from those corners, or to them.
   static int bit(bool from_alone_t, bool from_alone_u) {
-    return (from_alone_t == from_alone_u ? 0 : 2) + (from_alone_u ? 0 : 1);
+    return 2 * static_cast<int>(from_alone_t != from_alone_u) + static_cast<int>(!from_alone_u);
   }
   /// Adds the signs that are not in `known`, exactly.
   void decide(const GridTriangle& t, const Corners& at_u, const GridTriangle& u, const Corners& at_t,
@@ -115,8 +118,8 @@ EdgeOrder EdgeOrder::of(const GridTriangle& t, const Corners& at_u, const GridTr
   return order;
 }
 
-/// Returns by how much a triangle adds to the winding number of a point: 1 where it is above it, in the
-/// direction z, and faces up, -1 where it faces down, 0 elsewhere.
-int windingBelow(const GridTriangle& triangle, const Vec3d& point, Moved moved);
+/// Returns by how much a triangle adds to the winding number of a point from which one looks along z, up or
+/// down: 1 where one sees the inner side of it, -1 where the outer one, 0 elsewhere.
+int windingSeen(const GridTriangle& triangle, const Vec3d& point, Moved moved, bool up);
 
 }  // namespace innersphere

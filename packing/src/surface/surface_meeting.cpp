@@ -29,8 +29,8 @@ struct Crosser {
         rises(corners.isAbove(edge)) {}
   /// Both triangles at an edge find the same place: from the lower vertex.
   bool isForward() const { return triangle->vertices[edge] < triangle->vertices[Corners::next(edge)]; }
-  const double* from() const { return triangle->places[0] + (isForward() ? edge : edge + 1); }
-  const double* to() const { return triangle->places[0] + (isForward() ? edge + 1 : edge); }
+  const double* from() const { return triangle->places[0] + edge + static_cast<int>(!isForward()); }
+  const double* to() const { return triangle->places[0] + edge + static_cast<int>(isForward()); }
 };
 
 /// Adds where two edges cross. Returns both places.
@@ -157,11 +157,17 @@ void Meeting<Kernels>::add(const Candidate& c) {
     if (a_.segments()[s].other == c.u) return;
   }
   const bool first_t = c.firstOfT(), first_u = c.firstOfU();
-  const auto crosser = [&](bool is_u, bool of_t, bool of_u) {
-    return is_u ? Crosser(b_, u, t, c.at_t, of_u) : Crosser(a_, t, u, c.at_u, of_t);
+  // Chosen by number: no processor foresees which edges they are.
+  GridSurface* const surfaces[] = {&a_, &b_};
+  GridSurface::Triangle* const triangles[] = {&t, &u};
+  const Corners at[] = {c.at_u, c.at_t};
+  const bool from_alone[] = {first_t, first_u};
+  const auto crosser = [&](int of, bool is_start) {
+    return Crosser(*surfaces[of], *triangles[of], *triangles[1 - of], at[of], from_alone[of] == is_start);
   };
-  const bool from_u = c.order.comesBefore(first_t, first_u), to_u = !c.order.comesBefore(!first_t, !first_u);
-  const auto [from, to] = addCrossings(crosser(from_u, first_t, first_u), crosser(to_u, !first_t, !first_u));
+  const int start = static_cast<int>(c.order.comesBefore(first_t, first_u)),
+            end = static_cast<int>(!c.order.comesBefore(!first_t, !first_u));
+  const auto [from, to] = addCrossings(crosser(start, true), crosser(end, false));
   a_.addSegment(t, from, to, c.u);
   b_.addSegment(u, to, from, c.t);
 }

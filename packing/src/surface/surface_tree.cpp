@@ -35,31 +35,45 @@ double areaOf(const Bounds& box) {
   return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
+/// Returns what SurfaceTree::twins() does, or nothing if the surface is not closed. Where more than two
+/// triangles meet in an edge, any two of opposite directions are neighbours.
+std::vector<std::array<std::uint32_t, 4>> findTwins(const Surface& surface) {
+  struct Edge {
+    std::uint32_t low, high, backward, number;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * surface.triangles.size());
+  std::vector<std::array<std::uint32_t, 4>> twins(surface.triangles.size());
+  for (std::uint32_t i = 0; i < surface.triangles.size(); ++i) {
+    const auto& t = surface.triangles[i];
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+      twins[i][k] = 4 * i + k;
+      if (low != high) edges.push_back({low, high, low == t[k] ? 0U : 1U, 4 * i + k});
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return std::tie(a.low, a.high, a.backward, a.number) < std::tie(b.low, b.high, b.backward, b.number);
+  });
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i, forward = 0;
+    for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end)
+      forward += 1 - edges[end].backward;
+    if (2 * forward != end - i) return {};
+    for (; i + forward < end; ++i) {
+      const std::uint32_t there = edges[i].number, back = edges[i + forward].number;
+      twins[there / 4][there % 4] = back;
+      twins[back / 4][back % 4] = there;
+    }
+    i = end;
+  }
+  return twins;
+}
+
 }  // namespace
 
 bool isClosedSurface(const Surface& surface) {
-  struct HalfEdge {
-    std::uint32_t low, high;
-    int direction;
-  };
-  std::vector<HalfEdge> edges;
-  edges.reserve(3 * surface.triangles.size());
-  for (const auto& t : surface.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-      edges.push_back({low, high, low == t[k] ? 1 : -1});
-    }
-  }
-  const auto key = [](const HalfEdge& e) { return std::tie(e.low, e.high); };
-  std::sort(edges.begin(), edges.end(),
-            [&](const HalfEdge& a, const HalfEdge& b) { return key(a) < key(b); });
-  int surplus = 0;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (edges[i].low != edges[i].high) surplus += edges[i].direction;
-    const bool last = i + 1 == edges.size() || key(edges[i]) != key(edges[i + 1]);
-    if (last && surplus != 0) return false;
-  }
-  return true;
+  return surface.triangles.empty() || !findTwins(surface).empty();
 }
 
 /// Sorts the triangles, so that those of each node follow each other.
@@ -255,7 +269,8 @@ SurfaceTree::SurfaceTree(const Surface& surface) {
     throw Error(ErrorCode::empty_input,
                 "the packing carries no triangles; pack the mesh again, or use another estimator");
   }
-  if (!isClosedSurface(surface)) {
+  twins_ = findTwins(surface);
+  if (twins_.empty()) {
     throw Error(ErrorCode::not_a_solid,
                 "the triangles that the packing carries are not closed; use another estimator");
   }
@@ -268,7 +283,6 @@ SurfaceTree::SurfaceTree(const Surface& surface) {
   grid_.middle = 0.5 * (bounds_.min + bounds_.max);
   grid_.per = std::min(kCoarseHalf / largest(bounds_.max - grid_.middle), kMostCells);
   builder.build(0, count);
-  link();
   findParts();
 }
 
@@ -292,37 +306,23 @@ void SurfaceTree::addBoxes(Node& node, const Bounds* boxes) const {
   std::copy(half, half + 3, node.extent + 3);
 }
 
-void SurfaceTree::link() {
-  first_at_.assign(vertices_.size() + 1, 0);
-  for (const Triangle& t : triangles_) {
-    for (const std::uint32_t v : t) ++first_at_[v + 1];
-  }
-  std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
-  std::vector<std::uint32_t> next(first_at_.begin(), first_at_.end() - 1);
-  triangles_at_.resize(first_at_.back());
-  for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-    for (const std::uint32_t v : triangles_[i]) triangles_at_[next[v]++] = i;
-  }
-}
-
 void SurfaceTree::findParts() {
   constexpr std::uint32_t kNone = ~0U;
-  parts_.assign(vertices_.size(), kNone);
+  parts_.assign(triangles_.size(), kNone);
   std::vector<std::uint32_t> open;
-  for (const Triangle& first : triangles_) {
-    if (parts_[first[0]] != kNone) continue;
+  for (std::uint32_t first = 0; first < triangles_.size(); ++first) {
+    if (parts_[first] != kNone) continue;
     const std::uint32_t part = partCount();
-    vertex_of_part_.push_back(first[0]);
-    parts_[first[0]] = part;
-    open.push_back(first[0]);
+    triangle_of_part_.push_back(first);
+    parts_[first] = part;
+    open.push_back(first);
     while (!open.empty()) {
       const std::uint32_t from = open.back();
       open.pop_back();
-      forTrianglesAt(from, [&](std::uint32_t t) {
-        for (const std::uint32_t v : triangles_[t]) {
-          if (parts_[v] == kNone) parts_[v] = part, open.push_back(v);
-        }
-      });
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t to = twins_[from][k] / 4;
+        if (parts_[to] == kNone) parts_[to] = part, open.push_back(to);
+      }
     }
   }
   if (partCount() == 1) parts_ = {};

@@ -16,7 +16,7 @@ constexpr double kSingleRounding = 2e-6;
 /// Returns whether each edge is run along as often in one direction as in the other.
 bool isClosedSurface(const Surface& surface);
 
-/// Holds a closed surface: its triangles, a tree of boxes, and which triangles meet in a vertex.
+/// Holds a closed surface: its triangles, a tree of boxes, and which triangles are neighbours.
 class SurfaceTree {
  public:
   using Triangle = std::array<std::uint32_t, 3>;  ///< indices of vertices
@@ -62,28 +62,25 @@ class SurfaceTree {
   const Bounds& bounds() const { return bounds_; }
   const CoarseGrid& grid() const { return grid_; }
 
-  /// Calls f(triangle) for those that have the vertex.
-  template <typename F>
-  void forTrianglesAt(std::uint32_t vertex, const F& f) const {
-    for (std::uint32_t i = first_at_[vertex]; i < first_at_[vertex + 1]; ++i) f(triangles_at_[i]);
-  }
+  /// Edge 4 t + k of the surface leads from corner k of triangle t to the next one. Returns for the edges of
+  /// a triangle those that run the other way, of its neighbours.
+  const std::array<std::uint32_t, 4>& twins(std::uint32_t triangle) const { return twins_[triangle]; }
 
-  /// Parts of the surface that have no vertex in common.
-  std::uint32_t partCount() const { return static_cast<std::uint32_t>(vertex_of_part_.size()); }
-  std::uint32_t vertexOfPart(std::uint32_t part) const { return vertex_of_part_[part]; }
-  std::uint32_t partOf(std::uint32_t vertex) const { return parts_.empty() ? 0 : parts_[vertex]; }
+  /// Parts of the surface that have no edge in common.
+  std::uint32_t partCount() const { return static_cast<std::uint32_t>(triangle_of_part_.size()); }
+  std::uint32_t triangleOfPart(std::uint32_t part) const { return triangle_of_part_[part]; }
+  std::uint32_t partOf(std::uint32_t triangle) const { return parts_.empty() ? 0 : parts_[triangle]; }
 
  private:
   class Builder;
   void addBoxes(Node& node, const Bounds* boxes) const;
-  void link();
   void findParts();
 
   std::vector<Lanes> vertices_;  ///< the last number is zero
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> first_at_, triangles_at_;
-  std::vector<std::uint32_t> vertex_of_part_, parts_;  ///< parts_ is empty if there is one
+  std::vector<std::array<std::uint32_t, 4>> twins_;
+  std::vector<std::uint32_t> triangle_of_part_, parts_;  ///< parts_ is empty if there is one
   Bounds bounds_;
   CoarseGrid grid_;
 };
