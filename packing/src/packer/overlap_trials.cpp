@@ -237,7 +237,8 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
     } else {
       far = now;
     }
-    halve = far.distance - near.distance > width / 2;
+    // Clearly more than half is left: of exactly half, rounding would decide.
+    halve = far.distance - near.distance > 0.6 * width;
   }
   const double share = near.share.fraction;
   const Pose pose = poseAt(near.distance);
