@@ -308,13 +308,6 @@ btScalar SurfaceQueries::untilSharpEdge(std::size_t triangle, const btVector3& p
   return normals().untilSharpEdge(triangle, point, towards).distance;
 }
 
-bool SurfaceQueries::sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
-                               SmoothNormals::SharpEdge& edge) const {
-  const SmoothNormals::Ending ending = normals().untilSharpEdge(triangle, point, towards);
-  if (ending.found()) edge = normals().sharpEdge(ending);
-  return ending.found();
-}
-
 bool SurfaceQueries::nearest(const btVector3& point, btScalar max_distance, Nearest& result) const {
   NearestTriangle search(normals(), point, max_distance, tree_.rounding());
   tree_.search(search.farthest2(), search, [&](std::uint32_t t) { return search.test(t); });
