@@ -60,14 +60,16 @@ Scratch& scratchOfThread() {
 /// The patch whose direction and place a contact fits best.
 std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& patches,
                       const PatchOptions& options) {
+  if (patches.size() == 1) return 0;
   const btVector3 area = toBullet(contact.area);
   const btVector3 x = toBullet(contact.centroid);
+  const btScalar length = area.length() + kTiny;
   std::size_t best = 0;
   btScalar best_cost = BT_LARGE_FLOAT;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const Mat3d& c = patches[p].covariance;
     const btScalar extent2 = btScalar(c[0] + c[4] + c[8]) + kTiny;
-    const btScalar misfit = 2 * (1 - area.dot(toBullet(patches[p].normal)) / (area.length() + kTiny));
+    const btScalar misfit = 2 * (1 - area.dot(toBullet(patches[p].normal)) / length);
     const btScalar cost = misfit / btScalar(options.max_angle * options.max_angle) +
                           x.distance2(toBullet(patches[p].centroid)) / extent2;
     if (cost < best_cost) {

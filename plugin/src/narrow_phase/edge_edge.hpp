@@ -1,17 +1,20 @@
 // Finds where sharp edges of two solids cross.
 #pragma once
 
-#include "common/contact_tolerances.hpp"
+#include <functional>
+
 #include "narrow_phase/edge_contacts.hpp"
 #include "shape/sharp_edges.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Returns true if a solid is thin. Only faces that fall away from their edge by little ask for it.
+using IsThin = std::function<bool()>;
+
 /// Does what EdgeProbe::crossing() says. Positions are relative to A's origin, axes are those of the world.
-/// Faces fall away from edges that cross by `falling` at least [sine].
 bool crossEdges(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& points,
-                const btVector3& direction, EdgeContact& crossing, btScalar falling = kFallingSine);
+                const btVector3& direction, EdgeContact& crossing, const IsThin& is_thin = {});
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

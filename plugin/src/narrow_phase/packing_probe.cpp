@@ -148,8 +148,8 @@ bool PackingProbe::crossesOnFaces(const OpposedPoints& points) const {
 
 bool PackingProbe::crossing(const OpposedPoints& points, const btVector3& direction,
                             EdgeContact& crossing) const {
-  return crossEdges({a_, {0, 0, 0}}, {b_, apart()}, points, direction, crossing,
-                    crossesOnFaces(points) ? kLeaning : kFallingSine);
+  const auto is_thin = [&] { return crossesOnFaces(points); };
+  return crossEdges({a_, {0, 0, 0}}, {b_, apart()}, points, direction, crossing, is_thin);
 }
 
 FaceExtents::EdgeDistances PackingProbe::edgeDistances(const OpposedPoints& points,

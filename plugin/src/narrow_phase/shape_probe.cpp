@@ -1,5 +1,7 @@
 #include "narrow_phase/shape_probe.hpp"
 
+#include <algorithm>
+
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
 #include "narrow_phase/surface_rays.hpp"
@@ -120,11 +122,11 @@ const NearSphere* ShapeProbe::sphereOver(const btVector3& corner, const btVector
   const btVector3 place = corner * a_.world.getBasis() / a_.scale();
   const btScalar scale2 = a_.scale() * a_.scale();
   for (const NearSphere& near_sphere : near_spheres_) {
-    const btScalar size = surfaceDistance(near_sphere);
     const btScalar distance2 = centre(a_.sphere(near_sphere.sphere)).distance2(place) * scale2;
+    if (!(distance2 < least)) continue;
+    const btScalar size = surfaceDistance(near_sphere);
     if (near_sphere.isOnEdge() || !(distance2 < size * size)) continue;
     if (!(near_sphere.normal.dot(-normal) > kSameFaceCosine)) continue;
-    if (!(distance2 < least)) continue;
     least = distance2;
     over = &near_sphere;
   }
@@ -137,17 +139,32 @@ void ShapeProbe::corners(std::size_t index, const OpposedPoints& points, const b
   const bool is_peak = cornersUphill(a_, points.triangle_a, normal, points.on_a,
                                      surfaceDistance(near_spheres_[index]), vertices);
   for (const std::uint32_t vertex : vertices) {
-    const btVector3 at = cornerAt(a_, vertex, normal);
-    // The face is known where spheres are near it.
-    const NearSphere* over = sphereOver(at, normal);
-    if (over == nullptr) continue;
+    const Corner& found = cornerOf(vertex, normal);
+    if (!found.is_over) continue;
     EdgeContact corner{points, kCornerId + 2 * std::uint64_t(vertex), is_peak};
-    const btScalar height = (at - a_.centreOf(over->sphere)).dot(over->normal) + over->distance;
-    corner.points.on_a = at;
-    corner.points.on_b = at - over->normal * height;
-    corner.points.normal_b = -over->normal;
-    if (goesOn(*over, corner.points.on_b)) corners.push_back(corner);
+    corner.points.on_a = found.on_a;
+    corner.points.on_b = found.on_b;
+    corner.points.normal_b = found.normal_b;
+    corners.push_back(corner);
   }
+}
+
+const ShapeProbe::Corner& ShapeProbe::cornerOf(std::uint32_t vertex, const btVector3& normal) const {
+  const auto known = std::find_if(corners_.begin(), corners_.end(), [&](const Corner& corner) {
+    return corner.vertex == vertex && corner.normal == normal;
+  });
+  if (known != corners_.end()) return *known;
+  Corner& corner = corners_[corner_count_++ % corners_.size()];
+  corner = {vertex, normal};
+  corner.on_a = cornerAt(a_, vertex, normal);
+  // The face is known where spheres are near it.
+  const NearSphere* over = sphereOver(corner.on_a, normal);
+  if (over == nullptr) return corner;
+  const btScalar height = (corner.on_a - a_.centreOf(over->sphere)).dot(over->normal) + over->distance;
+  corner.on_b = corner.on_a - over->normal * height;
+  corner.normal_b = -over->normal;
+  corner.is_over = goesOn(*over, corner.on_b);
+  return corner;
 }
 
 void ShapeProbe::tips(const OpposedPoints& points, std::vector<std::uint32_t>& vertices,

@@ -1,6 +1,7 @@
 // Probes the surfaces of a packing and of a shape of another kind at the spheres near it.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "narrow_phase/edge_contacts.hpp"
@@ -78,10 +79,22 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   /// Returns the sphere nearest to a corner that knows the face under it, or null if there is none.
   const NearSphere* sphereOver(const btVector3& corner, const btVector3& normal) const;
 
+  /// This is a corner of A, seen along a normal.
+  struct Corner {
+    std::uint32_t vertex = 0;
+    btVector3 normal{0, 0, 0};  ///< from A to B
+    bool is_over = false;       ///< a face of B; if so, the others are as in OpposedPoints
+    btVector3 on_a{0, 0, 0}, on_b{0, 0, 0}, normal_b{0, 0, 0};
+  };
+  /// Finds one. Many samples ask for the same.
+  const Corner& cornerOf(std::uint32_t vertex, const btVector3& normal) const;
+
   const PlacedPacking& a_;
   ShapeSurface& other_;
   const btTransform& world_;
   const std::vector<NearSphere>& near_spheres_;
+  mutable std::array<Corner, 8> corners_;  ///< those that were asked for last: a face seldom has more
+  mutable std::size_t corner_count_ = 0;   ///< that were asked for
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -5,13 +5,18 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 bool SharpEdges::edgeTowards(std::size_t triangle, const btVector3& point, const btVector3& towards,
                              Edge& edge) const {
-  SmoothNormals::SharpEdge found;
-  if (!surface->sharpEdge(triangle, ((point - origin) * axes) / scale, towards * axes, found)) return false;
-  edge.from = origin + axes * found.from * scale;
-  edge.along = axes * (found.to - found.from) * scale;
-  for (int i = 0; i < 2; ++i) edge.inwards[i] = axes * found.inwards[i];
-  edge.id = found.id;
+  const SmoothNormals& normals = surface->normals();
+  edge.where = normals.untilSharpEdge(triangle, ((point - origin) * axes) / scale, towards * axes);
+  if (!edge.where.found()) return false;
+  const SmoothNormals::Ends ends = normals.endsOf(edge.where);
+  edge.from = origin + axes * ends.from * scale;
+  edge.along = axes * (ends.to - ends.from) * scale;
   return true;
+}
+
+SharpEdges::Faces SharpEdges::facesOf(const Edge& edge) const {
+  const SmoothNormals::EdgeFaces found = surface->normals().facesOf(edge.where);
+  return {{axes * found.inwards[0], axes * found.inwards[1]}, found.id};
 }
 
 bool SharpEdges::nearestFace(const btVector3& place, btScalar max_distance,

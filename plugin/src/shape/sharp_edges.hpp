@@ -22,12 +22,17 @@ struct SharpEdges {
   struct Edge {
     btVector3 from{0, 0, 0};
     btVector3 along{0, 0, 0};  ///< to its other end
-    btVector3 inwards[2];      ///< unit: along its faces
-    std::uint32_t id = 0;
+    SmoothNormals::Ending where;
   };
   /// Finds the sharp edge that is met from a point of a triangle in a direction. Returns false if there is
   /// none near.
   bool edgeTowards(std::size_t triangle, const btVector3& point, const btVector3& towards, Edge& edge) const;
+  /// Says how the faces of an edge lie.
+  struct Faces {
+    btVector3 inwards[2];  ///< unit: along them, from the edge
+    std::uint32_t id = 0;  ///< of the edge, the same from both
+  };
+  Faces facesOf(const Edge& edge) const;
   /// Returns where the middle of a triangle is.
   btVector3 middle(std::size_t triangle) const {
     return origin + axes * surface->normals().middle(triangle) * scale;

@@ -289,19 +289,19 @@ SmoothNormals::Ending SmoothNormals::untilSharpEdge(std::size_t t, const btVecto
   return {};
 }
 
-SmoothNormals::SharpEdge SmoothNormals::sharpEdge(const Ending& ending) const {
+SmoothNormals::Ends SmoothNormals::endsOf(const Ending& ending) const {
+  const btVector3* const corners = facets_[ending.triangle].corners;
+  return {corners[ending.edge], corners[next(ending.edge)]};
+}
+
+SmoothNormals::EdgeFaces SmoothNormals::facesOf(const Ending& ending) const {
   const Facet& facet = facets_[ending.triangle];
   const std::uint32_t across = facet.across[ending.edge] - kSharp;
   const Facet& other = facets_[across];
   std::size_t back = 0;
   while (back < 2 && other.across[back] != kSharp + ending.triangle) ++back;
-  SharpEdge edge;
-  edge.from = facet.corners[ending.edge];
-  edge.to = facet.corners[next(ending.edge)];
-  edge.inwards[0] = unit(facet.inwards[ending.edge]);
-  edge.inwards[1] = unit(other.inwards[back]);
-  edge.id = std::min(3 * ending.triangle + ending.edge, 3 * across + static_cast<std::uint32_t>(back));
-  return edge;
+  return {{unit(facet.inwards[ending.edge]), unit(other.inwards[back])},
+          std::min(3 * ending.triangle + ending.edge, 3 * across + static_cast<std::uint32_t>(back))};
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

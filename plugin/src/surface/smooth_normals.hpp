@@ -61,18 +61,23 @@ class SmoothNormals {
     std::uint32_t edge = 0;              ///< of the triangle's
 
     bool found() const { return distance < BT_LARGE_FLOAT; }
+    bool isSameEdge(const Ending& other) const { return triangle == other.triangle && edge == other.edge; }
   };
   /// Returns the sharp edge that is met from a point of a triangle in a direction, no further than some
   /// triangles away.
   Ending untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const;
-  /// This is a sharp edge, seen from either side.
-  struct SharpEdge {
-    btVector3 from{0, 0, 0};
-    btVector3 to{0, 0, 0};
-    btVector3 inwards[2];  ///< unit: along its two faces, from the edge
-    std::uint32_t id = 0;  ///< the same from both sides
+  struct Ends {
+    const btVector3& from;
+    const btVector3& to;
   };
-  SharpEdge sharpEdge(const Ending& ending) const;
+  /// Returns the ends of a sharp edge that was found.
+  Ends endsOf(const Ending& ending) const;
+  struct EdgeFaces {
+    btVector3 inwards[2];  ///< unit: along both faces, from the edge
+    std::uint32_t id = 0;  ///< of the edge, the same from both
+  };
+  /// Returns how the faces of a sharp edge lie that was found.
+  EdgeFaces facesOf(const Ending& ending) const;
   /// Returns the curvature of the surface across a triangle [1/m]: that along the edge which shows most of
   /// it. It is positive where the solid is convex, and exactly 0 where it is flat.
   btScalar curvature(std::size_t triangle) const { return facets_[triangle].curvature; }

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
-#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
 #include "common/bullet_vectors.hpp"
 #include "common/contact_tolerances.hpp"
@@ -51,8 +50,8 @@ class EntersAt {
     Lanes enter{}, leave = enter + kFar;
     for (int k = 0; k < 3; ++k) {
       const Lanes a = (boxes.min[k] - from_[k]) * inverse_[k], b = (boxes.max[k] - from_[k]) * inverse_[k];
-      enter = TriangleBvh::greater(enter, TriangleBvh::lesser(a, b));
-      leave = TriangleBvh::lesser(leave, TriangleBvh::greater(a, b));
+      enter = larger(enter, lesser(a, b));
+      leave = lesser(leave, larger(a, b));
     }
     return enter <= leave ? enter : Lanes{} + kFar;
   }
@@ -69,11 +68,11 @@ Lanes EntersAt::operator()(const TriangleBvh::Leaf& leaf) const {
   const Lanes along = n[0] * way_.all[0] + n[1] * way_.all[1] + n[2] * way_.all[2];
   const Lanes distance = -leaf.faces.heightsOf(start_.all) / along;
   // The flatter the line, the less is known of where it passes the plane.
-  const Lanes error = rounding_ + rounding_ / TriangleBvh::greater(along, -along);
+  const Lanes error = rounding_ + rounding_ / larger(along, -along);
   Lanes at[3];
   for (int k = 0; k < 3; ++k) at[k] = start_.all[k] + way_.all[k] * distance;
   Lanes height = leaf.edges[0].heightsOf(at);
-  for (int k = 1; k < 3; ++k) height = TriangleBvh::lesser(height, leaf.edges[k].heightsOf(at));
+  for (int k = 1; k < 3; ++k) height = lesser(height, leaf.edges[k].heightsOf(at));
   // Not a number, of a line along a plane, is no miss.
   const auto misses = (height + error < leaf.lowest) | (distance + error < 0);
   const Lanes least = distance - error;
@@ -97,8 +96,8 @@ class Apart {
   }
   Lanes operator()(const TriangleBvh::Leaf& leaf) const {
     Lanes gap = beside(leaf.faces, -1);
-    for (const TriangleBvh::Planes& edges : leaf.edges) gap = TriangleBvh::greater(gap, beside(edges, -1));
-    gap = TriangleBvh::greater(gap, beside(leaf.faces, 1));
+    for (const TriangleBvh::Planes& edges : leaf.edges) gap = larger(gap, beside(edges, -1));
+    gap = larger(gap, beside(leaf.faces, 1));
     return gap > 0 ? Lanes{} + kFar : Lanes{};
   }
 
@@ -106,8 +105,7 @@ class Apart {
   /// How far all of the box is in front of planes, or, on the side -1, behind them.
   Lanes beside(const TriangleBvh::Planes& planes, float side) const {
     Lanes reach = Lanes{} + rounding_;
-    for (int k = 0; k < 3; ++k)
-      reach += TriangleBvh::greater(planes.normal[k], -planes.normal[k]) * half_.all[k];
+    for (int k = 0; k < 3; ++k) reach += larger(planes.normal[k], -planes.normal[k]) * half_.all[k];
     return side * planes.heightsOf(middle_.all) - reach;
   }
 
@@ -130,6 +128,29 @@ void complete(const SmoothNormals& normals, const SmoothNormals::Crossing& cross
   const btScalar further = hit.distance + place.bulge / facing;
   if (place.bulge > 0 && normals.isPastSharpEdge(hit.triangle, from + direction * further)) return;
   hit.distance = further;
+}
+
+/// The nearest point of a triangle, by its Voronoi regions: Ericson, "Real-Time Collision Detection" (2005),
+/// 5.1.5.
+btVector3 nearestOfTriangle(const btVector3* corners, const btVector3& point) {
+  const btVector3 &a = corners[0], &b = corners[1], &c = corners[2];
+  const btVector3 ab = b - a, ac = c - a, from_a = point - a;
+  const btScalar ab_a = ab.dot(from_a), ac_a = ac.dot(from_a);
+  if (ab_a <= 0 && ac_a <= 0) return a;
+  const btVector3 from_b = point - b;
+  const btScalar ab_b = ab.dot(from_b), ac_b = ac.dot(from_b);
+  if (ab_b >= 0 && ac_b <= ab_b) return b;
+  const btScalar beyond_ab = ab_a * ac_b - ab_b * ac_a;
+  if (beyond_ab <= 0 && ab_a >= 0 && ab_b <= 0) return a + ab_a / (ab_a - ab_b) * ab;
+  const btVector3 from_c = point - c;
+  const btScalar ab_c = ab.dot(from_c), ac_c = ac.dot(from_c);
+  if (ac_c >= 0 && ab_c <= ac_c) return c;
+  const btScalar beyond_ac = ab_c * ac_a - ab_a * ac_c;
+  if (beyond_ac <= 0 && ac_a >= 0 && ac_c <= 0) return a + ac_a / (ac_a - ac_c) * ac;
+  const btScalar beyond_bc = ab_b * ac_c - ab_c * ac_b, bc_b = ac_b - ab_b, cb_c = ab_c - ac_c;
+  if (beyond_bc <= 0 && bc_b >= 0 && cb_c >= 0) return b + bc_b / (bc_b + cb_c) * (c - b);
+  const btScalar share = 1 / (beyond_bc + beyond_ac + beyond_ab);
+  return a + ab * (beyond_ac * share) + ac * (beyond_ab * share);
 }
 
 /// The nearest of the triangles that it is shown to a point.
@@ -177,15 +198,14 @@ class NearestTriangle {
   btVector3 face_{0, 0, 0};
   std::size_t triangle_ = 0;
   btVector3 offset_{0, 0, 0};
-  btVoronoiSimplexSolver solver_;
 };
 
 Lanes NearestTriangle::operator()(const TriangleBvh::Boxes& boxes) const {
   Lanes sum{};
   for (int k = 0; k < 3; ++k) {
     const Lanes at = lanes_.all[k];
-    const Lanes outside = TriangleBvh::greater(boxes.min[k] - at, at - boxes.max[k]);
-    const Lanes gap = TriangleBvh::greater(outside, Lanes{});
+    const Lanes outside = larger(boxes.min[k] - at, at - boxes.max[k]);
+    const Lanes gap = larger(outside, Lanes{});
     sum += gap * gap;
   }
   return sum;
@@ -193,21 +213,17 @@ Lanes NearestTriangle::operator()(const TriangleBvh::Boxes& boxes) const {
 
 Lanes NearestTriangle::operator()(const TriangleBvh::Leaf& leaf) const {
   const Lanes height = leaf.faces.heightsOf(lanes_.all);
-  const Lanes over = TriangleBvh::greater(TriangleBvh::greater(height, -height) - rounding_, Lanes{});
+  const Lanes over = larger(larger(height, -height) - rounding_, Lanes{});
   Lanes beyond{};
   for (const TriangleBvh::Planes& edges : leaf.edges)
-    beyond = TriangleBvh::greater(beyond, -edges.heightsOf(lanes_.all) - rounding_);
+    beyond = larger(beyond, -edges.heightsOf(lanes_.all) - rounding_);
   return over * over + beyond * beyond;
 }
 
 btScalar NearestTriangle::test(std::size_t t) {
   const btVector3& face = triangles_.face(t);
   if (face.isZero()) return farthest2();
-  const btVector3* const corners = triangles_.corners(t);
-  btSubSimplexClosestResult closest;
-  closest.reset();
-  solver_.closestPtPointTriangle(point_, corners[0], corners[1], corners[2], closest);
-  const btVector3 offset = point_ - closest.m_closestPointOnSimplex;
+  const btVector3 offset = point_ - nearestOfTriangle(triangles_.corners(t), point_);
   const btScalar length2 = offset.length2();
   if (length2 > farthest2()) return farthest2();
   // Of those that share the nearest point, the one seen from the steepest angle tells inside from outside.
@@ -306,13 +322,6 @@ bool SurfaceQueries::isThinner(btScalar thickness, const btVector3& place, const
 btScalar SurfaceQueries::untilSharpEdge(std::size_t triangle, const btVector3& point,
                                         const btVector3& towards) const {
   return normals().untilSharpEdge(triangle, point, towards).distance;
-}
-
-bool SurfaceQueries::sharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards,
-                               SmoothNormals::SharpEdge& edge) const {
-  const SmoothNormals::Ending ending = normals().untilSharpEdge(triangle, point, towards);
-  if (ending.found()) edge = normals().sharpEdge(ending);
-  return ending.found();
 }
 
 bool SurfaceQueries::nearest(const btVector3& point, btScalar max_distance, Nearest& result) const {

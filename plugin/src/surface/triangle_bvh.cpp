@@ -94,7 +94,7 @@ std::uint32_t TriangleBvh::build(const Surface& surface, std::size_t first, std:
 
 std::uint32_t TriangleBvh::appendLeaf(const Surface& surface, std::size_t first, std::size_t end) {
   Leaf& leaf = leaves_.emplace_back();
-  leaf.count = static_cast<std::uint32_t>(end - first);
+  leaf.used = (1u << (end - first)) - 1;
   for (std::size_t i = first; i < end; ++i) setTriangle(surface, triangles_[i], i - first, leaf);
   return static_cast<std::uint32_t>(leaves_.size() - 1);
 }

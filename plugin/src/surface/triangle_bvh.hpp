@@ -2,15 +2,19 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <LinearMath/btVector3.h>
 
 #include "innersphere/bullet_precision.hpp"
 #include "innersphere/geometry.hpp"
+#include "surface/lanes.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -26,9 +30,7 @@ class TriangleBvh {
 
   /// One number of each of a node's children lies side by side: one instruction looks at all of them.
   static constexpr std::size_t kWidth = 4;
-  using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
-  static Lanes lesser(Lanes a, Lanes b) { return a < b ? a : b; }
-  static Lanes greater(Lanes a, Lanes b) { return a > b ? a : b; }
+  using Lanes = FourFloats;
   struct Boxes {
     Lanes min[3], max[3];  ///< x, y, z
   };
@@ -47,7 +49,7 @@ class TriangleBvh {
     /// A line meets no triangle where its height above an edge is less than this [m].
     Lanes lowest;
     std::array<std::uint32_t, kWidth> triangles;
-    std::uint32_t count;
+    std::uint32_t used;  ///< a bit for each
   };
   /// Returns how far off heights over planes may be, for rounding [m].
   float rounding() const { return rounding_; }
@@ -60,6 +62,10 @@ class TriangleBvh {
   void search(btScalar farthest, const Bound& bound, const Visit& visit) const;
 
  private:
+  static float roundedUp(btScalar x) {
+    const auto rounded = static_cast<float>(x);
+    return rounded < x ? std::nextafter(rounded, kFar) : rounded;
+  }
   struct Child {
     std::uint32_t index;  ///< of its leaf or its node
     bool is_leaf;
@@ -87,31 +93,50 @@ template <typename Bound, typename Visit>
 void TriangleBvh::search(btScalar farthest, const Bound& bound, const Visit& visit) const {
   struct Entry {
     Child child;
-    btScalar distance;
+    float distance;
   };
-  std::array<Entry, (kWidth - 1) * kMaxDepth + 1> stack;
+  std::array<Entry, (kWidth - 1) * kMaxDepth + 1> open;
   std::size_t count = 0;
-  if (!nodes_.empty()) stack[count++] = {{0, false}, 0};
-  while (count > 0) {
-    const Entry entry = stack[--count];
-    if (!(entry.distance <= farthest)) continue;
-    if (entry.child.is_leaf) {
-      const Leaf& leaf = leaves_[entry.child.index];
-      const Lanes distances = bound(leaf);
-      for (std::uint32_t k = 0; k < leaf.count; ++k) {
-        if (distances[k] <= farthest) farthest = visit(leaf.triangles[k]);
-      }
-      continue;
+  Entry next{{0, false}, 0};
+  float limit = roundedUp(farthest);
+  const auto takeOpen = [&] {
+    while (count > 0) {
+      next = open[--count];
+      if (next.distance <= limit) return true;
     }
-    const Node& node = nodes_[entry.child.index];
-    const Lanes distances = bound(node.boxes);
-    const std::size_t bottom = count;
-    for (std::size_t k = kWidth; k-- > 0;) {
-      if (!(distances[k] <= farthest)) continue;
-      // The nearest is on top.
-      std::size_t at = count++;
-      for (; at > bottom && stack[at - 1].distance < distances[k]; --at) stack[at] = stack[at - 1];
-      stack[at] = {node.children[k], btScalar(distances[k])};
+    return false;
+  };
+  // Always on with the nearest child. The others stay open, the nearest of them on top.
+  const auto goToLeaf = [&] {
+    while (!next.child.is_leaf) {
+      const Node& node = nodes_[next.child.index];
+      const Lanes distances = bound(node.boxes);
+      unsigned near = signBits(distances <= limit);
+      if (near == 0) return false;
+      const auto takeLast = [&] {
+        const auto k = static_cast<std::size_t>(std::bit_width(near) - 1);
+        near ^= 1u << k;
+        return Entry{node.children[k], distances[k]};
+      };
+      const std::size_t bottom = count;
+      next = takeLast();
+      while (near != 0) {
+        Entry other = takeLast();
+        if (!(next.distance < other.distance)) std::swap(other, next);
+        std::size_t at = count++;
+        for (; at > bottom && open[at - 1].distance < other.distance; --at) open[at] = open[at - 1];
+        open[at] = other;
+      }
+    }
+    return true;
+  };
+  for (bool more = !nodes_.empty(); more; more = takeOpen()) {
+    if (!goToLeaf()) continue;
+    const Leaf& leaf = leaves_[next.child.index];
+    const Lanes distances = bound(leaf);
+    for (unsigned near = signBits(distances <= limit) & leaf.used; near != 0; near &= near - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(near));
+      if (distances[k] <= limit) limit = roundedUp(visit(leaf.triangles[k]));
     }
   }
 }

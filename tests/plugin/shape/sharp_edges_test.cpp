@@ -52,8 +52,9 @@ TEST_F(BoxEdges, AreMetInTheDirectionThatIsAsked) {
     EXPECT_NEAR((offset - line * offset.dot(line)).length(), 0, kRounding);
     // Along both of its faces: back on this one, and down the next.
     const btVector3 back = world.getBasis() * -way, down = -world.getBasis().getColumn(0);
-    EXPECT_NEAR(std::min(edge.inwards[0].distance(back), edge.inwards[1].distance(back)), 0, 1e-5);
-    EXPECT_NEAR(std::min(edge.inwards[0].distance(down), edge.inwards[1].distance(down)), 0, 1e-5);
+    const SharpEdges::Faces faces = solid.facesOf(edge);
+    EXPECT_NEAR(std::min(faces.inwards[0].distance(back), faces.inwards[1].distance(back)), 0, 1e-5);
+    EXPECT_NEAR(std::min(faces.inwards[0].distance(down), faces.inwards[1].distance(down)), 0, 1e-5);
   }
 }
 
@@ -67,8 +68,8 @@ TEST_F(BoxEdges, HaveTheSameIdFromBothFaces) {
   ASSERT_TRUE(solid.edgeTowards(triangle, toWorld(on_x), -world.getBasis().getColumn(1), other));
   ASSERT_TRUE(solid.nearestTriangle(toWorld(on_y), triangle));
   ASSERT_TRUE(solid.edgeTowards(triangle, toWorld(on_y), world.getBasis().getColumn(0), from_y));
-  EXPECT_EQ(from_x.id, from_y.id);
-  EXPECT_NE(from_x.id, other.id);
+  EXPECT_EQ(solid.facesOf(from_x).id, solid.facesOf(from_y).id);
+  EXPECT_NE(solid.facesOf(from_x).id, solid.facesOf(other).id);
 }
 
 TEST_F(BoxEdges, KnowTheirFaces) {

@@ -102,16 +102,17 @@ TEST(SmoothNormals, ARimIsTheSameFromBothSides) {
   const OnTop top(surface);
   const auto from_top = normals.untilSharpEdge(top.triangle, top.place, top.outwards);
   ASSERT_TRUE(from_top.found());
-  const auto rim = normals.sharpEdge(from_top);
-  EXPECT_NEAR(rim.from.z(), kHeight, 1e-6);
-  EXPECT_NEAR(rim.to.z(), kHeight, 1e-6);
-  EXPECT_NEAR(rim.from.distance(rim.to), 2 * kRadius * std::sin(M_PI / kSegments), 1e-5);
-  EXPECT_NEAR(rim.inwards[0].dot(top.outwards), -1, 1e-5);
-  EXPECT_NEAR(rim.inwards[1].z(), -1, 1e-5);
+  const auto ends = normals.endsOf(from_top);
+  EXPECT_NEAR(ends.from.z(), kHeight, 1e-6);
+  EXPECT_NEAR(ends.to.z(), kHeight, 1e-6);
+  EXPECT_NEAR(ends.from.distance(ends.to), 2 * kRadius * std::sin(M_PI / kSegments), 1e-5);
+  const auto faces = normals.facesOf(from_top);
+  EXPECT_NEAR(faces.inwards[0].dot(top.outwards), -1, 1e-5);
+  EXPECT_NEAR(faces.inwards[1].z(), -1, 1e-5);
   const std::size_t side = sideTriangle(kRings - 1, 7);
   const auto from_side = normals.untilSharpEdge(side, placeOn(surface, side), btVector3(0, 0, 1));
   ASSERT_TRUE(from_side.found());
-  EXPECT_EQ(normals.sharpEdge(from_side).id, rim.id);
+  EXPECT_EQ(normals.facesOf(from_side).id, faces.id);
 }
 
 TEST(SmoothNormals, TellWhatIsPastARim) {
@@ -211,11 +212,11 @@ TEST(SmoothNormals, ASliverBelongsToTheFaceItLiesOn) {
       const auto ending = normals.untilSharpEdge(0, place, down);
       ASSERT_TRUE(ending.found()) << rounding;
       EXPECT_NEAR(ending.distance, 0.25, 1e-6);
-      const auto edge = normals.sharpEdge(ending);
-      EXPECT_NEAR(edge.from.y(), 0, 1e-7) << rounding;
-      EXPECT_NEAR(edge.to.y(), 0, 1e-7) << rounding;
+      const auto ends = normals.endsOf(ending);
+      EXPECT_NEAR(ends.from.y(), 0, 1e-7) << rounding;
+      EXPECT_NEAR(ends.to.y(), 0, 1e-7) << rounding;
       // Which half of the edge it is shows only where the sliver has a height.
-      EXPECT_NEAR(edge.from.distance(edge.to), 0.5, 1e-6);
+      EXPECT_NEAR(ends.from.distance(ends.to), 0.5, 1e-6);
     }
   }
 }
