@@ -23,6 +23,10 @@ constexpr int kProbes = 12;
 // until it is at the second, about two rounds later.
 constexpr double kWorthAPoint = 0.05, kLowEnough = 0.85;
 
+// Radius of the balls put behind walls, in wanted radii. Larger: less curved, so that cells need not be as
+// small, but dearer to find. That pays where the solid is equally thick everywhere.
+constexpr double kBehind = 8, kFarBehind = 64;
+
 // Cosine between a wall's direction and a triangle's, from which on the wall is the triangle.
 constexpr double kFacing = 1 - 1e-6;
 
@@ -120,7 +124,9 @@ void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end, std
     if (now.upper > 0) result_.cells.push_back(now);
   } else {
     const std::size_t last = balls_.size(), ours = inherited_.size();
-    for (const Probe& cut : cuts_) inherited_.push_back(cut.ball);
+    if (equally_thick_) {
+      for (const Probe& cut : cuts_) inherited_.push_back(cut.ball);
+    }
     for (int octant = 0; octant < 8; ++octant) visit(now.child(octant), mine, last, ours);
     inherited_.resize(ours);
   }
@@ -183,7 +189,8 @@ bool CellSearch::flatten(double half) {
   bool flatter = false;
   program_.forWeights([&](int k, double) {
     if (!cuts_[k].at_wall) return;
-    const Ball behind = ballBehind(cuts_[k].wall, -cuts_[k].gradient, behind_ * std::max(half, wanted_));
+    const Ball behind = ballBehind(cuts_[k].wall, -cuts_[k].gradient,
+                                   (equally_thick_ ? kFarBehind : kBehind) * std::max(half, wanted_));
     if (behind.radius <= cuts_[k].ball.radius) return;
     cuts_[k].ball = behind;
     cuts_[k].prism = -1;

@@ -39,16 +39,15 @@ class CellSearch {
 
   /// Prepares a search. `top`: no sphere larger than this fits. `wanted`: spheres larger than this are looked
   /// for. `bound`: a cell that holds none larger than this is done. As bound > wanted, a cell is decided
-  /// before it is much smaller than their difference. `behind`: radius of the balls put behind walls, in
-  /// wanted radii.
+  /// before it is much smaller than their difference. `equally_thick`: much of the solid is just too thin.
   CellSearch(const Container& container, const SphereGrid& placed, double top, double bound, double wanted,
-             double behind)
+             bool equally_thick)
       : container_(container),
         placed_(placed),
         top_(top),
         bound_(bound),
         wanted_(wanted),
-        behind_(behind),
+        equally_thick_(equally_thick),
         clearances_(container.margin()) {}
 
   /// Searches the cells of one block.
@@ -112,7 +111,8 @@ class CellSearch {
 
   const Container& container_;
   const SphereGrid& placed_;
-  const double top_, bound_, wanted_, behind_;
+  const double top_, bound_, wanted_;
+  const bool equally_thick_;
   Result result_;
   ClearanceCache clearances_;
   // A stack: the balls that can matter in the block, those of them that can matter in its cell being visited,

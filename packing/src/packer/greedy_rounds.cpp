@@ -32,10 +32,8 @@ constexpr std::uint64_t kParts = 16;
 // Rounds with no more blocks than this are searched whole.
 constexpr std::size_t kMostWholeBlocks = 64 * kParts;
 
-// Radius of the balls that a search puts behind walls, in wanted radii. Larger: less curved, so that cells
-// need not be as small, but dearer to find. That pays where the solid is equally thick everywhere: where a
-// round looks at more than so many cells for each sphere placed, and for a thousand more.
-constexpr double kBehind = 8, kFarBehind = 64;
+// The solid is equally thick everywhere where a round looks at more than so many cells for each sphere
+// placed, and for a thousand more.
 constexpr std::size_t kManyCells = 15, kFewSpheres = 1000;
 
 // Side of a block, in wanted radii, at least. Larger blocks: fewer look-ups of spheres, longer lists of them.
@@ -97,7 +95,8 @@ void sortCandidates(std::vector<CellSearch::Candidate>& candidates, bool whole) 
 /// What a round is certain of, wants and has to prove; see CellSearch.
 struct GreedyRounds::Round {
   float top, bound;
-  double wanted, behind;
+  double wanted;
+  bool equally_thick;
   int level;  ///< of the blocks
 };
 
@@ -132,8 +131,8 @@ GreedyRounds::Found GreedyRounds::search(const std::vector<Active>& active, cons
       std::vector<Cell> cells;
       for (std::size_t i = begins[b]; i < begins[b + 1]; ++i) cells.push_back(active[i].cell);
       sortCells(cells);
-      results[b] =
-          CellSearch(container_, grid, round.top, round.bound, round.wanted, round.behind).search(cells);
+      results[b] = CellSearch(container_, grid, round.top, round.bound, round.wanted, round.equally_thick)
+                       .search(cells);
     });
   };
   searchBlocks(true);
@@ -197,7 +196,7 @@ GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop,
     const std::vector<Cell> cells = queue.takeAbove(next);
     const bool equally_thick = cells.size() > kManyCells * (placed.top.size() + kFewSpheres);
     const double wanted = std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_);
-    const Round round{top, bound, wanted, equally_thick ? kFarBehind : kBehind, blockLevel(wanted)};
+    const Round round{top, bound, wanted, equally_thick, blockLevel(wanted)};
     std::vector<Active> active;
     arena.execute([&] { active = sortIntoBlocks(cells, round.level); });
     for (std::uint64_t turn = 0; !active.empty(); ++turn) {
