@@ -62,6 +62,8 @@ class SurfaceQueries {
   bool nearest(const btVector3& point, btScalar max_distance, Nearest& result) const;
 
   const SmoothNormals& normals() const;
+  /// Returns how far off places on its triangles may be, for rounding [m].
+  btScalar rounding() const { return tree_.rounding(); }
 
  private:
   const Surface& surface_;

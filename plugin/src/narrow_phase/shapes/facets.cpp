@@ -139,9 +139,15 @@ void Facets::setHull(const btPolyhedralConvexShape& shape) {
 bool Facets::nearest(const btVector3& place, Nearest& nearest) const {
   SurfaceQueries::Nearest face;
   if (!is_solid_ || !tree_->nearest(place - points_[0], BT_LARGE_FLOAT, face)) return false;
-  const bool on_edge = tree_->normals().face(face.triangle).dot(face.normal) < kOverFace;
+  // Close to a large face its nearest place is rounded aside, and seen askew.
+  const btVector3& normal = tree_->normals().face(face.triangle);
+  const btScalar cosine = normal.dot(face.normal), height = cosine * face.distance;
+  const btScalar aside = (face.normal * face.distance - normal * height).length();
+  if (cosine > kOverFace || aside < tree_->rounding()) {
+    nearest = {height - margin_, normal, 0, {0, 0, 0}};
+    return true;
+  }
   nearest = {face.distance - margin_, face.normal, 0, {0, 0, 0}};
-  if (!on_edge) return true;
   nearest.edge_curvature = 1 / btMax(margin_, SIMD_EPSILON);
   nearest.along =
       edgeAt(tree_->normals().corners(face.triangle), place - points_[0] - face.normal * face.distance);

@@ -64,6 +64,42 @@ TEST(Facets, OfAHullAreSmallerByItsMargin) {
   EXPECT_NEAR(std::fabs(edge.along.normalized().dot(kPlace.getBasis().getColumn(1))), 1, kRounding);
 }
 
+TEST(Facets, OfALargeHullAreSeenUprightFromCloseBy) {
+  const btVector3 half(3, 3, btScalar(0.015));
+  btConvexHullShape hull;
+  for (int i = 0; i < 8; ++i)
+    hull.addPoint(half *
+                  btVector3(btScalar(i & 1 ? 1 : -1), btScalar(i & 2 ? 1 : -1), btScalar(i & 4 ? 1 : -1)));
+  hull.setMargin(0);
+  Facets facets;
+  facets.setHull(hull);
+  const int count = 40;
+  for (const double height : {-5e-3, -1e-4, -1e-5, 1e-5, 1e-4, 5e-3}) {
+    for (int i = 0; i < count * count; ++i) {
+      const double x = 5.9 * ((i % count + 0.37) / count - 0.5), y = 5.9 * ((i / count + 0.59) / count - 0.5);
+      for (const btScalar side : {btScalar(-1), btScalar(1)}) {
+        Facets::Nearest nearest;
+        const btVector3 place(btScalar(x), btScalar(y), side * (half.z() + btScalar(height)));
+        ASSERT_TRUE(facets.nearest(place, nearest));
+        ASSERT_NEAR(nearest.distance, height, 1e-6) << x << " " << y << " " << height;
+        ASSERT_NEAR(nearest.normal.distance(btVector3(0, 0, side)), 0, 1e-6)
+            << x << " " << y << " " << height;
+        ASSERT_EQ(nearest.edge_curvature, 0) << x << " " << y << " " << height;
+      }
+    }
+  }
+  // Beside an edge it is seen.
+  for (const double distance : {1e-3, 1e-1}) {
+    Facets::Nearest nearest;
+    const double d = distance / std::sqrt(2.0);
+    ASSERT_TRUE(facets.nearest(half + btVector3(btScalar(d), -1, btScalar(d)), nearest));
+    EXPECT_NEAR(nearest.distance, distance, 1e-6);
+    EXPECT_NEAR(nearest.normal.distance(btVector3(1, 0, 1).normalized()), 0, 1e-2);
+    EXPECT_GT(nearest.edge_curvature, 0);
+    EXPECT_NEAR(std::fabs(nearest.along.y()), 1, 1e-6);
+  }
+}
+
 class RoofMesh : public testing::Test {
  protected:
   /// Two sloped rectangles that meet in the ridge x = 0, z = 1.
