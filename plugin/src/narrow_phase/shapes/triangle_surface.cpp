@@ -276,12 +276,14 @@ class TriangleSurface : public ShapeSurface {
     }
   }
 
-  /// Visits the triangles that share the nearest point of `c`.
+  /// Visits the triangles that share the nearest point of `c`: they touch it. Their own nearest point may be
+  /// another place of the same distance but for rounding, as distances grow slowly beside the nearest one.
   template <typename Visit>
   static void forEachSharing(const TrianglePoint* c, const TrianglePoint* first, const TrianglePoint* last,
                              btScalar tolerance, const Visit& visit) {
     const auto test = [&](const TrianglePoint& other) {
-      if (!(other.point.distance2(c->point) > tolerance * tolerance)) visit(other);
+      const bool same = !(other.point.distance2(c->point) > tolerance * tolerance);
+      if (same || (!c->interior && hasOnRim(other, c->point, tolerance))) visit(other);
     };
     visit(*c);
     for (const TrianglePoint* o = c; o != first && c->distance - (o - 1)->distance <= tolerance; --o)
@@ -289,15 +291,20 @@ class TriangleSurface : public ShapeSurface {
     for (const TrianglePoint* o = c + 1; o != last && o->distance - c->distance <= tolerance; ++o) test(*o);
   }
 
-  static bool hasCorner(const TrianglePoint& c, const btVector3& point, btScalar same) {
-    return std::any_of(c.corners.begin(), c.corners.end(),
-                       [&](const btVector3& corner) { return corner.distance2(point) < same * same; });
+  static bool hasOnRim(const TrianglePoint& c, const btVector3& point, btScalar same) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const btVector3 edge = c.corners[(k + 1) % 3] - c.corners[k], way = point - c.corners[k];
+      const btScalar length2 = edge.length2();
+      const btScalar share = btClamped(way.dot(edge), btScalar(0), length2) / length2;
+      if (way.distance2(edge * share) < same * same) return true;
+    }
+    return false;
   }
 
-  /// Whether a nearest point is a corner of a triangle that comes nearer elsewhere.
+  /// Whether a nearest point is on the rim of a triangle that comes nearer elsewhere.
   static bool isNearerBeside(const TrianglePoint* c, const TrianglePoint* first, btScalar same) {
     return std::any_of(first, c, [&](const TrianglePoint& other) {
-      return c->distance - other.distance > same && hasCorner(other, c->point, same);
+      return c->distance - other.distance > same && hasOnRim(other, c->point, same);
     });
   }
 

@@ -16,7 +16,8 @@ namespace {
 constexpr double kRadius = 0.3, kHalf = 1;
 
 /// One ball, where a test puts it.
-std::vector<NearSphere> nearAt(const btCollisionShape& mesh, const btVector3& place) {
+std::vector<NearSphere> nearAt(ShapeSurface& surface, const btVector3& place,
+                               const btQuaternion& turn = btQuaternion::getIdentity()) {
   static const std::shared_ptr<PackingShape> ball = [] {
     Packing packing;
     packing.spheres = {{0, 0, 0, float(kRadius)}};
@@ -24,10 +25,14 @@ std::vector<NearSphere> nearAt(const btCollisionShape& mesh, const btVector3& pl
     shape->setMargin(0);
     return shape;
   }();
-  const PlacedPacking body(*ball, btTransform(btQuaternion::getIdentity(), place), Estimator::raw, 0);
+  const PlacedPacking body(*ball, btTransform(turn, place), Estimator::raw, 0);
   std::vector<NearSphere> found;
-  makeShapeSurface(mesh)->findNearSpheres(body, btTransform::getIdentity(), found);
+  surface.findNearSpheres(body, btTransform::getIdentity(), found);
   return found;
+}
+
+std::vector<NearSphere> nearAt(const btCollisionShape& mesh, const btVector3& place) {
+  return nearAt(*makeShapeSurface(mesh), place);
 }
 
 /// The surface of a cube, each face in n x n squares of two triangles; wound so that normals point out.
@@ -94,6 +99,28 @@ TEST_P(CubeMeshes, AreAsFarAwayAsTheirCube) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cuts, CubeMeshes, testing::Values(1, 2, 5));
+
+/// A triangle beside the one below the ball is as near but for rounding.
+TEST(TriangleSurface, ABallThatSinksInBesideAnEdgeIsInside) {
+  constexpr double kEdge = 0.2, kDeep = 0.1;
+  const CubeMesh cube(5);
+  std::mt19937 rng(7);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int k = 0; k < 2000; ++k) {
+    const btVector3 axis(btScalar(u(rng)), btScalar(u(rng)), btScalar(u(rng)));
+    const btQuaternion turn(axis.normalized(), btScalar(3 * u(rng)));
+    const double beside = 1e-4 * u(rng);
+    const auto place = [&](double z) {
+      return btVector3(btScalar(kEdge + beside), btScalar(0.05), btScalar(z));
+    };
+    const auto surface = makeShapeSurface(*cube.shape);
+    ASSERT_EQ(nearAt(*surface, place(kHalf + kDeep), turn).size(), 1u);
+    const std::vector<NearSphere> found = nearAt(*surface, place(kHalf - kDeep), turn);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].distance, -kDeep, 1e-5) << beside;
+    EXPECT_NEAR(found[0].normal.z(), 1, 1e-5);
+  }
+}
 
 TEST(TriangleSurface, ACornerBetweenThreeWallsIsThreeContacts) {
   const CubeMesh cube(3);
