@@ -1,4 +1,4 @@
-// Hashes numbers and text, the same on every machine, to recognise a geometry again.
+// Hashes numbers and text, the same on every machine: to recognise a geometry again, or to look random.
 #pragma once
 
 #include <bit>
@@ -6,6 +6,13 @@
 #include <string>
 
 namespace innersphere {
+
+/// Mixes the bits of a number, as SplitMix64 does.
+inline std::uint64_t mixed(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
 
 /// This is the hash FNV-1a of 64 bits, fed with numbers in little-endian order.
 class Hash {

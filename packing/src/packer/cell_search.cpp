@@ -142,11 +142,13 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin, std::size_t
     cell.upper = std::min(cell.upper, roundUp(provenBound(centre, half)));
     return cell.upper <= bound_;
   };
+  const auto cut = [&](const Probe& p, const Point& at) {
+    program_.add(p.value - p.gradient.dot(at - centre), p.gradient);
+    cuts_.push_back(p);
+  };
   for (std::size_t i = parent; i < inherited_.size(); ++i) {
     const Ball& ball = inherited_[i];
-    const Point gradient = direction(ball.centre, centre);
-    program_.add(ball.distance(centre), gradient);
-    cuts_.push_back({ball.distance(centre), gradient, ball});
+    cut({ball.distance(centre), direction(ball.centre, centre), ball}, centre);
   }
   if (!cuts_.empty() && program_.optimum() <= bound_ && prove()) return Verdict::below;
   Point x = centre;
@@ -155,8 +157,7 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin, std::size_t
   for (int k = 0; k < probes; ++k) {
     const Probe p = probe(x, begin, balls_.size(), wanted_, k == 0 ? bound_ - std::numbers::sqrt3 * half : 0);
     if (p.value > wanted_ && climb(x)) return Verdict::found;
-    program_.add(p.value - p.gradient.dot(x - centre), p.gradient);
-    cuts_.push_back(p);
+    cut(p, x);
     const double optimum = program_.optimum();
     const bool worthwhile = k + 1 < probes && before - optimum > kWorthAPoint * bound_;
     if (optimum <= kLowEnough * bound_ || (optimum <= bound_ && !worthwhile)) {

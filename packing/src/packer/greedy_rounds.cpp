@@ -8,6 +8,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "common/hash.hpp"
 #include "common/steady_math.hpp"
 
 namespace innersphere {
@@ -51,6 +52,17 @@ std::uint64_t blockOf(const Cell& cell, int level) {
   return mortonCode(cell, level) << 1 | (cell.level < level);
 }
 
+/// Brings the cells into the order of blocks of this level. Their children stay in it.
+std::vector<Active> sortIntoBlocks(const std::vector<Cell>& cells, int level) {
+  std::vector<Active> active(cells.size());
+  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+    active[i] = {blockOf(cells[i], level), cells[i]};
+  });
+  tbb::parallel_sort(active.begin(), active.end(),
+                     [](const Active& a, const Active& b) { return a.block < b.block; });
+  return active;
+}
+
 /// Returns where each block begins, and the end.
 std::vector<std::size_t> beginsOf(const std::vector<Active>& active) {
   std::vector<std::size_t> begins;
@@ -65,13 +77,6 @@ std::vector<std::size_t> beginsOf(const std::vector<Active>& active) {
 void sortCells(std::vector<Cell>& cells) {
   const auto key = [](const Cell& c) { return std::make_tuple(c.level, c.at[2], c.at[1], c.at[0]); };
   std::sort(cells.begin(), cells.end(), [&](const Cell& a, const Cell& b) { return key(a) < key(b); });
-}
-
-/// Mixes the bits of a number, as in SplitMix64.
-std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
 }
 
 /// Returns true for one of kParts blocks, spread at random, other ones in each turn.
@@ -105,16 +110,6 @@ struct GreedyRounds::Found {
   std::vector<Active> active;
   std::vector<CellSearch::Candidate> candidates;
 };
-
-std::vector<GreedyRounds::Active> GreedyRounds::sortIntoBlocks(const std::vector<Cell>& cells, int level) {
-  std::vector<Active> active(cells.size());
-  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
-    active[i] = {blockOf(cells[i], level), cells[i]};
-  });
-  tbb::parallel_sort(active.begin(), active.end(),
-                     [](const Active& a, const Active& b) { return a.block < b.block; });
-  return active;
-}
 
 GreedyRounds::Found GreedyRounds::search(const std::vector<Active>& active, const Round& round,
                                          std::uint64_t turn, const SphereGrid& grid) const {

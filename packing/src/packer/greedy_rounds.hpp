@@ -49,8 +49,6 @@ class GreedyRounds {
   struct Round;
   struct Found;
 
-  /// Brings the cells into the order of blocks of this level. Their children stay in it.
-  static std::vector<Active> sortIntoBlocks(const std::vector<Cell>& cells, int level);
   /// Searches the cells, which are in the order of blocks, in parallel: first those of a part of the blocks,
   /// spread over the solid, and then the others, unless that part has given too many candidates.
   Found search(const std::vector<Active>& active, const Round& round, std::uint64_t turn,

@@ -67,8 +67,8 @@ class TrueOverlap {
   TrueOverlap(const Container& container, const Surface& surface, double volume)
       : few_(container, volume, kFewPoints), volume_(volume), scale_(1 / container.side()) {
     shift_ = container.fromWorld(container.origin());
-    if (!surface.triangles.empty() && isClosedSurface(surface)) {
-      tree_.emplace(surface);
+    tree_ = SurfaceTree::ifClosed(surface);
+    if (tree_) {
       for (const auto& v : surface.vertices) vertices_.push_back(scale_ * Point(v[0], v[1], v[2]) + shift_);
     }
     if (!tree_ || std::abs(below(Point::UnitZ(), 2) - 1) > kOff)

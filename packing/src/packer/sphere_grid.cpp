@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/hash.hpp"
+
 namespace innersphere {
 
 SphereGrid::SphereGrid() : slots_(1024) {}
@@ -30,22 +32,16 @@ std::uint64_t SphereGrid::keyOf(int level, std::int64_t x, std::int64_t y, std::
          static_cast<std::uint64_t>(z);
 }
 
-static std::size_t hashOf(std::uint64_t key) {
-  key = (key ^ key >> 30) * 0xbf58476d1ce4e5b9ull;
-  key = (key ^ key >> 27) * 0x94d049bb133111ebull;
-  return static_cast<std::size_t>(key ^ key >> 31);
-}
-
 SphereGrid::Slot& SphereGrid::slot(std::uint64_t key) {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t i = hashOf(key) & mask;
+  std::size_t i = mixed(key) & mask;
   while (slots_[i].head != kNone && slots_[i].key != key) i = (i + 1) & mask;
   return slots_[i];
 }
 
 std::uint32_t SphereGrid::head(std::uint64_t key) const {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t i = hashOf(key) & mask;
+  std::size_t i = mixed(key) & mask;
   while (slots_[i].head != kNone && slots_[i].key != key) i = (i + 1) & mask;
   return slots_[i].head;
 }

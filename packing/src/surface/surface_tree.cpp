@@ -35,46 +35,7 @@ double areaOf(const Bounds& box) {
   return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/// Returns what SurfaceTree::twins() does, or nothing if the surface is not closed. Where more than two
-/// triangles meet in an edge, any two of opposite directions are neighbours.
-std::vector<std::array<std::uint32_t, 4>> findTwins(const Surface& surface) {
-  struct Edge {
-    std::uint32_t low, high, backward, number;
-  };
-  std::vector<Edge> edges;
-  edges.reserve(3 * surface.triangles.size());
-  std::vector<std::array<std::uint32_t, 4>> twins(surface.triangles.size());
-  for (std::uint32_t i = 0; i < surface.triangles.size(); ++i) {
-    const auto& t = surface.triangles[i];
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-      twins[i][k] = 4 * i + k;
-      if (low != high) edges.push_back({low, high, low == t[k] ? 0U : 1U, 4 * i + k});
-    }
-  }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return std::tie(a.low, a.high, a.backward, a.number) < std::tie(b.low, b.high, b.backward, b.number);
-  });
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i, forward = 0;
-    for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end)
-      forward += 1 - edges[end].backward;
-    if (2 * forward != end - i) return {};
-    for (; i + forward < end; ++i) {
-      const std::uint32_t there = edges[i].number, back = edges[i + forward].number;
-      twins[there / 4][there % 4] = back;
-      twins[back / 4][back % 4] = there;
-    }
-    i = end;
-  }
-  return twins;
-}
-
 }  // namespace
-
-bool isClosedSurface(const Surface& surface) {
-  return surface.triangles.empty() || !findTwins(surface).empty();
-}
 
 /// Sorts the triangles, so that those of each node follow each other.
 class SurfaceTree::Builder {
@@ -264,12 +225,52 @@ Bounds SurfaceTree::Builder::boundsOf(std::uint32_t first, std::uint32_t end) co
   return box;
 }
 
-SurfaceTree::SurfaceTree(const Surface& surface) {
+SurfaceTree::Twins SurfaceTree::findTwins(const Surface& surface) {
+  struct Edge {
+    std::uint32_t low, high, backward, number;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * surface.triangles.size());
+  Twins twins(surface.triangles.size());
+  for (std::uint32_t i = 0; i < surface.triangles.size(); ++i) {
+    const auto& t = surface.triangles[i];
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+      twins[i][k] = 4 * i + k;
+      if (low != high) edges.push_back({low, high, low == t[k] ? 0U : 1U, 4 * i + k});
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return std::tie(a.low, a.high, a.backward, a.number) < std::tie(b.low, b.high, b.backward, b.number);
+  });
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i, forward = 0;
+    for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end)
+      forward += 1 - edges[end].backward;
+    if (2 * forward != end - i) return {};
+    for (; i + forward < end; ++i) {
+      const std::uint32_t there = edges[i].number, back = edges[i + forward].number;
+      twins[there / 4][there % 4] = back;
+      twins[back / 4][back % 4] = there;
+    }
+    i = end;
+  }
+  return twins;
+}
+
+SurfaceTree::SurfaceTree(const Surface& surface) : SurfaceTree(surface, findTwins(surface)) {}
+
+std::optional<SurfaceTree> SurfaceTree::ifClosed(const Surface& surface) {
+  Twins twins = findTwins(surface);
+  if (twins.empty()) return std::nullopt;
+  return SurfaceTree(surface, std::move(twins));
+}
+
+SurfaceTree::SurfaceTree(const Surface& surface, Twins twins) : twins_(std::move(twins)) {
   if (surface.triangles.empty()) {
     throw Error(ErrorCode::empty_input,
                 "the packing carries no triangles; pack the mesh again, or use another estimator");
   }
-  twins_ = findTwins(surface);
   if (twins_.empty()) {
     throw Error(ErrorCode::not_a_solid,
                 "the triangles that the packing carries are not closed; use another estimator");

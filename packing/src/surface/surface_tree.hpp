@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "innersphere/geometry.hpp"
@@ -13,9 +14,6 @@ namespace innersphere {
 /// What rounding to single precision may do to a place, by the largest coordinate.
 constexpr double kSingleRounding = 2e-6;
 
-/// Returns whether each edge is run along as often in one direction as in the other.
-bool isClosedSurface(const Surface& surface);
-
 /// Holds a closed surface: its triangles, a tree of boxes, and which triangles are neighbours.
 class SurfaceTree {
  public:
@@ -24,6 +22,8 @@ class SurfaceTree {
   /// Throws Error: empty_input if there are no triangles, not_a_solid if they are not closed: an edge is not
   /// run along as often in one direction as in the other.
   explicit SurfaceTree(const Surface& surface);
+  /// Returns nothing where that would throw.
+  static std::optional<SurfaceTree> ifClosed(const Surface& surface);
 
   /// One number of each of a node's children lies side by side: one instruction looks at all of them.
   static constexpr std::uint32_t kWidth = 4;
@@ -73,13 +73,18 @@ class SurfaceTree {
 
  private:
   class Builder;
+  using Twins = std::vector<std::array<std::uint32_t, 4>>;
+  SurfaceTree(const Surface& surface, Twins twins);
+  /// Returns no twins if the surface is not closed. Where more than two triangles meet in an edge, any two of
+  /// opposite directions are neighbours.
+  static Twins findTwins(const Surface& surface);
   void addBoxes(Node& node, const Bounds* boxes) const;
   void findParts();
 
   std::vector<Lanes> vertices_;  ///< the last number is zero
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;
-  std::vector<std::array<std::uint32_t, 4>> twins_;
+  Twins twins_;
   std::vector<std::uint32_t> triangle_of_part_, parts_;  ///< parts_ is empty if there is one
   Bounds bounds_;
   CoarseGrid grid_;
