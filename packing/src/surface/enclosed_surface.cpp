@@ -145,7 +145,9 @@ void Enclosure::passThrough(const Step& step) {
   const Index triangle = step.corner / 4;
   const SurfaceTree::Triangle& v = own_->tree().triangles()[triangle];
   const std::array<Index, 4>& twins = own_->tree().twins(triangle);
-  const Vec3d a = own_->vertex(v[0]), b = own_->vertex(v[1]), c = own_->vertex(v[2]);
+  CornerPlaces corners;
+  own_->placeCorners(v, corners);
+  const Vec3d a = corners.corner(0), b = corners.corner(1), c = corners.corner(2);
   const Vec3d outwards = cross(b - a, c - a);
   if (outwards == Vec3d{}) {
     // All corners lie on a line. The other surface may cross edges, but does not meet the triangle.
@@ -210,8 +212,8 @@ void Enclosure::addCut(const GridSurface::Triangle& t, const int (&windings)[3])
     };
     const TwoDoubles from_i = twoAt(t.places[i] + edge) - apex[i],
                      from_j = twoAt(t.places[j] + edge) - apex[j],
-                     to_i = twoAt(t.places[i] + edge + 1) - apex[i],
-                     to_j = twoAt(t.places[j] + edge + 1) - apex[j], at_i = at(i), at_j = at(j);
+                     to_i = twoAt(t.places[i] + 1 - half) - apex[i],
+                     to_j = twoAt(t.places[j] + 1 - half) - apex[j], at_i = at(i), at_j = at(j);
     const TwoDoubles before = at_from[half] * (from_i * at_j - from_j * at_i),
                      after = at_to[half] * (at_i * to_j - at_j * to_i);
     areas += before + after;

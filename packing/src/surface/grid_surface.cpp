@@ -19,12 +19,6 @@ FourInts exchanged(FourInts x) {
   return (x << 16) | ((x >> 16) & 0xffff);
 }
 
-/// Returns the nearest whole number. Numbers are less than 2^51.
-double rounded(double x) {
-  constexpr double kWhole = 0x1.8p52;
-  return (x + kWhole) - kWhole;
-}
-
 }  // namespace
 
 double Similarity::scale() const {
@@ -61,12 +55,10 @@ void GridSurface::begin(const SurfaceTree& tree, const SurfaceTree& other, const
   moved_ = moved;
   asked_ = 0;
   if (++query_ == 0) {
-    vertices_.clear();
     nodes_.clear();
     marks_.clear();
     query_ = 1;
   }
-  if (vertices_.size() < tree.vertices().size()) vertices_.resize(tree.vertices().size());
   if (nodes_.size() < tree.nodes().size()) nodes_.resize(tree.nodes().size());
   if (marks_.size() < tree.triangles().size()) marks_.resize(tree.triangles().size());
   triangles_.clear();
@@ -74,16 +66,27 @@ void GridSurface::begin(const SurfaceTree& tree, const SurfaceTree& other, const
   crossings_.assign(1, {});
 }
 
-void GridSurface::place(Index v) {
+Vec3d GridSurface::vertex(Index v) const {
   const Lanes& p = tree_->vertices()[v];
-  const Vec3d at = to_grid_({p[0], p[1], p[2]});
-  vertices_[v] = {query_, {rounded(at.x), rounded(at.y), rounded(at.z)}};
+  Vec3d at = to_grid_({p[0], p[1], p[2]});
+  for (double& x : at) x = (x + kWhole) - kWhole;
+  return at;
+}
+
+void GridSurface::placeCorners(const SurfaceTree::Triangle& v, CornerPlaces& corners) const {
+  const std::vector<Lanes>& all = tree_->vertices();
+  const Lanes vertices[3] = {all[v[0]], all[v[1]], all[v[2]]};
+#ifdef INNERSPHERE_AVX512_SURFACE
+  if (wide_) return Avx512Kernels::placeCorners(vertices, to_grid_, corners);
+#endif
+  AnyKernels::placeCorners(vertices, to_grid_, corners);
 }
 
 void GridSurface::placeTriangle(Index triangle) {
   marks_[triangle] = {query_, static_cast<Index>(triangles_.size()), 0};
-  const SurfaceTree::Triangle& v = tree_->triangles()[triangle];
-  triangles_.emplace_back(vertex(v[0]), vertex(v[1]), vertex(v[2]), v, triangle);
+  Triangle& t = triangles_.emplace_back(tree_->triangles()[triangle], triangle);
+  placeCorners(t.vertices, t);
+  t.findPlane();
 }
 
 void GridSurface::placeNode(Index index) {

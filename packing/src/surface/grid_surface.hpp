@@ -70,8 +70,8 @@ struct Segment {
   std::uint32_t next;   ///< of the same triangle
 };
 
-/// Holds one of two surfaces, in the frame of the first one, in cells of a grid. Vertices, nodes and
-/// triangles are placed when they are first asked for. Memory is kept from query to query.
+/// Holds one of two surfaces, in the frame of the first one, in cells of a grid. Nodes and triangles are
+/// placed when they are first asked for. Memory is kept from query to query.
 class GridSurface {
  public:
   using Index = std::uint32_t;
@@ -79,8 +79,7 @@ class GridSurface {
 
   /// This is a triangle, and where the other surface meets it.
   struct Triangle : GridTriangle {
-    Triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, const SurfaceTree::Triangle& v, Index i)
-        : GridTriangle(a, b, c), vertices(v), index(i) {}
+    Triangle(const SurfaceTree::Triangle& v, Index i) : vertices(v), index(i) {}
     SurfaceTree::Triangle vertices;
     Index index;  ///< in the tree
     Index first_segment = kNone;
@@ -103,10 +102,9 @@ class GridSurface {
 
   const SurfaceTree& tree() const { return *tree_; }
   /// Returns the place of a vertex on the grid.
-  const Vec3d& vertex(Index v) {
-    if (vertices_[v].query != query_) place(v);
-    return vertices_[v].at;
-  }
+  Vec3d vertex(Index v) const;
+  /// Finds those of a triangle's corners.
+  void placeCorners(const SurfaceTree::Triangle& v, CornerPlaces& corners) const;
   /// Returns the place of a triangle among those that were asked for.
   Index find(Index triangle) {
     if (marks_[triangle].query != query_) placeTriangle(triangle);
@@ -136,16 +134,11 @@ class GridSurface {
   int windingAt(const Vec3d& point);
 
  private:
-  struct PlacedVertex {
-    Index query = 0;  ///< in which it was placed
-    Vec3d at;
-  };
   struct Mark {
     Index query = 0, place = 0;
     Index asked = 0;  ///< number of the last point for which it was looked at
   };
 
-  void place(Index vertex);
   void placeTriangle(Index triangle);
   void placeNode(Index index);
 
@@ -156,7 +149,6 @@ class GridSurface {
   double cells_;
   Moved moved_;
   Index query_ = 0, asked_ = 0;
-  std::vector<PlacedVertex> vertices_;
   std::vector<Node> nodes_;
   std::vector<Mark> marks_;
   std::vector<Triangle> triangles_;

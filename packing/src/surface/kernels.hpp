@@ -10,6 +10,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "surface/grid_surface.hpp"
 #include "surface/lanes.hpp"
@@ -17,6 +18,9 @@
 #include "surface/surface_tree.hpp"
 
 namespace innersphere {
+
+/// The whole number nearest to x is (x + kWhole) - kWhole. Numbers are less than 2^51.
+constexpr double kWhole = 0x1.8p52;
 
 struct AnyKernels {
   /// Returns which boxes of both meet: bit 4 i + j for box i of x and box j of y.
@@ -72,6 +76,23 @@ struct AnyKernels {
         high = first + half;
       }
       sides[k] = SurfaceTree::CoarseGrid::sides(high + to.slack, to.slack - low);
+    }
+  }
+
+  /// Finds the places of a triangle's corners on the grid.
+  static void placeCorners(const FourFloats (&vertices)[3], const Similarity& to, CornerPlaces& corners) {
+    for (const int k : {0, 1}) {
+      const FourFloats &p = vertices[2 * k], &q = vertices[1 - k];
+      const FourFloats xy = __builtin_shufflevector(p, q, 0, 4, 1, 5);
+      const TwoDoubles x = __builtin_convertvector(__builtin_shufflevector(xy, xy, 0, 1), TwoDoubles),
+                       y = __builtin_convertvector(__builtin_shufflevector(xy, xy, 2, 3), TwoDoubles),
+                       z = __builtin_convertvector(__builtin_shufflevector(p, q, 2, 6), TwoDoubles);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double* m = to.matrix.m + 3 * axis;
+        const TwoDoubles at = m[0] * x + m[1] * y + m[2] * z + to.translation[axis];
+        const TwoDoubles whole = (at + kWhole) - kWhole;
+        std::memcpy(corners.places[axis] + 2 * k, &whole, sizeof whole);
+      }
     }
   }
 
@@ -148,6 +169,22 @@ struct Avx512Kernels {
     const __m512i minus_low = _mm512_and_si512(cells(slack - low), _mm512_set1_epi32(0xffff));
     const __m512i both = _mm512_or_si512(_mm512_maskz_slli_epi32(kAll, cells(high + slack), 16), minus_low);
     _mm512_mask_storeu_epi32(sides, 0xfff, both);
+  }
+
+  INNERSPHERE_KERNEL void placeCorners(const FourFloats (&vertices)[3], const Similarity& to,
+                                       CornerPlaces& corners) {
+    const __m128 &a = vertices[0], &b = vertices[1], &c = vertices[2];
+    const __m128 xy = _mm_unpacklo_ps(a, b), xy_last = _mm_unpacklo_ps(c, a);
+    const __m256d x = _mm256_cvtps_pd(_mm_movelh_ps(xy, xy_last)),
+                  y = _mm256_cvtps_pd(_mm_movehl_ps(xy_last, xy)),
+                  z = _mm256_cvtps_pd(_mm_movelh_ps(_mm_unpackhi_ps(a, b), _mm_unpackhi_ps(c, a)));
+    const __m256d whole = _mm256_set1_pd(kWhole);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double* m = to.matrix.m + 3 * axis;
+      const __m256d at = _mm256_set1_pd(m[0]) * x + _mm256_set1_pd(m[1]) * y + _mm256_set1_pd(m[2]) * z +
+                         _mm256_set1_pd(to.translation[axis]);
+      _mm256_store_pd(corners.places[axis], (at + whole) - whole);
+    }
   }
 
   INNERSPHERE_KERNEL unsigned sides(const GridTriangle& plane, const GridTriangle& triangle) {

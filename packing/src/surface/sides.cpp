@@ -81,12 +81,8 @@ bool isBefore(const GridTriangle& t, const Corners& at_u, bool from_alone_t, con
 
 }  // namespace
 
-GridTriangle::GridTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  for (int axis = 0; axis < 3; ++axis) {
-    double* x = places[axis];
-    x[0] = x[3] = a[axis], x[1] = x[4] = b[axis], x[2] = c[axis];
-  }
-  const Vec3d to_b = b - a, to_c = c - a;
+void GridTriangle::findPlane() {
+  const Vec3d a = corner(0), to_b = corner(1) - a, to_c = corner(2) - a;
   const double size_b = largest(to_b), size_c = largest(to_c);
   normal = innersphere::cross(to_b, to_c);
   offset = dot(normal, a);

@@ -22,17 +22,24 @@ constexpr double kVolumeRounding = 32 * 0x1p-53;
 /// Says which of two surfaces is the one that is moved.
 enum class Moved { point, triangle };
 
-/// This is a triangle with its corners on the grid.
-struct GridTriangle {
-  GridTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
-  static constexpr int kRow = 5;
-  double places[3][kRow];  ///< along each axis those of all corners, and of the first two again
-  Vec3d normal;            ///< of twice its area
-  double offset;           ///< of its plane, times the length of the normal
-  double size;             ///< the largest component of a way from the first corner to another
-  double rounding;         ///< of the normal's components
+/// Holds the places of a triangle's corners on the grid.
+struct CornerPlaces {
+  static constexpr int kRow = 4;
+  /// Along each axis those of all corners, and of the first one again.
+  alignas(kRow * sizeof(double)) double places[3][kRow];
 
   Vec3d corner(int k) const { return {places[0][k], places[1][k], places[2][k]}; }
+};
+
+/// This is a triangle with its corners on the grid.
+struct GridTriangle : CornerPlaces {
+  /// Finds all that follows from the places.
+  void findPlane();
+  Vec3d normal;     ///< of twice its area
+  double offset;    ///< of its plane, times the length of the normal
+  double size;      ///< the largest component of a way from the first corner to another
+  double rounding;  ///< of the normal's components
+
   /// Returns heights above the plane, times the length of the normal; rounded by up to heightRounding().
   template <typename T>
   T height(const T& x, const T& y, const T& z) const {
@@ -108,8 +115,8 @@ EdgeOrder EdgeOrder::of(const GridTriangle& t, const Corners& at_u, const GridTr
   // No way from a corner of t to one of u is longer; and an edge between the others is up to twice the size.
   const double farthest = largest(u.corner(0) - t.corner(0)) + t.size + u.size;
   const double rounding = kVolumeRounding * 2 * t.size * farthest * farthest;
-  const unsigned volumes =
-      Kernels::volumes(from, to_alone, t.places[0] + at_u.alone + 1, u.places[0] + at_t.alone + 1, rounding);
+  const unsigned volumes = Kernels::volumes(from, to_alone, t.places[0] + Corners::next(at_u.alone),
+                                            u.places[0] + Corners::next(at_t.alone), rounding);
   const bool same = at_u.isAbove(at_u.alone) == at_t.isAbove(at_t.alone);
   const unsigned known = (volumes | volumes >> 4) & 15;
   EdgeOrder order;
