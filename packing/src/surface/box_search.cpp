@@ -13,7 +13,8 @@ constexpr std::size_t kMost = SurfaceTree::kWidth * SurfaceTree::kWidth;  ///< p
 /// Goes down both trees, a level after the other: pairs of a level do not wait for each other.
 template <class Kernels>
 inline void search(GridSurface& a, GridSurface& b, Pairs& found) {
-  static thread_local Pairs open;
+  static thread_local Pairs of_thread;
+  Pairs& open = here(of_thread);
   open.count = 0;
   open.makeRoom(1);
   open.a[0] = open.b[0] = 0;

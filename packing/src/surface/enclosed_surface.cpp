@@ -250,7 +250,7 @@ void Enclosure::addCut(const GridSurface::Triangle& t, const int (&windings)[3])
 
 EnclosedSums sumEnclosed(GridSurface& own, GridSurface& other, const Vec3d& origin, bool volume_only) {
   static thread_local Enclosure enclosure;
-  return enclosure.sum(own, other, origin, volume_only);
+  return here(enclosure).sum(own, other, origin, volume_only);
 }
 
 }  // namespace innersphere

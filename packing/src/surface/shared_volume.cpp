@@ -38,7 +38,8 @@ SharedSums sharedVolume(const PlacedSurface& a, const PlacedSurface& b, bool wid
   const double reach = std::max(largest(box_a), largest(box_b));
   if (!(reach > 0)) return {};
   const double cells = std::exp2(kGridBits - 1 - std::ilogb(reach));
-  static thread_local GridSurface on_grid_a, on_grid_b;
+  static thread_local GridSurface a_of_thread, b_of_thread;
+  GridSurface &on_grid_a = here(a_of_thread), &on_grid_b = here(b_of_thread);
   on_grid_a.begin(a.tree, b.tree, identity, b_to_a.inverse(), cells, Moved::point, wide);
   on_grid_b.begin(b.tree, a.tree, b_to_a, b_to_a, cells, Moved::triangle, wide);
   findMeeting(on_grid_a, on_grid_b);

@@ -190,8 +190,10 @@ INNERSPHERE_AVX512_SURFACE void findAvx512(GridSurface& a, GridSurface& b, Pairs
 }  // namespace
 
 void findMeeting(GridSurface& a, GridSurface& b) {
-  static thread_local Pairs pairs;
-  static thread_local std::vector<Candidate> candidates;
+  static thread_local Pairs pairs_of_thread;
+  static thread_local std::vector<Candidate> candidates_of_thread;
+  Pairs& pairs = here(pairs_of_thread);
+  std::vector<Candidate>& candidates = here(candidates_of_thread);
   findPairs(a, b, pairs);
 #ifdef INNERSPHERE_AVX512_SURFACE
   if (a.isWide()) return findAvx512(a, b, pairs, candidates);
