@@ -10,16 +10,7 @@
 
 namespace innersphere {
 
-namespace {
-
 using Lanes = SurfaceTree::Lanes;
-
-/// Returns the numbers with their halves exchanged.
-FourInts exchanged(FourInts x) {
-  return (x << 16) | ((x >> 16) & 0xffff);
-}
-
-}  // namespace
 
 double Similarity::scale() const {
   return norm(Vec3d{matrix.m[0], matrix.m[1], matrix.m[2]});
@@ -73,42 +64,60 @@ Vec3d GridSurface::vertex(Index v) const {
   return at;
 }
 
-void GridSurface::placeCorners(const SurfaceTree::Triangle& v, CornerPlaces& corners) const {
-  const std::vector<Lanes>& all = tree_->vertices();
-  const Lanes vertices[3] = {all[v[0]], all[v[1]], all[v[2]]};
+/// Places what is asked for.
+template <class Kernels>
+struct GridSurface::Placing {
+  static void corners(const GridSurface& of, const SurfaceTree::Triangle& v, CornerPlaces& corners) {
+    const Lanes* const vertices = of.tree_->vertices().data();
+    Kernels::place(vertices[v[0]], vertices[v[1]], vertices[v[2]], of.to_grid_, corners);
+  }
+  static void triangle(GridSurface& of, Index index) {
+    of.marks_[index] = {of.query_, static_cast<Index>(of.triangles_.size()), 0};
+    Triangle& t = of.triangles_.emplace_back(of.tree_->triangles()[index], index);
+    corners(of, t.vertices, t);
+    t.findPlane();
+  }
+  static void node(GridSurface& of, Index index) {
+    const SurfaceTree::Node& node = of.tree_->nodes()[index];
+    Node& placed = of.nodes_[index];
+    static_cast<SurfaceTree::Links&>(placed) = node;
+    placed.query = of.query_;
+    Kernels::place(node, of.to_other_, of.moved_ == Moved::point, placed);
+  }
+};
+
 #ifdef INNERSPHERE_AVX512_SURFACE
-  if (wide_) return Avx512Kernels::placeCorners(vertices, to_grid_, corners);
+/// All that belongs together is one function: calls take as long as what they do.
+struct GridSurface::WidePlacing {
+  using Placing = GridSurface::Placing<Avx512Kernels>;
+  INNERSPHERE_AVX512_SURFACE static void corners(const GridSurface& of, const SurfaceTree::Triangle& v,
+                                                 CornerPlaces& corners) {
+    Placing::corners(of, v, corners);
+  }
+  INNERSPHERE_AVX512_SURFACE static void triangle(GridSurface& of, Index i) { Placing::triangle(of, i); }
+  INNERSPHERE_AVX512_SURFACE static void node(GridSurface& of, Index i) { Placing::node(of, i); }
+};
 #endif
-  AnyKernels::placeCorners(vertices, to_grid_, corners);
+
+void GridSurface::placeCorners(const SurfaceTree::Triangle& v, CornerPlaces& corners) const {
+#ifdef INNERSPHERE_AVX512_SURFACE
+  if (wide_) return WidePlacing::corners(*this, v, corners);
+#endif
+  Placing<AnyKernels>::corners(*this, v, corners);
 }
 
 void GridSurface::placeTriangle(Index triangle) {
-  marks_[triangle] = {query_, static_cast<Index>(triangles_.size()), 0};
-  Triangle& t = triangles_.emplace_back(tree_->triangles()[triangle], triangle);
-  placeCorners(t.vertices, t);
-  t.findPlane();
+#ifdef INNERSPHERE_AVX512_SURFACE
+  if (wide_) return WidePlacing::triangle(*this, triangle);
+#endif
+  Placing<AnyKernels>::triangle(*this, triangle);
 }
 
 void GridSurface::placeNode(Index index) {
-  const SurfaceTree::Node& node = tree_->nodes()[index];
-  FourInts there[3];
 #ifdef INNERSPHERE_AVX512_SURFACE
-  if (wide_) {
-    Avx512Kernels::place(node, to_other_, there);
-  } else {
-    AnyKernels::place(node, to_other_, there);
-  }
-#else
-  AnyKernels::place(node, to_other_, there);
+  if (wide_) return WidePlacing::node(*this, index);
 #endif
-  Node& placed = nodes_[index];
-  static_cast<SurfaceTree::Links&>(placed) = node;
-  placed.query = query_;
-  const bool is_first = moved_ == Moved::point;
-  for (int k = 0; k < 3; ++k) {
-    placed.sides[k] = is_first ? node.sides[k] : exchanged(there[k]);
-    placed.sides[3 + k] = is_first ? there[k] : exchanged(node.sides[k]);
-  }
+  Placing<AnyKernels>::node(*this, index);
 }
 
 int GridSurface::windingAt(const Vec3d& point) {
@@ -122,7 +131,7 @@ int GridSurface::windingAt(const Vec3d& point) {
   for (int k = 0; k < 3; ++k) {
     const Lanes here = Lanes{} + static_cast<float>(at[k]), end = Lanes{} + grid.kEnd;
     way[k] = grid.sides(k == 2 && up ? end : here, k == 2 && !up ? end : -here);
-    if (is_first) way[k] = exchanged(way[k]);
+    if (is_first) way[k] = exchangedHalves(way[k]);
   }
   open_.assign(1, 0);
   while (!open_.empty()) {

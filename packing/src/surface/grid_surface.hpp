@@ -139,6 +139,10 @@ class GridSurface {
     Index asked = 0;  ///< number of the last point for which it was looked at
   };
 
+  template <class Kernels>
+  struct Placing;
+  struct WidePlacing;
+
   void placeTriangle(Index triangle);
   void placeNode(Index index);
 

@@ -19,6 +19,11 @@
 
 namespace innersphere {
 
+/// Returns the numbers with their halves exchanged.
+inline FourInts exchangedHalves(FourInts x) {
+  return (x << 16) | ((x >> 16) & 0xffff);
+}
+
 /// The whole number nearest to x is (x + kWhole) - kWhole. Numbers are less than 2^51.
 constexpr double kWhole = 0x1.8p52;
 
@@ -56,8 +61,8 @@ struct AnyKernels {
     return count;
   }
 
-  /// Returns the sides of the boxes around a node's children in another coarse grid.
-  static void place(const SurfaceTree::Node& node, const ToCoarseGrid& to, FourInts (&sides)[3]) {
+  /// Finds the boxes around a node's children in both coarse grids; `is_first`: its own one comes first.
+  static void place(const SurfaceTree::Node& node, const ToCoarseGrid& to, bool is_first, LaneBoxes& boxes) {
     for (int k = 0; k < 3; ++k) {
       const auto turned = [&](const FourFloats(&m)[3][4], const FourFloats* x) {
         return m[0][k] * x[0] + m[1][k] * x[1] + m[2][k] * x[2];
@@ -75,14 +80,17 @@ struct AnyKernels {
         low = first - half;
         high = first + half;
       }
-      sides[k] = SurfaceTree::CoarseGrid::sides(high + to.slack, to.slack - low);
+      const FourInts there = SurfaceTree::CoarseGrid::sides(high + to.slack, to.slack - low);
+      boxes.sides[k] = is_first ? node.sides[k] : exchangedHalves(there);
+      boxes.sides[3 + k] = is_first ? there : exchangedHalves(node.sides[k]);
     }
   }
 
   /// Finds the places of a triangle's corners on the grid.
-  static void placeCorners(const FourFloats (&vertices)[3], const Similarity& to, CornerPlaces& corners) {
+  static void place(const FourFloats& a, const FourFloats& b, const FourFloats& c, const Similarity& to,
+                    CornerPlaces& corners) {
     for (const int k : {0, 1}) {
-      const FourFloats &p = vertices[2 * k], &q = vertices[1 - k];
+      const FourFloats p = k == 0 ? a : c, q = k == 0 ? b : a;
       const FourFloats xy = __builtin_shufflevector(p, q, 0, 4, 1, 5);
       const TwoDoubles x = __builtin_convertvector(__builtin_shufflevector(xy, xy, 0, 1), TwoDoubles),
                        y = __builtin_convertvector(__builtin_shufflevector(xy, xy, 2, 3), TwoDoubles),
@@ -150,7 +158,8 @@ struct Avx512Kernels {
     return static_cast<std::size_t>(std::popcount(bits));
   }
 
-  INNERSPHERE_KERNEL void place(const SurfaceTree::Node& node, const ToCoarseGrid& to, FourInts (&sides)[3]) {
+  INNERSPHERE_KERNEL void place(const SurfaceTree::Node& node, const ToCoarseGrid& to, bool is_first,
+                                LaneBoxes& boxes) {
     // Along all axes at once.
     const __m512 translation = _mm512_loadu_ps(to.translation);
     __m512 low = turned(to.matrix, node.extent) + translation, high = low;
@@ -168,12 +177,14 @@ struct Avx512Kernels {
     const __m512 slack = _mm512_set1_ps(to.slack);
     const __m512i minus_low = _mm512_and_si512(cells(slack - low), _mm512_set1_epi32(0xffff));
     const __m512i both = _mm512_or_si512(_mm512_maskz_slli_epi32(kAll, cells(high + slack), 16), minus_low);
-    _mm512_mask_storeu_epi32(sides, 0xfff, both);
+    const __m512i own = _mm512_maskz_loadu_epi32(0xfff, node.sides);
+    const __m512i turn = _mm512_set1_epi32(is_first ? 0 : 16);
+    store(_mm512_maskz_rolv_epi32(kAll, own, turn), boxes.sides + (is_first ? 0 : 3));
+    store(_mm512_maskz_rolv_epi32(kAll, both, turn), boxes.sides + (is_first ? 3 : 0));
   }
 
-  INNERSPHERE_KERNEL void placeCorners(const FourFloats (&vertices)[3], const Similarity& to,
-                                       CornerPlaces& corners) {
-    const __m128 &a = vertices[0], &b = vertices[1], &c = vertices[2];
+  INNERSPHERE_KERNEL void place(const FourFloats& a, const FourFloats& b, const FourFloats& c,
+                                const Similarity& to, CornerPlaces& corners) {
     const __m128 xy = _mm_unpacklo_ps(a, b), xy_last = _mm_unpacklo_ps(c, a);
     const __m256d x = _mm256_cvtps_pd(_mm_movelh_ps(xy, xy_last)),
                   y = _mm256_cvtps_pd(_mm_movehl_ps(xy_last, xy)),
@@ -221,6 +232,14 @@ struct Avx512Kernels {
     return _mm512_loadu_ps(m[0]) * _mm512_castsi512_ps(fourTimes(x)) +
            _mm512_loadu_ps(m[1]) * _mm512_castsi512_ps(fourTimes(x + 1)) +
            _mm512_loadu_ps(m[2]) * _mm512_castsi512_ps(fourTimes(x + 2));
+  }
+  /// Writes three parts that are read one by one.
+  INNERSPHERE_KERNEL void store(__m512i x, FourInts* sides) {
+    const auto to = reinterpret_cast<__m128i*>(sides);
+    constexpr __mmask8 kFour = 15;
+    _mm_store_si128(to, _mm512_maskz_extracti32x4_epi32(kFour, x, 0));
+    _mm_store_si128(to + 1, _mm512_maskz_extracti32x4_epi32(kFour, x, 1));
+    _mm_store_si128(to + 2, _mm512_maskz_extracti32x4_epi32(kFour, x, 2));
   }
   INNERSPHERE_KERNEL __m512i cells(__m512 x) {
     const __m512 last = _mm512_set1_ps(SurfaceTree::CoarseGrid::kEnd);

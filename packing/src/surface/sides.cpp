@@ -11,11 +11,6 @@ namespace innersphere {
 
 namespace {
 
-/// Half the distance from 1 to the next number.
-constexpr double kUnit = 0x1p-53;
-/// A bound of rounding of one difference of two products.
-constexpr double kRounding2 = 4 * kUnit;
-
 using Wide = __int128;
 struct WideVector {
   Wide x, y, z;
@@ -80,15 +75,6 @@ bool isBefore(const GridTriangle& t, const Corners& at_u, bool from_alone_t, con
 }
 
 }  // namespace
-
-void GridTriangle::findPlane() {
-  const Vec3d a = corner(0), to_b = corner(1) - a, to_c = corner(2) - a;
-  const double size_b = largest(to_b), size_c = largest(to_c);
-  normal = innersphere::cross(to_b, to_c);
-  offset = dot(normal, a);
-  size = std::max(size_b, size_c);
-  rounding = kRounding2 * size_b * size_c;
-}
 
 bool GridTriangle::isAbove(const Vec3d& point, Moved moved) const {
   const WideVector exact_normal = exactNormal(*this);

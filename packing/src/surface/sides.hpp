@@ -16,7 +16,9 @@ namespace innersphere {
 /// Coordinates are at most 2^kGridBits. Then six times the product of three differences is less than 2^127.
 constexpr int kGridBits = 39;
 
-/// A bound of rounding, of a sum of three products of differences.
+/// A bound of rounding, of one difference of two products.
+constexpr double kRounding2 = 4 * 0x1p-53;
+/// That of a sum of three products of differences.
 constexpr double kVolumeRounding = 32 * 0x1p-53;
 
 /// Says which of two surfaces is the one that is moved.
@@ -50,6 +52,15 @@ struct GridTriangle : CornerPlaces {
   /// Returns whether a point is above the plane, exactly.
   bool isAbove(const Vec3d& point, Moved moved) const;
 };
+
+inline void GridTriangle::findPlane() {
+  const Vec3d a = corner(0), to_b = corner(1) - a, to_c = corner(2) - a;
+  const double size_b = largest(to_b), size_c = largest(to_c);
+  normal = cross(to_b, to_c);
+  offset = dot(normal, a);
+  size = std::max(size_b, size_c);
+  rounding = kRounding2 * size_b * size_c;
+}
 
 /// Says how the corners of a triangle lie to the plane of another one.
 struct Corners {
