@@ -18,6 +18,11 @@ BallTrees::BallTrees(std::span<const Ball> balls) {
     build(begin, i);
     begin = i;
   }
+  for (int k = 0; k < 4; ++k) {
+    for (const Member& member : members_)
+      lanes_[k].push_back(static_cast<float>(k < 3 ? member.ball.centre[k] : member.ball.radius));
+    lanes_[k].resize(members_.size() + kLeaf);
+  }
 }
 
 void BallTrees::build(std::uint32_t begin, std::uint32_t end) {

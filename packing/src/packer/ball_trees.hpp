@@ -1,12 +1,15 @@
 // Finds the balls of two placements that meet.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
 #include "packer/voxels.hpp"
+#include "surface/lanes.hpp"
 
 namespace innersphere {
 
@@ -30,6 +33,9 @@ class BallTrees {
 
  private:
   static constexpr std::size_t kLeaf = 4;
+
+  // More than the rounding to float of a distance in the unit cube, or to it from a copy beside that.
+  static constexpr double kFloatSlack = 4e-6;
 
   struct Node {
     Ball bounds;
@@ -64,9 +70,20 @@ class BallTrees {
 
   template <class Meet>
   void meetInLeaves(const Moved& moved, const Node& a, const Node& b, Meet& meet) const {
+    // In float, those that are certainly apart are left out.
+    FourFloats places[4];  // and radii
+    for (int k = 0; k < 4; ++k) std::memcpy(&places[k], &lanes_[k][b.begin], sizeof places[k]);
     for (std::uint32_t i = a.begin; i < a.end; ++i) {
       const Point& x = moved.members[i];
-      for (std::uint32_t j = b.begin; j < b.end; ++j) {
+      const FourFloats reaches = places[3] + static_cast<float>(members_[i].ball.radius + kFloatSlack);
+      FourFloats gaps = -reaches * reaches;
+      for (int k = 0; k < 3; ++k) {
+        const FourFloats along = places[k] - static_cast<float>(x[k]);
+        gaps += along * along;
+      }
+      for (unsigned near = signBits(gaps < FourFloats{}) & ((1u << (b.end - b.begin)) - 1); near != 0;
+           near &= near - 1) {
+        const std::uint32_t j = b.begin + static_cast<std::uint32_t>(std::countr_zero(near));
         const Point way = x - members_[j].ball.centre;
         const double reach = members_[i].ball.radius + members_[j].ball.radius, squared = way.squaredNorm();
         if (squared < reach * reach) meet(members_[i].index, members_[j].index, way, std::sqrt(squared));
@@ -75,7 +92,8 @@ class BallTrees {
   }
 
   std::vector<Member> members_;
-  std::vector<Node> nodes_;  // depth first
+  std::vector<float> lanes_[4];  // of these: centres and radii, and four more numbers
+  std::vector<Node> nodes_;      // depth first
   std::vector<std::uint32_t> roots_;
 };
 

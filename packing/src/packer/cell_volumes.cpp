@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "packer/clearance_cache.hpp"
@@ -42,7 +43,7 @@ class Sampler {
     const Point centre = Point(at[0], at[1], at[2]) * spacing_ + Point::Constant(half);
     Container::Nearest wall;
     if (!inside) {
-      wall = container_.closest(centre, 1.01 * std::numbers::sqrt3 * half);
+      wall = container_.closest(centre, std::numeric_limits<double>::infinity());
       if (wall.distance > std::numbers::sqrt3 * half) {
         if (!container_.contains(centre, wall)) return;
         inside = true;
