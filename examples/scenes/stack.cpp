@@ -39,12 +39,13 @@ void buildStack(SceneWorld& world, const SceneOptions& options) {
 }
 
 void buildMassRatios(SceneWorld& world, const SceneOptions& options) {
-  constexpr double kRatios[] = {1, 10, 100, 1000};
+  // Columns are so far apart that none reaches another one where it falls.
+  constexpr double kRatios[] = {1, 10, 100, 1000}, kApart = 4 * kEdge;
   const std::size_t box = addBox(world, options);
   world.addGround(0);
   std::size_t column = 0;
   for (const double ratio : kRatios) {
-    const double x = 0.8 * (static_cast<double>(column) - 1.5);
+    const double x = kApart * (static_cast<double>(column) - 1.5);
     world.addBody(box, kDensity, at(x, 0, 0.5 * kEdge), paletteColour(0));
     world.addBody(box, kDensity * ratio, at(x, 0, 1.5 * kEdge), paletteColour(column + 1));
     world

@@ -115,36 +115,52 @@ ClosestTriangle::ClosestTriangle(const Mesh& mesh) {
   }
 }
 
-ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
-  const Vec3d q = to_unit_ * (p - centre_);
-  const double slack = kFloatSlack * (1 + std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])}));
-  const FourFloats zero{};
-  const FourFloats at[3] = {zero + static_cast<float>(q[0]), zero + static_cast<float>(q[1]),
-                            zero + static_cast<float>(q[2])};
-  float limit;  // of squared distances
-  const auto limitTo = [&](double distance) {
-    const double reach = distance * to_unit_ * (1 + kFloatSlack) + slack;
-    limit = roundedUp(reach * reach);
-  };
-  limitTo(cutoff);
-  // A bit for each of the first ones that is not beyond the limit.
-  const auto within = [&](FourFloats squared, std::uint32_t size) {
-    return ~signBits(squared > limit) & ((1u << size) - 1);
-  };
+/// A ball, in float: what is certainly beyond need not be looked at.
+class ClosestTriangle::Reach {
+ public:
+  Reach(const ClosestTriangle& tree, const Vec3d& centre, double radius) : tree_(tree) {
+    moveTo(centre);
+    shrinkTo(radius);
+  }
+  void moveTo(const Vec3d& centre) {
+    const Vec3d q = tree_.to_unit_ * (centre - tree_.centre_);
+    slack_ = kFloatSlack * (1 + std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])}));
+    for (int axis = 0; axis < 3; ++axis) centre_[axis] = FourFloats{} + static_cast<float>(q[axis]);
+  }
+  void shrinkTo(double radius) {
+    const double reach = radius * tree_.to_unit_ * (1 + kFloatSlack) + slack_;
+    limit_ = roundedUp(reach * reach);
+  }
+  float limit() const { return limit_; }  ///< of squared distances
+  /// A bit for each of the first ones that is not beyond the limit.
+  unsigned within(FourFloats squared, std::uint32_t size) const {
+    return ~signBits(squared > limit_) & ((1u << size) - 1);
+  }
+  FourFloats squaredTo(const Node& node) const {
+    FourFloats squared{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const FourFloats away =
+          larger(larger(node.low[axis] - centre_[axis], centre_[axis] - node.high[axis]), FourFloats{});
+      squared += away * away;
+    }
+    return squared;
+  }
+  FourFloats squaredTo(const Leaf& leaf) const {
+    FourFloats beside{};
+    for (const Planes& edge : leaf.edges) beside = larger(beside, -edge.heights(centre_));
+    const FourFloats height = leaf.faces.heights(centre_);
+    return height * height + beside * beside;
+  }
 
-  double best2 = std::numeric_limits<double>::infinity();
-  std::uint32_t best = 0;
-  Vec3d nearest{};
-  const auto look = [&](std::uint32_t i) {
-    Vec3d point;
-    const double d2 = triangles_[i].closest(p, point);
-    if (d2 > best2 || (d2 == best2 && number_[i] > number_[best])) return;
-    best2 = d2;
-    best = i;
-    nearest = point;
-    limitTo(std::sqrt(d2));
-  };
+ private:
+  const ClosestTriangle& tree_;
+  double slack_ = 0;
+  FourFloats centre_[3];
+  float limit_ = 0;
+};
 
+template <class Look>
+void ClosestTriangle::visitWithin(const Reach& reach, const Look& look) const {
   struct Entry {
     std::uint32_t child;
     float squared;
@@ -156,7 +172,7 @@ ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff)
   const auto takeOpen = [&] {
     while (count > 0) {
       next = open[--count];
-      if (next.squared <= limit) return true;
+      if (next.squared <= reach.limit()) return true;
     }
     return false;
   };
@@ -164,12 +180,8 @@ ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff)
   const auto goToLeaf = [&] {
     while (!(next.child & kLeaf)) {
       const Node& node = nodes_[next.child];
-      FourFloats squared = zero;
-      for (int axis = 0; axis < 3; ++axis) {
-        const FourFloats away = larger(larger(node.low[axis] - at[axis], at[axis] - node.high[axis]), zero);
-        squared += away * away;
-      }
-      unsigned near = within(squared, node.count);
+      const FourFloats squared = reach.squaredTo(node);
+      unsigned near = reach.within(squared, node.count);
       if (near == 0) return false;
       const auto entry = [&] {
         const auto k = static_cast<std::uint32_t>(std::countr_zero(near));
@@ -188,24 +200,62 @@ ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff)
     if (!goToLeaf()) continue;
     const std::uint32_t first = (next.child & ~kLeaf) * kWidth;
     const Leaf& leaf = leaves_[first / kWidth];
-    FourFloats beside = zero;
-    for (const Planes& edge : leaf.edges) beside = larger(beside, -edge.heights(at));
-    const FourFloats height = leaf.faces.heights(at), squared = height * height + beside * beside;
+    FourFloats squared = reach.squaredTo(leaf);
     const auto size = std::min(kWidth, static_cast<std::uint32_t>(triangles_.size()) - first);
-    for (unsigned near = within(squared, size); near != 0; near &= within(squared, size)) {
+    for (unsigned near = reach.within(squared, size); near != 0; near &= reach.within(squared, size)) {
       // The nearest first.
       auto k = std::countr_zero(near);
       for (unsigned rest = near & (near - 1); rest != 0; rest &= rest - 1) {
         if (squared[std::countr_zero(rest)] < squared[k]) k = std::countr_zero(rest);
       }
-      look(first + static_cast<std::uint32_t>(k));
       near &= ~(1u << k);
+      if (!look(first + static_cast<std::uint32_t>(k))) continue;
+      squared = reach.squaredTo(leaf);
+      for (std::size_t i = 0; i < count; ++i) open[i].squared = 0;  // the old centre tells nothing
     }
   }
+}
 
+ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff) const {
+  Reach reach(*this, p, cutoff);
+  double best2 = std::numeric_limits<double>::infinity();
+  std::uint32_t best = 0;
+  Vec3d nearest{};
+  visitWithin(reach, [&](std::uint32_t i) {
+    Vec3d point;
+    const double d2 = triangles_[i].closest(p, point);
+    if (d2 > best2 || (d2 == best2 && number_[i] > number_[best])) return false;
+    best2 = d2;
+    best = i;
+    nearest = point;
+    reach.shrinkTo(std::sqrt(d2));
+    return false;
+  });
   const double distance = std::sqrt(best2);
   if (!(distance <= cutoff)) return {{std::numeric_limits<double>::infinity(), {}}};
   return {{distance, nearest}, &triangles_[best]};
+}
+
+double ClosestTriangle::emptyRadius(const Vec3d& at, const Vec3d& side, double least, double most) const {
+  constexpr double kEmpty = 1 - 1e-6;
+  double radius = most;
+  Reach reach(*this, at + radius * side, radius);
+  visitWithin(reach, [&](std::uint32_t i) {
+    const double before = radius;
+    while (radius >= least) {
+      const Vec3d middle = at + radius * side;
+      Vec3d point;
+      if (std::sqrt(triangles_[i].closest(middle, point)) >= kEmpty * radius) break;
+      // The ball through both points.
+      const Vec3d way = point - at;
+      radius = dot(way, way) / (2 * dot(way, side));
+    }
+    if (radius == before) return false;
+    reach.moveTo(at + radius * side);
+    reach.shrinkTo(radius < least ? 0 : radius);
+    return true;
+  });
+  return radius < least ? 0 : radius;
 }
 
 int ClosestTriangle::sideOf(const Vec3d& p, const Triangle& nearest, bool gentle) const {

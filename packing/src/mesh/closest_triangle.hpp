@@ -25,6 +25,10 @@ class ClosestTriangle {
 
   /// Returns the nearest point; beyond `cutoff` [m] the distance is infinity.
   Nearest closest(const Vec3d& p, double cutoff) const;
+  /// Returns the radius [m] of the largest empty ball, from `least` to `most`, that touches the place `at`
+  /// and lies on this side of it (unit vector): no triangle reaches into it by more than 1e-6 of it. Returns
+  /// 0 if there is none.
+  double emptyRadius(const Vec3d& at, const Vec3d& side, double least, double most) const;
   /// Returns 1 in front of the triangle, which is the nearest one, and -1 behind it, if the nearest point is
   /// clearly inside of it, or it is `gentle` (as of BesideTriangle), and farther than rounding; else 0.
   int sideOf(const Vec3d& p, const Triangle& nearest, bool gentle) const;
@@ -33,6 +37,7 @@ class ClosestTriangle {
 
  private:
   class Builder;
+  class Reach;
   static constexpr std::uint32_t kWidth = 4, kLeaf = 1u << 31;
 
   struct Node {
@@ -52,6 +57,11 @@ class ClosestTriangle {
   struct Leaf {
     Planes faces, edges[3];  ///< the latter upright on the former; triangles are in front
   };
+
+  /// Calls look(i) for all triangles i that may be within reach, near ones first. It may lessen the reach, to
+  /// a part of what it was; it returns true if that has another centre.
+  template <class Look>
+  void visitWithin(const Reach& reach, const Look& look) const;
 
   std::vector<Triangle> triangles_;    ///< in the order of the tree
   std::vector<std::uint32_t> number_;  ///< of each in the mesh

@@ -20,6 +20,9 @@ class MeshSolid : public Solid {
   ClosestTriangle::Nearest closestTriangle(const Vec3d& p, double cutoff) const {
     return tree_.closest(p, cutoff);
   }
+  double emptyRadius(const Vec3d& at, const Vec3d& side, double least, double most) const {
+    return tree_.emptyRadius(at, side, least, most);
+  }
   bool contains(const Vec3d& p) const override;
   /// The same where the triangle nearest to p is known.
   bool contains(const Vec3d& p, const Triangle& nearest) const;

@@ -6,6 +6,12 @@
 #include "packer/cell_search.hpp"
 
 namespace innersphere {
+namespace {
+
+// Radius of the balls put behind walls, in wanted radii, at least. Smaller ones seldom prove anything.
+constexpr double kLeastBehind = 2;
+
+}  // namespace
 
 Point CellSearch::direction(const Point& from, const Point& to) {
   const Point way = to - from;
@@ -56,21 +62,10 @@ bool CellSearch::isInside(const Point& x, double distance, const Container::Near
 }
 
 Ball CellSearch::ballBehind(const Point& wall, const Point& normal, double radius) {
-  for (int attempt = 0; attempt < 3; ++attempt) {
-    const Point centre = wall + radius * normal;
-    const double empty = radius * (1 - 1e-6);
-    const Container::Nearest hit = container_.closest(centre, empty);
-    if (std::isinf(hit.distance)) {
-      if (isInside(centre, empty, hit)) break;  // a sheet without thickness
-      return {centre, empty};
-    }
-    // The ball through both points, and a little less, as there may be a third.
-    const Point way = hit.point - wall;
-    const double next = 0.8 * way.squaredNorm() / (2 * way.dot(normal));
-    if (!(next > 0.5 * wanted_ && next < radius)) break;
-    radius = next;
-  }
-  return {wall, 0};
+  const double behind = container_.emptyRadius(wall, normal, kLeastBehind * wanted_, radius);
+  const Ball ball{wall + behind * normal, behind * (1 - 1e-6)};
+  if (behind == 0 || isInside(ball.centre, ball.radius, {})) return {wall, 0};  // a sheet without thickness
+  return ball;
 }
 
 }  // namespace innersphere

@@ -124,9 +124,7 @@ void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end, std
     if (now.upper > 0) result_.cells.push_back(now);
   } else {
     const std::size_t last = balls_.size(), ours = inherited_.size();
-    if (equally_thick_) {
-      for (const Probe& cut : cuts_) inherited_.push_back(cut.ball);
-    }
+    for (const Probe& cut : cuts_) inherited_.push_back(cut.ball);
     for (int octant = 0; octant < 8; ++octant) visit(now.child(octant), mine, last, ours);
     inherited_.resize(ours);
   }

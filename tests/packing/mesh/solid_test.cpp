@@ -119,6 +119,55 @@ TEST(MeshTree, EqualsBruteForceBitForBit) {
   }
 }
 
+// From places on a surface, to both sides: no triangle reaches into the ball, but one into any that is
+// larger.
+TEST(MeshTree, EmptyBallsAreAsLargeAsMayBe) {
+  constexpr double kLeast = 0.01, kMost = 0.7;
+  std::mt19937 random(4);
+  for (const double scale : {1.0, 1e5}) {
+    Mesh mesh = torusMesh(1, 0.4, 24, 12);
+    append(mesh, boxMesh({-3, -0.2, -0.2}, {-2, 0.2, 0.2}));
+    append(mesh, boxMesh({-2, -0.2, 0.3}, {2, 0.2, 0.35}));
+    for (Vec3d& v : mesh.vertices) v = scale * v;
+    const ClosestTriangle tree(mesh);
+    const auto distance = [&](const Vec3d& p) {
+      double least2 = kInfinity;
+      for (const auto& t : mesh.triangles) {
+        Vec3d point;
+        const Triangle triangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+        least2 = std::min(least2, triangle.closest(p, point));
+      }
+      return std::sqrt(least2);
+    };
+    int none = 0, between = 0, whole = 0;
+    for (int trial = 0; trial < 600; ++trial) {
+      const Vec3d p =
+          randomPoint(random, {-3 * scale, -1.5 * scale, -scale}, {2 * scale, 1.5 * scale, scale});
+      const Vec3d at = tree.closest(p, kInfinity).point;
+      const Vec3d away = at - p;
+      const Vec3d side = ((trial % 2 == 0 ? 1 : -1) / norm(away)) * away;
+      const double radius = tree.emptyRadius(at, side, kLeast * scale, kMost * scale);
+      if (radius == 0) {
+        ++none;
+        EXPECT_LT(distance(at + kLeast * scale * side), kLeast * scale);
+        continue;
+      }
+      EXPECT_GE(radius, kLeast * scale);
+      EXPECT_GE(distance(at + radius * side), (1 - 2e-6) * radius);
+      if (radius == kMost * scale) {
+        ++whole;
+      } else {
+        ++between;
+        const double larger = 1.00001 * radius;
+        EXPECT_LT(distance(at + larger * side), larger * (1 - 1e-9));
+      }
+    }
+    EXPECT_GT(none, 20);
+    EXPECT_GT(between, 20);
+    EXPECT_GT(whole, 20);
+  }
+}
+
 TEST(MeshTree, TheDistanceIsToTheReturnedPoint) {
   const auto solid = makeSolid(torusMesh(1, 0.4, 40, 20), "torus");
   std::mt19937 random(3);

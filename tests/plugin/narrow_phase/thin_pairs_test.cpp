@@ -217,7 +217,7 @@ TEST_P(ThinPairs, MeetWhereTheyAreDeepest) {
   const double lowest = has_thin_part ? 0 : -1;
   Placements random(*a, *b, lowest, wall / 4);
   std::map<std::string, int> faults;
-  const int placements = wanted != nullptr ? std::atoi(wanted) : has_thin_part ? 200 : 12;
+  const int placements = wanted != nullptr ? std::atoi(wanted) : has_thin_part ? 600 : 12;
   int tried = 0, missed = 0;
   for (int i = 0; i < placements; ++i) {
     const auto [at_a, at_b] = random.next();

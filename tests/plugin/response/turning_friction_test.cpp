@@ -109,11 +109,12 @@ std::string nameOf(const testing::TestParamInfo<Case>& info) {
 }
 
 // The solver's friction is a pyramid; packings find the radius of the area from their spheres, few of them a
-// smaller one.
+// smaller one: with 500 to 1,000 up to 0.8 % come to the 4.8 of what slides and turns under
+// penalties.
 constexpr Case kCases[] = {
     {"plane", Response::compliant, {0, 10}, 0.03},     {"plane", Response::compliant, {1, 10}, 0.08},
     {"plane", Response::compliant, {1.5, 0}, 0.02},    {"plane", Response::penalty, {0, 10}, 0.02},
-    {"plane", Response::penalty, {1, 10}, 0.05},       {"plane", Response::penalty, {0.8, 20}, 0.05},
+    {"plane", Response::penalty, {1, 10}, 0.05, 2000}, {"plane", Response::penalty, {0.8, 20}, 0.05},
     {"plane", Response::rigid, {0, 10}, 0.03},         {"plane", Response::rigid, {1, 10}, 0.08},
     {"packing", Response::compliant, {0, 10}, 0.1},    {"packing", Response::compliant, {1, 10}, 0.1},
     {"packing", Response::compliant, {1.5, 0}, 0.02},  {"plane", Response::compliant, {0, 10}, 0.3, 8},
