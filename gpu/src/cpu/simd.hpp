@@ -42,6 +42,7 @@ struct CellWindow {
   float inverse;
   float lo[3], end[3];
 
+  CellWindow() = default;
   CellWindow(const core::GridView& grid, const core::Cells& cells, const std::uint32_t (&cell)[3])
       : half(grid.half), inverse(core::powerOfTwo(-(grid.finest + cells.grid_level))) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();

@@ -54,6 +54,15 @@ struct QuerySpheres {
   bool hasRoom() const { return count + core::kClusterSize <= kSize; }
   core::Lookup lookup(std::uint32_t k) const { return {{x[k], y[k], z[k]}, reach[k], smallest[k]}; }
 
+  void add(const core::Lookup& lookup, std::uint32_t place) {
+    x[count] = lookup.p.x;
+    y[count] = lookup.p.y;
+    z[count] = lookup.p.z;
+    reach[count] = lookup.reach;
+    smallest[count] = lookup.smallest;
+    self[count++] = place;
+  }
+
   /// Does what core::makeLookup() does, for the spheres of a cluster.
   template <typename Lanes>
   void add(const core::Traversal& traversal, const core::Cluster& cluster) {
@@ -108,11 +117,15 @@ struct QuerySphereLists {
       constexpr float kEnd = 1 << core::kAxisBits;
       const int t = core::gridLevelOf(grid, core::levelOf(query_spheres.smallest[k]));
       const float inverse = core::powerOfTwo(-(grid.finest + t));
-      const float cx = std::floor((query_spheres.x[k] + grid.half.x) * inverse) + 1;
-      const float cy = std::floor((query_spheres.y[k] + grid.half.y) * inverse) + 1;
-      const float cz = std::floor((query_spheres.z[k] + grid.half.z) * inverse) + 1;
+      const float beyond = query_spheres.reach[k] - core::reachOf(grid, t), e = beyond > 0 ? beyond : 0;
+      const auto cellAt = [inverse](float at, float half) { return std::floor((at + half) * inverse) + 1; };
+      const float cx = cellAt(query_spheres.x[k] - e, grid.half.x);
+      const float cy = cellAt(query_spheres.y[k] - e, grid.half.y);
+      const float cz = cellAt(query_spheres.z[k] - e, grid.half.z);
       const float lowest = std::min(std::min(cx, cy), cz), highest = std::max(std::max(cx, cy), cz);
-      std::int32_t single = core::reachOf(grid, t) - query_spheres.reach[k] >= 0 ? 1 : 0;
+      std::int32_t single = cx == cellAt(query_spheres.x[k] + e, grid.half.x) ? 1 : 0;
+      single = cy == cellAt(query_spheres.y[k] + e, grid.half.y) ? single : 0;
+      single = cz == cellAt(query_spheres.z[k] + e, grid.half.z) ? single : 0;
       single = lowest >= 0 ? single : 0;
       one[k] = highest < kEnd ? single : 0;
       grid_level[k] = t;
@@ -177,10 +190,12 @@ struct Testing {
 };
 
 /// Tests a group of each query sphere. Most groups meet none, so those that do are told apart before they are
-/// written: without a branch, which would be foretold badly.
+/// written: without a branch, which would be foretold badly. `windows`: of each query sphere, null if it
+/// looks into no other cell.
 template <typename Lanes>
 inline bool testGroups(const TraversedGrid& traversed, const QuerySpheres& query_spheres,
-                       const Testing& testing, Candidates& candidates, CandidateSink& sink) {
+                       const CellWindow* windows, const Testing& testing, Candidates& candidates,
+                       CandidateSink& sink) {
   alignas(64) std::uint32_t met[Testing::kRoom], numbers[Testing::kRoom], meeting[Testing::kRoom];
   for (std::uint32_t k = 0; k < testing.count; ++k)
     met[k] = (1u << std::min<std::uint32_t>(testing.left[k], kLanes)) - 1;  // a bit for each sphere
@@ -203,6 +218,8 @@ inline bool testGroups(const TraversedGrid& traversed, const QuerySpheres& query
       count = 0;
     }
     const std::uint32_t k = meeting[g];
+    if (windows != nullptr)
+      met[k] &= Lanes::within(windows[testing.query_sphere[k]], traversed.listed.from(testing.first[k]));
     count = Lanes::append(query_spheres.self[testing.query_sphere[k]],
                           traversed.grid.listed + testing.first[k], met[k], candidates, count);
   }
@@ -210,19 +227,14 @@ inline bool testGroups(const TraversedGrid& traversed, const QuerySpheres& query
   return true;
 }
 
-/// Tests a query sphere against some spheres in columns and adds their places; `counts` has the last word on
-/// groups of which it meets some.
-template <typename Lanes, typename Counts>
-inline bool testList(const core::Lookup& lookup, std::uint32_t self, const SphereColumns& spheres,
-                     const std::uint32_t* places, std::uint32_t count, const Counts& counts,
-                     Candidates& candidates, CandidateSink& sink) {
-  for (std::uint32_t k = 0; k < count; k += kLanes) {
-    const SphereColumns here = spheres.from(k);
-    std::uint32_t met = Lanes::meeting(lookup, here);
-    if (count - k < kLanes) met &= (1u << (count - k)) - 1;
-    if (met == 0) continue;
-    if (candidates.count + kLanes > Candidates::kSize && !sink.take(candidates)) return false;
-    candidates.count = Lanes::append(self, places + k, met & counts(here), candidates, candidates.count);
+/// Tests query spheres against the lists where they look.
+template <typename Lanes>
+inline bool testLists(const TraversedGrid& traversed, const QuerySpheres& query_spheres,
+                      const QuerySphereLists& where, const CellWindow* windows, Candidates& candidates,
+                      CandidateSink& sink) {
+  Testing testing;
+  for (testing.begin<Lanes>(query_spheres, where); testing.count > 0; testing.next<Lanes>()) {
+    if (!testGroups<Lanes>(traversed, query_spheres, windows, testing, candidates, sink)) return false;
   }
   return true;
 }
@@ -237,60 +249,67 @@ inline bool testAll(const core::GridView& grid, const core::Lookup& lookup, std:
     std::uint32_t places[kLanes];
     for (std::uint32_t k = 0; k < kLanes; ++k) places[k] = std::min(begin + k, grid.count);
     Lanes::load(grid.centred, places, columns);
-    const auto always = [](const SphereColumns&) { return ~0u; };
-    if (!testList<Lanes>(lookup, self, columns, places, kLanes, always, candidates, sink)) return false;
+    const std::uint32_t met = Lanes::meeting(lookup, columns);
+    if (met == 0) continue;
+    if (candidates.count + kLanes > Candidates::kSize && !sink.take(candidates)) return false;
+    candidates.count = Lanes::append(self, places, met, candidates, candidates.count);
   }
   return true;
 }
 
-/// Holds some of the cells where a query sphere looks.
-struct SomeCells {
-  static constexpr std::uint32_t kSize = kMostCells;
-  alignas(64) std::uint64_t keys[kSize] = {};  // all of them are looked up
-  std::uint32_t at[kSize][3];
-  std::uint32_t count = 0;
+/// Holds query spheres that look into several cells, once for each of these.
+struct QuerySphereCells {
+  static constexpr std::uint32_t kSize = QuerySpheres::kSize;
+  QuerySpheres query_spheres;
+  QuerySphereLists where;
+  alignas(64) std::uint64_t keys[kSize];
+  CellWindow windows[kSize];
 
-  void add(int grid_level, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    keys[count] = core::cellKey(grid_level, x, y, z);
-    at[count][0] = x;
-    at[count][1] = y;
-    at[count++][2] = z;
+  void add(const core::GridView& grid, const core::Cells& cells, const std::uint32_t (&cell)[3],
+           const core::Lookup& lookup, std::uint32_t self) {
+    const std::uint32_t k = query_spheres.count;
+    keys[k] = core::cellKey(cells.grid_level, cell[0], cell[1], cell[2]);
+    windows[k] = CellWindow(grid, cells, cell);
+    where.one[k] = 1;
+    query_spheres.add(lookup, self);
+  }
+
+  /// Tests them and holds none then.
+  template <typename Lanes>
+  bool test(const TraversedGrid& traversed, Candidates& candidates, CandidateSink& sink) {
+    for (std::uint32_t k = query_spheres.count; k % kLanes != 0; ++k) keys[k] = 0;
+    Lanes::findCells(traversed.grid, keys, query_spheres.count, where.lists);
+    const bool go_on = testLists<Lanes>(traversed, query_spheres, where, windows, candidates, sink);
+    query_spheres.count = 0;
+    return go_on;
   }
 };
 
-/// Tests a query sphere against the spheres in all cells where it looks.
+/// Takes those of the query spheres that look into several cells through the grid.
 template <typename Lanes>
-inline bool traverseCells(const TraversedGrid& traversed, const core::Lookup& lookup, std::uint32_t self,
-                          Candidates& candidates, CandidateSink& sink) {
+inline bool traverseCells(const TraversedGrid& traversed, const QuerySpheres& query_spheres,
+                          const QuerySphereLists& where, Candidates& candidates, CandidateSink& sink) {
   const core::GridView& grid = traversed.grid;
-  const core::Cells cells = core::cellsOf(grid, lookup);
-  if (cells.all) return testAll<Lanes>(grid, lookup, self, candidates, sink);
-  if (cells.count == 0) return true;
-  SomeCells some;
-  const auto test = [&] {
-    alignas(64) ListRange lists[SomeCells::kSize];
-    Lanes::findCells(grid, some.keys, some.count, lists);
-    for (std::uint32_t c = 0; c < some.count; ++c) {
-      if (lists[c].count == 0) continue;
-      const CellWindow window(grid, cells, some.at[c]);
-      const auto here = [&](const SphereColumns& spheres) { return Lanes::within(window, spheres); };
-      if (!testList<Lanes>(lookup, self, traversed.listed.from(lists[c].first), grid.listed + lists[c].first,
-                           lists[c].count, here, candidates, sink))
-        return false;
-    }
-    some.count = 0;
-    return true;
-  };
-  const auto &lo = cells.box.lo, &hi = cells.box.hi;
-  for (std::uint32_t z = lo[2]; z <= hi[2]; ++z) {
-    for (std::uint32_t y = lo[1]; y <= hi[1]; ++y) {
-      for (std::uint32_t x = lo[0]; x <= hi[0]; ++x) {
-        if (some.count == SomeCells::kSize && !test()) return false;
-        some.add(cells.grid_level, x, y, z);
+  QuerySphereCells several;
+  for (std::uint32_t w = 0; w < query_spheres.count; ++w) {
+    if (where.one[w]) continue;
+    const core::Lookup lookup = query_spheres.lookup(w);
+    const core::Cells cells = core::cellsOf(grid, lookup);
+    if (cells.all && !testAll<Lanes>(grid, lookup, query_spheres.self[w], candidates, sink)) return false;
+    if (cells.all || cells.count == 0) continue;
+    const auto &lo = cells.box.lo, &hi = cells.box.hi;
+    std::uint32_t at[3];
+    for (at[2] = lo[2]; at[2] <= hi[2]; ++at[2]) {
+      for (at[1] = lo[1]; at[1] <= hi[1]; ++at[1]) {
+        for (at[0] = lo[0]; at[0] <= hi[0]; ++at[0]) {
+          const bool full = several.query_spheres.count == QuerySphereCells::kSize;
+          if (full && !several.test<Lanes>(traversed, candidates, sink)) return false;
+          several.add(grid, cells, at, lookup, query_spheres.self[w]);
+        }
       }
     }
   }
-  return test();
+  return several.test<Lanes>(traversed, candidates, sink);
 }
 
 /// Takes all query spheres through the grid.
@@ -299,17 +318,10 @@ inline bool traverseTogether(const TraversedGrid& traversed, QuerySpheres& query
                              Candidates& candidates, CandidateSink& sink) {
   QuerySphereLists where;
   where.find<Lanes>(traversed.grid, query_spheres);
-  Testing testing;
-  for (testing.begin<Lanes>(query_spheres, where); testing.count > 0; testing.next<Lanes>()) {
-    if (!testGroups<Lanes>(traversed, query_spheres, testing, candidates, sink)) return false;
-  }
-  for (std::uint32_t w = 0; w < query_spheres.count; ++w) {
-    if (!where.one[w] &&
-        !traverseCells<Lanes>(traversed, query_spheres.lookup(w), query_spheres.self[w], candidates, sink))
-      return false;
-  }
+  const bool go_on = testLists<Lanes>(traversed, query_spheres, where, nullptr, candidates, sink) &&
+                     traverseCells<Lanes>(traversed, query_spheres, where, candidates, sink);
   query_spheres.count = 0;
-  return true;
+  return go_on;
 }
 
 /// Takes some clusters through the grid.
