@@ -116,21 +116,44 @@ SurfaceProbe::Bends ShapeProbe::bends(const OpposedPoints& points, const Across&
 }
 
 const NearSphere* ShapeProbe::sphereOver(const btVector3& corner, const btVector3& normal) const {
+  // Of one probe at a time: a thread is done with one before it makes the next.
+  static thread_local FaceSpheres spheres;
+  if (!has_face_spheres_) findFaceSpheres(spheres);
+  has_face_spheres_ = true;
   const NearSphere* over = nullptr;
   btScalar least = BT_LARGE_FLOAT;
   // In the packing's frame: there are many spheres, and the corner is turned once.
   const btVector3 place = corner * a_.world.getBasis() / a_.scale();
   const btScalar scale2 = a_.scale() * a_.scale();
-  for (const NearSphere& near_sphere : near_spheres_) {
-    const btScalar distance2 = centre(a_.sphere(near_sphere.sphere)).distance2(place) * scale2;
-    if (!(distance2 < least)) continue;
-    const btScalar size = surfaceDistance(near_sphere);
-    if (near_sphere.isOnEdge() || !(distance2 < size * size)) continue;
-    if (!(near_sphere.normal.dot(-normal) > kSameFaceCosine)) continue;
+  const std::size_t count = spheres.x.size();
+  for (std::size_t k = 0; k < count; ++k) {  // by lanes
+    const btScalar x = place.x() - spheres.x[k], y = place.y() - spheres.y[k], z = place.z() - spheres.z[k];
+    spheres.distance2[k] = (x * x + y * y + z * z) * scale2;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const btScalar distance2 = spheres.distance2[k];
+    if (!(distance2 < least) || !(distance2 < spheres.size2[k])) continue;
+    if (!(spheres.spheres[k]->normal.dot(-normal) > kSameFaceCosine)) continue;
     least = distance2;
-    over = &near_sphere;
+    over = spheres.spheres[k];
   }
   return over;
+}
+
+void ShapeProbe::findFaceSpheres(FaceSpheres& found) const {
+  found.spheres.clear();
+  for (std::vector<btScalar>* column : {&found.x, &found.y, &found.z, &found.size2}) column->clear();
+  for (const NearSphere& near_sphere : near_spheres_) {
+    if (near_sphere.isOnEdge()) continue;
+    const Sphere& sphere = a_.sphere(near_sphere.sphere);
+    const btScalar size = surfaceDistance(near_sphere);
+    found.spheres.push_back(&near_sphere);
+    found.x.push_back(sphere.x);
+    found.y.push_back(sphere.y);
+    found.z.push_back(sphere.z);
+    found.size2.push_back(size * size);
+  }
+  found.distance2.resize(found.x.size());
 }
 
 void ShapeProbe::corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,

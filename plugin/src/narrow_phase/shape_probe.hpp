@@ -76,6 +76,14 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   Bend bendOfFacets(const OpposedPoints& points, const Across& axes) const;
   /// Returns true if the plane that a sphere is nearest to is still the surface of B at `place` of it.
   bool goesOn(const NearSphere& near_sphere, const btVector3& place) const;
+  /// Holds the near spheres that know a face, as columns, in the packing's frame.
+  struct FaceSpheres {
+    std::vector<const NearSphere*> spheres;
+    std::vector<btScalar> x, y, z;
+    std::vector<btScalar> size2;      ///< square of surfaceDistance()
+    std::vector<btScalar> distance2;  ///< from a corner
+  };
+  void findFaceSpheres(FaceSpheres& found) const;
   /// Returns the sphere nearest to a corner that knows the face under it, or null if there is none.
   const NearSphere* sphereOver(const btVector3& corner, const btVector3& normal) const;
 
@@ -95,6 +103,7 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   const std::vector<NearSphere>& near_spheres_;
   mutable std::array<Corner, 8> corners_;  ///< those that were asked for last: a face seldom has more
   mutable std::size_t corner_count_ = 0;   ///< that were asked for
+  mutable bool has_face_spheres_ = false;  ///< found for the first corner
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
