@@ -116,9 +116,8 @@ SurfaceProbe::Bends ShapeProbe::bends(const OpposedPoints& points, const Across&
 }
 
 const NearSphere* ShapeProbe::sphereOver(const btVector3& corner, const btVector3& normal) const {
-  // Of one probe at a time: a thread is done with one before it makes the next.
   static thread_local FaceSpheres spheres;
-  if (!has_face_spheres_) findFaceSpheres(spheres);
+  if (!has_face_spheres_ || spheres.probe != this) findFaceSpheres(spheres);
   has_face_spheres_ = true;
   const NearSphere* over = nullptr;
   btScalar least = BT_LARGE_FLOAT;
@@ -141,6 +140,7 @@ const NearSphere* ShapeProbe::sphereOver(const btVector3& corner, const btVector
 }
 
 void ShapeProbe::findFaceSpheres(FaceSpheres& found) const {
+  found.probe = this;
   found.spheres.clear();
   for (std::vector<btScalar>* column : {&found.x, &found.y, &found.z, &found.size2}) column->clear();
   for (const NearSphere& near_sphere : near_spheres_) {

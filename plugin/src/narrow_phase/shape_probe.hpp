@@ -76,8 +76,10 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   Bend bendOfFacets(const OpposedPoints& points, const Across& axes) const;
   /// Returns true if the plane that a sphere is nearest to is still the surface of B at `place` of it.
   bool goesOn(const NearSphere& near_sphere, const btVector3& place) const;
-  /// Holds the near spheres that know a face, as columns, in the packing's frame.
+  /// Holds the near spheres that know a face, as columns, in the packing's frame. Probes of one thread share
+  /// the memory.
   struct FaceSpheres {
+    const ShapeProbe* probe = nullptr;  ///< whose they are; another one may have been at the same place
     std::vector<const NearSphere*> spheres;
     std::vector<btScalar> x, y, z;
     std::vector<btScalar> size2;      ///< square of surfaceDistance()
