@@ -88,7 +88,8 @@ inline bool sameErrors(const std::vector<OverlapErrors::AtDepth>& a,
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const OverlapErrors::AtDepth& one, const OverlapErrors::AtDepth& other) {
                       return one.depth == other.depth && one.error.mean == other.error.mean &&
-                             one.error.bound == other.error.bound;
+                             one.error.bound == other.error.bound && one.volume == other.volume &&
+                             one.power == other.power;
                     });
 }
 

@@ -58,11 +58,14 @@ ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, double scale
   // Infinite if all spheres that meet are inside one another: such lenses have no rim.
   const double thickness = found.volume / found.stiffness;
   return expectedError(estimator == Estimator::raw ? best->raw : best->volume_true,
-                       overlapDepth(found.volume, found.area) / size, thickness / size);
+                       overlapDepth(found.volume, found.area) / size, thickness / size, fraction);
 }
 
-double worse(double a, double b) {
-  return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN() : std::max(a, b);
+/// The error of a pair. What each packing measured is from two bodies like it, so half of the variance is its
+/// own. Logarithms of found over true add up; they have no end, as errors have at 1. NaN if one is.
+double together(double a, double b) {
+  const double log_a = std::log1p(-a), log_b = std::log1p(-b);
+  return -std::expm1(-std::sqrt((log_a * log_a + log_b * log_b) / 2));
 }
 
 }  // namespace
@@ -77,7 +80,7 @@ ExpectedError expectedError(const PairQuery& query, Estimator estimator, const O
   };
   const ExpectedError a = of(*query.a, prefix_a, query.placement_a.scale),
                       b = of(*query.b, prefix_b, query.placement_b.scale);
-  return {worse(a.mean, b.mean), worse(a.bound, b.bound)};
+  return {together(a.mean, b.mean), together(a.bound, b.bound)};
 }
 
 void BoundedQuery::warmUp(const PairQuery& query, const QueryOptions& options) {

@@ -95,12 +95,18 @@ struct OverlapErrors {
   struct AtDepth {
     double depth = 0;     ///< See overlapDepth(), relative to the cube root of the solid's volume.
     ExpectedError error;  ///< The errors there.
+    /// The volume of these overlaps, relative to the solid's: the geometric mean.
+    double volume = 1;
+    /// The power of the volume with which errors fall at this depth: a lower limit of 95 %, from 0, where all
+    /// spheres err alike, to 1/2, where their errors cancel. From the poses of five depths.
+    double power = 0;
   };
   /// Holds the errors with one kind of radii, by rising depth.
   struct Estimate {
     std::vector<AtDepth> copies;  ///< Empty if the spheres find next to nothing.
-    /// How thick the lenses of copies are at most: an overlap's volume over its stiffness, relative to the
-    /// cube root of the solid's volume. Thicker ones are with the larger spheres of a thick body.
+    /// How thick the lenses of copies are where they are thickest: an overlap's volume over its stiffness,
+    /// relative to the cube root of the solid's volume, in the mean of kOverlapErrorPoses poses. Thicker ones
+    /// are with the larger spheres of a thick body.
     double thickest = 0;
     /// The errors of the solid cut by planes, times the root of two: the other body's are not smaller. Empty
     /// if the surface is not closed.
@@ -169,7 +175,9 @@ const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count
 /// Returns the errors to expect at a depth that is relative to the cube root of the solid's volume. Between
 /// two depths of the estimate the logarithms are linear; beyond the first and the last their errors hold.
 /// Where lenses have a larger `thickness` than Estimate::thickest, those of planes count if they are smaller.
-ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness = 0);
+/// Errors are those of overlaps of this `volume`, relative to the solid's; 0: as large as those measured.
+ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness = 0,
+                            double volume = 0);
 
 /// Returns the coverage of the longest measured prefix that is not longer than `count`, or null if there is
 /// none.

@@ -53,10 +53,17 @@ std::vector<Coverage> coverageOf(const JsonEntry& entry) {
   return prefixes;
 }
 
+/// The first files know nothing of volumes.
 std::vector<OverlapErrors::AtDepth> errorsOf(const JsonEntry& entry) {
   std::vector<OverlapErrors::AtDepth> rows;
-  for (const JsonEntry& row : entry.items())
-    rows.push_back({row["depth"].number(), {row["mean"].number(), row["bound"].number()}});
+  for (const JsonEntry& row : entry.items()) {
+    OverlapErrors::AtDepth& at = rows.emplace_back();
+    at.depth = row["depth"].number();
+    at.error = {row["mean"].number(), row["bound"].number()};
+    if (!row.has("volume")) continue;
+    at.volume = row["volume"].number();
+    at.power = row["power"].number();
+  }
   return rows;
 }
 

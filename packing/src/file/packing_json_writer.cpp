@@ -78,8 +78,13 @@ json coverageEntry(const std::vector<Coverage>& prefixes) {
 json overlapErrorsEntry(const OverlapErrors& errors) {
   const auto rowsOf = [](const std::vector<OverlapErrors::AtDepth>& errors_by_depth) {
     json rows = json::array();
-    for (const OverlapErrors::AtDepth& at : errors_by_depth)
-      rows.push_back({{"depth", at.depth}, {"mean", at.error.mean}, {"bound", at.error.bound}});
+    for (const OverlapErrors::AtDepth& at : errors_by_depth) {
+      rows.push_back({{"depth", at.depth},
+                      {"mean", at.error.mean},
+                      {"bound", at.error.bound},
+                      {"volume", at.volume},
+                      {"power", at.power}});
+    }
     return rows;
   };
   const auto planesOf = [&](const OverlapErrors::Estimate& estimate) {

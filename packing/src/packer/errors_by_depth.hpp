@@ -11,6 +11,7 @@ namespace innersphere {
 /// Says what was found in one pose.
 struct Finding {
   double depth, error;  ///< as of OverlapErrors::AtDepth
+  double volume;        ///< that was found, relative to the solid's
   OverlapKind kind;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -96,12 +97,22 @@ class Prefix {
   BallTrees trees_;  // of these
 };
 
+/// The mean of the largest kOverlapErrorPoses numbers: one pose of a few lenses, spheres inside spheres, says
+/// little.
+double meanOfLargest(std::vector<double> numbers) {
+  const std::size_t count = std::min(numbers.size(), kOverlapErrorPoses);
+  std::sort(numbers.begin(), numbers.end(), std::greater<>());
+  double sum = 0;
+  for (std::size_t i = 0; i < count; ++i) sum += numbers[i];
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
 /// What was found in one pose.
 Finding findingOf(const Found& found, double truth, double volume, OverlapKind kind) {
   const double error = std::abs(found.volume - truth) / std::max(found.volume, truth);
   const double depth =
       found.volume > 0 ? overlapDepth(found.volume, {found.area[0], found.area[1], found.area[2]}) : 0;
-  return {depth / steady::pow(volume, 1.0 / 3), error, kind};
+  return {depth / steady::pow(volume, 1.0 / 3), error, found.volume / volume, kind};
 }
 
 }  // namespace
@@ -132,13 +143,14 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
     const auto estimate = [&](Found Prefix::Sums::*sum) {
       OverlapErrors::Estimate result;
       std::vector<Finding> findings;
+      std::vector<double> thicknesses;
       for (std::size_t i = 0; i < trials.size(); ++i) {
         const Found& found = copies[i].*sum;
         findings.push_back(findingOf(found, trials[i].truth.fraction * volume, volume, trials[i].kind));
         if (found.stiffness > 0)
-          result.thickest =
-              std::max(result.thickest, found.volume / found.stiffness / steady::pow(volume, 1.0 / 3));
+          thicknesses.push_back(found.volume / found.stiffness / steady::pow(volume, 1.0 / 3));
       }
+      result.thickest = meanOfLargest(std::move(thicknesses));
       result.copies = errorsByDepth(std::move(findings));
       findings = {};
       for (std::size_t i = 0; i < planes.size(); ++i) {

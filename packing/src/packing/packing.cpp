@@ -27,24 +27,36 @@ double overlapDepth(double volume, const Vec3d& area) {
 
 namespace {
 
-ExpectedError errorAt(const std::vector<OverlapErrors::AtDepth>& rows, double depth) {
+/// What holds between two depths: the logarithms are linear.
+OverlapErrors::AtDepth between(const OverlapErrors::AtDepth& low, const OverlapErrors::AtDepth& high,
+                               double depth) {
+  const double part = steady::log2(depth / low.depth) / steady::log2(high.depth / low.depth);
+  const auto at = [part](double a, double b) { return steady::pow(a, 1 - part) * steady::pow(b, part); };
+  return {depth,
+          {at(low.error.mean, high.error.mean), at(low.error.bound, high.error.bound)},
+          at(low.volume, high.volume),
+          low.power + part * (high.power - low.power)};
+}
+
+ExpectedError errorAt(const std::vector<OverlapErrors::AtDepth>& rows, double depth, double volume) {
   if (rows.empty()) return {1, 1};
   const auto next = std::find_if(rows.begin(), rows.end(),
                                  [depth](const OverlapErrors::AtDepth& at) { return at.depth > depth; });
-  if (next == rows.begin()) return next->error;
-  const OverlapErrors::AtDepth& low = *std::prev(next);
-  if (next == rows.end()) return low.error;
-  const double part = steady::log2(depth / low.depth) / steady::log2(next->depth / low.depth);
-  const auto between = [part](double a, double b) { return steady::pow(a, 1 - part) * steady::pow(b, part); };
-  return {between(low.error.mean, next->error.mean), between(low.error.bound, next->error.bound)};
+  const OverlapErrors::AtDepth at = next == rows.begin() ? *next
+                                    : next == rows.end() ? rows.back()
+                                                         : between(*std::prev(next), *next, depth);
+  if (!(volume > 0) || at.power == 0) return at.error;
+  const double times = steady::pow(at.volume / volume, at.power);
+  return {std::min(times * at.error.mean, 1.0), std::min(times * at.error.bound, 1.0)};
 }
 
 }  // namespace
 
-ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness) {
-  const ExpectedError copies = errorAt(estimate.copies, depth);
+ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness,
+                            double volume) {
+  const ExpectedError copies = errorAt(estimate.copies, depth, volume);
   if (!(thickness > estimate.thickest)) return copies;
-  const ExpectedError planes = errorAt(estimate.planes, depth);
+  const ExpectedError planes = errorAt(estimate.planes, depth, volume);
   return {std::min(copies.mean, planes.mean), std::min(copies.bound, planes.bound)};
 }
 
@@ -109,8 +121,11 @@ void validateRadii(const std::vector<VolumeTrueRadii>& prefixes, std::size_t sph
 void validateErrors(const std::vector<OverlapErrors::AtDepth>& rows) {
   double before = 0;
   for (const OverlapErrors::AtDepth& at : rows) {
-    if (!std::isfinite(at.depth) || !std::isfinite(at.error.mean) || !std::isfinite(at.error.bound))
-      notFinite("a number of the overlap errors");
+    for (const double number : {at.depth, at.error.mean, at.error.bound, at.volume, at.power}) {
+      if (!std::isfinite(number)) notFinite("a number of the overlap errors");
+    }
+    if (!(at.volume > 0))
+      throw Error(ErrorCode::bad_argument, "a volume of the overlap errors is not positive");
     if (!(at.depth > before))
       throw Error(ErrorCode::bad_argument, "the depths of the overlap errors do not rise");
     before = at.depth;

@@ -41,11 +41,12 @@ Packing somePacking(std::size_t n, unsigned seed = 1) {
   packing.certificate = {0.1, 0.00123};
   packing.quality = {0.8, 0.01, 0.02, 0.1 + 0.2};
   packing.coverage = {{2, 0.1, 0.2, 1.0 / 3, {1, -2, 1e-17}, 0.25}, {5, 0.01, 0.02, 0.03, {}, 0}};
-  packing.overlap_errors = {
-      200,
-      1e-5,
-      1.0 / 3,
-      {{2, {{{1e-3, {0.5, 1.0 / 3}}, {0.1, {0.4, 0.6}}}, 0.1 + 0.2, {}}, {{}, 0, {{0.2, {1e-17, 0.7}}}}}}};
+  packing.overlap_errors = {200,
+                            1e-5,
+                            1.0 / 3,
+                            {{2,
+                              {{{1e-3, {0.5, 1.0 / 3}, 1.0 / 7, 1.0 / 9}, {0.1, {0.4, 0.6}}}, 0.1 + 0.2, {}},
+                              {{}, 0, {{0.2, {1e-17, 0.7}, 1e-9, 0.5}}}}}};
   for (std::size_t i = 0; i < n; ++i) packing.mass_weights.push_back(1 + 1 / static_cast<float>(i + 3));
   packing.warnings = {"a \"part\" is empty", ""};
   packing.provenance = {"some \"mesh\".obj", "0123456789abcdef", "--spheres 5", "0.1.0"};
@@ -186,6 +187,17 @@ TEST(FilePacking, EstimatesWithoutPlanesAreRead) {
   EXPECT_EQ(expectedError(raw, 0.1, 7).mean, expectedError(had, 0.1).mean);
 }
 
+// Nor do they know how errors fall with the volume.
+TEST(FilePacking, EstimatesWithoutVolumesAreRead) {
+  nlohmann::json document = nlohmann::json::parse(toJson(somePacking(3)));
+  for (nlohmann::json& row : document["errors_by_depth"]["prefixes"][0]["raw"])
+    EXPECT_EQ(row.erase("volume") + row.erase("power"), 2u);
+  const OverlapErrors::Estimate raw = fromJson(document.dump()).overlap_errors.prefixes.at(0).raw;
+  ASSERT_EQ(raw.copies.size(), 2u);
+  EXPECT_EQ(raw.copies[0].power, 0);
+  EXPECT_EQ(expectedError(raw, 0.01, 0, 1e-3).mean, expectedError(raw, 0.01).mean);
+}
+
 // Their estimates of errors were means of four bins, then relative to the truth, then by volume: they are not
 // taken for what is written today.
 TEST(FilePacking, OldEstimatesAreLeftOutWithAWord) {
@@ -230,6 +242,8 @@ TEST(FilePacking, BadMeasuresAreRefused) {
   refused("/errors_by_depth/prefixes/0/raw/0/depth", 0.2);
   refused("/errors_by_depth/prefixes/0/raw/0/depth", 0);
   refused("/errors_by_depth/prefixes/0/raw/1/mean", {0.1});
+  refused("/errors_by_depth/prefixes/0/raw/0/volume", 0);
+  refused("/errors_by_depth/prefixes/0/raw/0/power", "half");
   refused("/errors_by_depth/prefixes/0/volume_true/0/bound", nullptr);
   refused("/errors_by_depth/prefixes/0/raw_planes", 1);
   refused("/errors_by_depth/prefixes/0/raw_planes/thicker_than", "thick");

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "analytic_solids.hpp"
 #include "file_scratch.hpp"
@@ -264,8 +265,20 @@ TEST(PackerMeasures, OverlapErrorsKnowPlanes) {
   const auto in_cube = volume * std::pow(unit, 3);
   const OverlapErrors errors =
       findOverlapErrors(container, surface, samples, balls, {{1, {static_cast<float>(radius)}, 0}}, in_cube);
-  const std::vector<PlaneCut> planes = makeOverlapTrials(container, surface, samples, in_cube, 285).planes;
+  const OverlapTrials trials = makeOverlapTrials(container, surface, samples, in_cube, 285);
+  const std::vector<PlaneCut>& planes = trials.planes;
   ASSERT_EQ(planes.size(), 95u);
+  std::vector<double> thicknesses;
+  for (const OverlapTrial& trial : trials.trials) {
+    const double d = (trial.pose.apply(balls[0].centre) - balls[0].centre).norm() / unit;
+    const auto shared = static_cast<double>(lens(radius, radius, d));
+    if (shared > 0)
+      thicknesses.push_back(shared / (std::numbers::pi * (radius * radius - d * d / 4)) / std::cbrt(volume));
+  }
+  ASSERT_GE(thicknesses.size(), 19u);
+  std::sort(thicknesses.rbegin(), thicknesses.rend());
+  const double thickest = std::accumulate(thicknesses.begin(), thicknesses.begin() + 19, 0.0) / 19;
+  EXPECT_NEAR(errors.prefixes.at(0).raw.thickest, thickest, 1e-5 * thickest);
   std::vector<std::pair<double, double>> found;  // depths and errors
   for (const PlaneCut& plane : planes) {
     const double height = (plane.height - plane.normal.dot(container.fromWorld({}))) / unit;
@@ -315,8 +328,8 @@ TEST(PackerMeasures, ErrorsOfOneKindOfPosesAreBelowTheirLimit) {
   for (std::size_t i = 0; i < 285; ++i) {
     const auto kind = static_cast<OverlapKind>(i % 3);
     const double depth = 0.01 * std::exp(0.01 * static_cast<double>(i));
-    kinds.push_back({depth, 0.1 * (1 + static_cast<double>(i % 3)), kind});
-    alike.push_back({depth, i % 19 % 2 == 0 ? 0.1 : 0.3, kind});
+    kinds.push_back({depth, 0.1 * (1 + static_cast<double>(i % 3)), 0.1, kind});
+    alike.push_back({depth, i % 19 % 2 == 0 ? 0.1 : 0.3, 0.1, kind});
   }
   const std::vector<OverlapErrors::AtDepth> of_kinds = errorsByDepth(kinds), of_alike = errorsByDepth(alike);
   ASSERT_EQ(of_kinds.size(), 15u);
@@ -328,6 +341,40 @@ TEST(PackerMeasures, ErrorsOfOneKindOfPosesAreBelowTheirLimit) {
   }
   // The mean of ten and nine, and Student's t times the root of 2 / 19 of a deviation of about 0.1.
   for (const OverlapErrors::AtDepth& at : of_alike) EXPECT_NEAR(at.error.mean, 0.195 + 0.058, 0.005);
+}
+
+// Errors of many parts cancel, so that they fall with the volume; where all parts err alike they do not.
+TEST(PackerMeasures, ErrorsFallWithTheVolumeAsTheyWereFoundTo) {
+  const auto rowsWith = [](double power, double scatter) {
+    std::vector<Finding> findings;
+    for (std::size_t i = 0; i < 285; ++i) {
+      const double volume = 0.01 * std::exp(0.1 * static_cast<double>(i % 19)),
+                   times = i / 19 % 2 == 0 ? 1 + scatter : 1 - scatter;
+      findings.push_back({0.01 * std::exp(0.01 * static_cast<double>(i)),
+                          0.01 * std::pow(volume, -power) * (i % 2 == 0 ? times : 2 - times), volume,
+                          OverlapKind::any});
+    }
+    return errorsByDepth(findings);
+  };
+  for (const OverlapErrors::AtDepth& at : rowsWith(0.25, 0)) {
+    EXPECT_NEAR(at.power, 0.25, 0.02);
+    EXPECT_NEAR(at.volume, 0.01 * std::exp(0.9), 1e-6);
+  }
+  for (const OverlapErrors::AtDepth& at : rowsWith(0.25, 0.3)) {  // a lower limit
+    EXPECT_GT(at.power, 0.05);
+    EXPECT_LT(at.power, 0.22);
+  }
+  for (const OverlapErrors::AtDepth& at : rowsWith(0, 0.3)) EXPECT_LT(at.power, 0.03);
+  for (const OverlapErrors::AtDepth& at : rowsWith(-0.5, 0)) EXPECT_EQ(at.power, 0);
+  for (const OverlapErrors::AtDepth& at : rowsWith(1, 0)) EXPECT_EQ(at.power, 0.5);
+
+  const OverlapErrors::Estimate estimate{{{0.1, {0.2, 0.4}, 0.01, 0.5}, {0.4, {0.1, 0.3}, 0.04, 0}}, 1, {}};
+  EXPECT_NEAR(expectedError(estimate, 0.1, 0, 0.04).mean, 0.1, 1e-12);
+  EXPECT_NEAR(expectedError(estimate, 0.1, 0, 0.04).bound, 0.2, 1e-12);
+  EXPECT_EQ(expectedError(estimate, 0.1, 0, 1e-6).bound, 1);
+  EXPECT_EQ(expectedError(estimate, 0.4, 0, 1e-6).mean, 0.1);
+  const double between = expectedError(estimate, 0.2).mean;  // the volume there is 0.02, the power a quarter
+  EXPECT_NEAR(expectedError(estimate, 0.2, 0, 0.32).mean, between / 2, 1e-12);
 }
 
 // What a packing at a program's start leaves out: nothing but the errors, and a file is read back without
