@@ -116,11 +116,14 @@ def test_expected_errors_are_those_of_the_file(tmp_path):
             layers = depth < 0.1 ** (1 / 3)  # others are deeper than this volume can be
             assert layers.sum() > 5
             for field in ("mean", "bound"):
-                one, all_of = (
-                    np.exp(np.interp(np.log(depth), np.log([r["depth"] for r in of]), np.log([r[field] for r in of])))
-                    for of in (by_count[count][estimator], rows)
-                )
-                np.testing.assert_allclose(got[field][layers], np.maximum(one, all_of)[layers])
+                squares = 0  # of the logarithms of found over true
+                for of in (by_count[count][estimator], rows):
+                    at = np.log([r["depth"] for r in of])
+                    error, measured = (np.exp(np.interp(np.log(depth), at, np.log([r[k] for r in of]))) for k in (field, "volume"))
+                    power = np.interp(np.log(depth), at, [r["power"] for r in of])
+                    with np.errstate(divide="ignore"):
+                        squares = squares + np.log1p(-np.minimum(error * (measured / 0.1) ** power, 1)) ** 2
+                np.testing.assert_allclose(got[field][layers], (1 - np.exp(-np.sqrt(squares / 2)))[layers])
             # Lenses without rims are thicker than those of any copy: planes tell of them, too.
             thick = innersphere.expected_error(part, packing, layer | {"stiffness": 0 * depth}, estimator=estimator)
             assert (thick["mean"] <= got["mean"]).all() and (thick["mean"] < 0.9 * got["mean"]).any()

@@ -438,7 +438,7 @@ Returns two fields of the same shape, parts of the larger of the found and the t
 mean   expected |error|
 bound  what |error| exceeds in 1 of 20 cases: else the truth lies between volume (1 - bound) and volume / (1 - bound)
 
-Of A and B the worse one counts, as each was measured with copies of itself and cut by planes when it was packed. nan where nothing
+Errors of A and B are independent, as each was measured with copies of itself and cut by planes when it was packed. nan where nothing
 overlaps, nothing so shallow was measured or area and energy are 0, as with want="volume", and for packings without
 overlap_errors; 0 with "surface".)");
   module.def("cuda_device_count", &cudaDeviceCount, "The number of CUDA devices that answer.");
