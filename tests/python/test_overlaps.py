@@ -144,8 +144,14 @@ def test_expected_errors_are_those_of_the_file(tmp_path):
         copies, planes = by_count[300][rows], by_count[300][rows + "_planes"]
         is_thick = shared["volume"] > planes["thicker_than"] * size * shared["stiffness"]  # spheres are inside each other
         depth = shared["volume"] ** (1 / 3) / size
-        of_planes = np.exp(np.interp(np.log(depth), *np.log([[row["depth"], row["mean"]] for row in planes["errors"]]).T))
-        assert itself["mean"] == pytest.approx(min(copies[-1]["mean"], of_planes) if is_thick else copies[-1]["mean"])
+
+        def mean_at(depth, of, part=shared["volume"] / packing.volume):
+            at = np.log([row["depth"] for row in of])
+            mean, volume = (np.exp(np.interp(np.log(depth), at, np.log([row[field] for row in of]))) for field in ("mean", "volume"))
+            return min(1, mean * (volume / part) ** np.interp(np.log(depth), at, [row["power"] for row in of]))
+
+        of_copies = mean_at(copies[-1]["depth"], copies)
+        assert itself["mean"] == pytest.approx(min(of_copies, mean_at(depth, planes["errors"])) if is_thick else of_copies)
     with pytest.raises(innersphere.InvalidArgumentError):
         innersphere.expected_error(packing, packing, {"volume": [1, 2], "area": [[1, 0, 0]], "stiffness": [1, 1], "energy": [1, 1]})
 
