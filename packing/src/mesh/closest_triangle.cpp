@@ -237,7 +237,6 @@ ClosestTriangle::Nearest ClosestTriangle::closest(const Vec3d& p, double cutoff)
 }
 
 double ClosestTriangle::emptyRadius(const Vec3d& at, const Vec3d& side, double least, double most) const {
-  constexpr double kEmpty = 1 - 1e-6;
   double radius = most;
   Reach reach(*this, at + radius * side, radius);
   visitWithin(reach, [&](std::uint32_t i) {

@@ -25,9 +25,10 @@ class ClosestTriangle {
 
   /// Returns the nearest point; beyond `cutoff` [m] the distance is infinity.
   Nearest closest(const Vec3d& p, double cutoff) const;
+  /// A ball counts as empty if no triangle reaches into this part of its radius.
+  static constexpr double kEmpty = 1 - 1e-6;
   /// Returns the radius [m] of the largest empty ball, from `least` to `most`, that touches the place `at`
-  /// and lies on this side of it (unit vector): no triangle reaches into it by more than 1e-6 of it. Returns
-  /// 0 if there is none.
+  /// and lies on this side of it (unit vector). Returns 0 if there is none.
   double emptyRadius(const Vec3d& at, const Vec3d& side, double least, double most) const;
   /// Returns 1 in front of the triangle, which is the nearest one, and -1 behind it, if the nearest point is
   /// clearly inside of it, or it is `gentle` (as of BesideTriangle), and farther than rounding; else 0.

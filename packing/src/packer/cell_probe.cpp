@@ -62,10 +62,9 @@ bool CellSearch::isInside(const Point& x, double distance, const Container::Near
 }
 
 Ball CellSearch::ballBehind(const Point& wall, const Point& normal, double radius) {
-  const double behind = container_.emptyRadius(wall, normal, kLeastBehind * wanted_, radius);
-  const Ball ball{wall + behind * normal, behind * (1 - 1e-6)};
-  if (behind == 0 || isInside(ball.centre, ball.radius, {})) return {wall, 0};  // a sheet without thickness
-  return ball;
+  const Ball ball = container_.emptyBall(wall, normal, kLeastBehind * wanted_, radius);
+  // Inside where the wall is a sheet without thickness.
+  return ball.radius == 0 || isInside(ball.centre, ball.radius, {}) ? Ball{wall, 0} : ball;
 }
 
 }  // namespace innersphere

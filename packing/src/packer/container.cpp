@@ -82,22 +82,25 @@ Container::Nearest Container::closest(const Point& x, double cutoff) const {
   return {hit.distance / side_, fromWorld(hit.point), hit.triangle};
 }
 
-double Container::emptyRadius(const Point& wall, const Point& side, double least, double most) const {
+Ball Container::emptyBall(const Point& wall, const Point& side, double least, double most) const {
+  const auto ball = [&](double radius) {
+    return Ball{wall + radius * side, ClosestTriangle::kEmpty * radius};
+  };
   if (mesh_) {
     const Vec3d way{side[0], side[1], side[2]};
-    return mesh_->emptyRadius(toWorld(wall), way, side_ * least, side_ * most) / side_;
+    return ball(mesh_->emptyRadius(toWorld(wall), way, side_ * least, side_ * most) / side_);
   }
-  double radius = most;
+  Ball found = ball(most);
   for (int attempt = 0; attempt < 3; ++attempt) {
-    const Nearest hit = closest(wall + radius * side, radius * (1 - 1e-6));
-    if (std::isinf(hit.distance)) return radius;
+    const Nearest hit = closest(found.centre, found.radius);
+    if (std::isinf(hit.distance)) return found;
     // The ball through both points, and a little less, as there may be a third.
     const Point way = hit.point - wall;
     const double next = 0.8 * way.squaredNorm() / (2 * way.dot(side));
-    if (!(next > least && next < radius)) break;
-    radius = next;
+    if (!(next > least && next < found.radius)) break;
+    found = ball(next);
   }
-  return 0;
+  return {wall, 0};
 }
 
 bool Container::contains(const Point& x, const Nearest& nearest) const {

@@ -32,9 +32,9 @@ class Container {
   /// Returns the nearest point of the surface. Throws Error not_finite if the solid gives no number.
   Nearest closest(const Point& x, double cutoff) const;
 
-  /// Returns the radius of a ball that touches the surface at `wall`, lies on this side of it (unit vector),
-  /// and has at most 1e-6 of it beyond the surface: from `least` to `most`, as large as may be, or 0.
-  double emptyRadius(const Point& wall, const Point& side, double least, double most) const;
+  /// Returns a ball without surface inside that all but touches the surface at `wall`, on this side of it
+  /// (unit vector): its radius is from `least` to `most`, as large as may be, or 0 if there is none.
+  Ball emptyBall(const Point& wall, const Point& side, double least, double most) const;
 
   bool contains(const Point& x) const { return solid_.contains(toWorld(x)); }
   /// The same, cheaper where the nearest point of the surface is known.

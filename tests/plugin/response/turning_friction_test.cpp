@@ -109,8 +109,7 @@ std::string nameOf(const testing::TestParamInfo<Case>& info) {
 }
 
 // The solver's friction is a pyramid; packings find the radius of the area from their spheres, few of them a
-// smaller one: with 500 to 1,000 up to 0.8 % come to the 4.8 of what slides and turns under
-// penalties.
+// smaller one: with 500 to 1,000 up to 0.8 % come to the 4.8 of what slides and turns under penalties.
 constexpr Case kCases[] = {
     {"plane", Response::compliant, {0, 10}, 0.03},     {"plane", Response::compliant, {1, 10}, 0.08},
     {"plane", Response::compliant, {1.5, 0}, 0.02},    {"plane", Response::penalty, {0, 10}, 0.02},
