@@ -69,7 +69,7 @@ class TrueOverlap {
     shift_ = container.fromWorld(container.origin());
     tree_ = SurfaceTree::ifClosed(surface);
     if (tree_) {
-      for (const auto& v : surface.vertices) vertices_.push_back(scale_ * Point(v[0], v[1], v[2]) + shift_);
+      for (const auto& v : tree_->vertices()) vertices_.push_back(scale_ * Point(v[0], v[1], v[2]) + shift_);
     }
     if (!tree_ || std::abs(below(Point::UnitZ(), 2) - 1) > kOff)
       many_.emplace(container, volume, kManyPoints);

@@ -284,7 +284,40 @@ SurfaceTree::SurfaceTree(const Surface& surface, Twins twins) : twins_(std::move
   grid_.middle = 0.5 * (bounds_.min + bounds_.max);
   grid_.per = std::min(kCoarseHalf / largest(bounds_.max - grid_.middle), kMostCells);
   builder.build(0, count);
+  sortAsInTree();
   findParts();
+}
+
+void SurfaceTree::sortAsInTree() {
+  constexpr std::uint32_t kNone = ~0U;
+  std::vector<std::uint32_t> of_triangle(triangles_.size(), kNone), of_vertex(vertices_.size(), kNone);
+  std::vector<Triangle> triangles;
+  std::vector<Lanes> vertices;
+  Twins twins;
+  for (Node& node : nodes_) {
+    for (std::uint32_t i = 0; node.are_triangles && i < node.count; ++i) {
+      std::uint32_t& child = node.children[i];
+      std::uint32_t& number = of_triangle[child];
+      if (number == kNone) {
+        number = static_cast<std::uint32_t>(triangles.size());
+        twins.push_back(twins_[child]);
+        for (std::uint32_t& v : triangles.emplace_back(triangles_[child])) {
+          if (of_vertex[v] == kNone) {
+            of_vertex[v] = static_cast<std::uint32_t>(vertices.size());
+            vertices.push_back(vertices_[v]);
+          }
+          v = of_vertex[v];
+        }
+      }
+      child = number;
+    }
+  }
+  for (auto& of_one : twins) {
+    for (std::uint32_t& twin : of_one) twin = 4 * of_triangle[twin / 4] + twin % 4;
+  }
+  triangles_ = std::move(triangles);
+  vertices_ = std::move(vertices);
+  twins_ = std::move(twins);
 }
 
 void SurfaceTree::addBoxes(Node& node, const Bounds* boxes) const {

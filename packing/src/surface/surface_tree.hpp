@@ -55,7 +55,7 @@ class SurfaceTree {
     static FourInts sides(Lanes high, Lanes minus_low);
   };
 
-  /// The root is the first one.
+  /// The root is the first one. Triangles and vertices have other numbers than in the given surface.
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
   const std::vector<Lanes>& vertices() const { return vertices_; }
@@ -79,6 +79,8 @@ class SurfaceTree {
   /// opposite directions are neighbours.
   static Twins findTwins(const Surface& surface);
   void addBoxes(Node& node, const Bounds* boxes) const;
+  /// Numbers triangles and vertices as the tree has them: neighbours then lie close by in memory.
+  void sortAsInTree();
   void findParts();
 
   std::vector<Lanes> vertices_;  ///< the last number is zero
