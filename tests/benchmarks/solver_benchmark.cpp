@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <map>
 #include <string>
 
 #include "bin_of_bodies.hpp"
@@ -28,10 +29,15 @@ struct Settings {
   std::size_t spheres = 4000;
   double settle = 8;
   int samples = 30;
+  double rate = 60;
+  Backend backend = Backend::cpu;
   std::string csv;
+
+  double step() const { return 1 / rate; }
 };
 
-constexpr double kStep = 1.0 / 60;
+const std::map<std::string, Backend> kBackends{
+    {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
 
 /// Boxes of half a metre.
 BinOptions binOfBoxes(int bodies) {
@@ -47,15 +53,15 @@ BinOptions binOfBoxes(int bodies) {
   return bin;
 }
 
-BinOptions binOfTori(int bodies, const std::shared_ptr<const CollisionModel>& model) {
+BinOptions binOfTori(int bodies, const std::shared_ptr<const CollisionModel>& model, Backend backend) {
   BinOptions bin;
   bin.bodies = bodies;
   bin.batched = true;
   bin.make = [model](int) { return std::make_shared<PackingShape>(model); };
   PackingShape(model).calculateLocalInertia(1, bin.inertia);
-  bin.prepare = [](btDiscreteDynamicsWorld& world) {
+  bin.prepare = [backend](btDiscreteDynamicsWorld& world) {
     ContactOptions options;
-    options.backend = Backend::cpu;
+    options.backend = backend;
     PackingCollisionAlgorithm::prepareWorld(world, options);
   };
   return bin;
@@ -81,7 +87,7 @@ class Pile {
     bin.solver = substepSolver(8);
     bin_ = std::make_unique<BinOfBodies>(bin);
     tbb::task_arena(settings.threads.back()).execute([&] {
-      for (double t = 0; t < settings.settle; t += kStep) bin_->step(kStep);
+      for (double t = 0; t < settings.settle; t += settings.step()) bin_->step(settings.step());
     });
   }
 
@@ -89,7 +95,7 @@ class Pile {
   void compare(std::FILE* csv) {
     bin_->solveWith(trial_);
     trial_->measures = true;
-    for (int i = 0; i < settings_.samples; ++i) bin_->step(kStep);
+    for (int i = 0; i < settings_.samples; ++i) bin_->step(settings_.step());
     trial_->measures = false;
     const int points = trial_->points();
     const double first = median(trial_->candidates.front().times);
@@ -131,7 +137,7 @@ class Pile {
         std::vector<double> all, narrow, solving, rest;
         tbb::task_arena(threads).execute([&] {
           for (int i = 0; i < settings_.samples; ++i) {
-            const StepTime time = bin_->step(kStep);
+            const StepTime time = bin_->step(settings_.step());
             all.push_back(time.all);
             narrow.push_back(time.narrow_phase);
             solving.push_back(time.solver);
@@ -172,7 +178,7 @@ void run(const Settings& settings) {
       std::make_shared<CollisionModel>(std::make_shared<Packing>(pack(*makeTorus(kRing, kTube), options)));
   for (const int bodies : settings.packings)
     measure(std::to_string(bodies) + " tori of " + std::to_string(settings.spheres) + " spheres",
-            binOfTori(bodies, model));
+            binOfTori(bodies, model, settings.backend));
 }
 
 }  // namespace
@@ -191,6 +197,11 @@ int main(int argc, char** argv) try {
   app.add_option("--samples", settings.samples, "measured steps")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  app.add_option("--rate", settings.rate, "steps a second")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--backend", settings.backend, "of the packings' queries: auto, cpu or cuda")
+      ->transform(CLI::CheckedTransformer(kBackends, CLI::ignore_case));
   app.add_option("--csv", settings.csv, "a file for the table of the solvers alone");
   CLI11_PARSE(app, argc, argv);
   for (std::vector<int>* piles : {&settings.boxes, &settings.packings}) {
@@ -199,7 +210,7 @@ int main(int argc, char** argv) try {
   const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(settings.threads.back()));
   std::printf("%s", heading("Cost of solvers", argc, argv).c_str());
-  std::printf("\nMedians of %d steps of 1/60 s.\n", settings.samples);
+  std::printf("\nMedians of %d steps of 1/%g s.\n", settings.samples, settings.rate);
   run(settings);
   return 0;
 } catch (const innersphere::Error& error) {
