@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -15,7 +16,8 @@ class Workers {
  public:
   /// Makes an arena of so many threads; 0: all cores.
   explicit Workers(int threads)
-      : serial_(threads == 1), arena_(threads > 0 ? threads : static_cast<int>(tbb::task_arena::automatic)) {}
+      : serial_((threads > 0 ? threads : tbb::info::default_concurrency()) == 1),
+        arena_(threads > 0 ? threads : static_cast<int>(tbb::task_arena::automatic)) {}
 
   /// Calls f(begin, end) for ranges that cover [0, n), of about `grain` items. One range is run right here,
   /// others in the same floating-point mode, whatever it was when the arena was first used.
