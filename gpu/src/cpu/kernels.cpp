@@ -186,7 +186,7 @@ inline void nearestDirectionsImpl(const float* x, const float* y, const float* z
     }                                                                                                      \
     attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
                                   Tally& tally) {                                                          \
-      sumImpl<Lanes, Make::all>(setup, from_a, candidates, tally);                                              \
+      sumImpl<Lanes, Make::all>(setup, from_a, candidates, tally);                                         \
     }                                                                                                      \
     attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates, \
                                       Tally& tally) {                                                      \

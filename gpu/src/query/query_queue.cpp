@@ -127,8 +127,8 @@ struct QueryQueue::Impl {
 
   Lane& of(const QueryOptions& wanted) {
     const std::lock_guard<std::mutex> lock(mutex);
-    const std::size_t kind = static_cast<std::size_t>(wanted.want) * kEstimators +
-                             static_cast<std::size_t>(wanted.estimator);
+    const std::size_t kind =
+        static_cast<std::size_t>(wanted.want) * kEstimators + static_cast<std::size_t>(wanted.estimator);
     std::unique_ptr<Lane>& lane = lanes[2 * kind + (wanted.sums ? 1 : 0)];
     if (!lane) lane = std::make_unique<Lane>(options);
     return *lane;
