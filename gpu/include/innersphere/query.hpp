@@ -52,6 +52,9 @@ struct PairQuery {
 struct QueryOptions {
   Want want = Want::wrench;                      ///< What is not wanted is zero or empty in the result.
   Estimator estimator = Estimator::volume_true;  ///< What stands for both solids.
+  /// Where contacts are wanted: whether all of Overlap is, too. Otherwise all of it but pair_count is zero,
+  /// which saves the CPU up to a tenth of the time. Nothing else changes.
+  bool sums = true;
 };
 
 /// Holds the results of a batch. Keep the object and pass it again: after warm-up nothing is allocated.

@@ -15,7 +15,8 @@ class Workers {
  public:
   /// Makes an arena of so many threads; 0: all cores.
   explicit Workers(int threads)
-      : serial_(threads == 1), arena_(threads > 0 ? threads : static_cast<int>(tbb::task_arena::automatic)) {}
+      : arena_(threads > 0 ? threads : static_cast<int>(tbb::task_arena::automatic)),
+        serial_(arena_.max_concurrency() == 1) {}
 
   /// Calls f(begin, end) for ranges that cover [0, n), of about `grain` items. One range is run right here,
   /// others in the same floating-point mode, whatever it was when the arena was first used.
@@ -32,8 +33,8 @@ class Workers {
   }
 
  private:
-  bool serial_;
   tbb::task_arena arena_;
+  bool serial_;  ///< one thread needs no scheduler
 };
 
 }  // namespace innersphere

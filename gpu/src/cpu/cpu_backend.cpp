@@ -162,9 +162,16 @@ void CpuBackend::traverseRange(std::size_t begin, std::size_t end) {
 /// counted.
 class CpuBackend::Summer : public CandidateSink {
  public:
-  Summer(const PreparedQuery& query, std::uint32_t index, Want want, OverlappingPairs& found_pairs,
-         std::atomic<std::size_t>& cursor)
-      : setup_(query.setup), index_(index), want_(want), found_pairs_(found_pairs), cursor_(cursor) {
+  Summer(const PreparedQuery& query, std::uint32_t index, Want want, bool without_sums,
+         OverlappingPairs& found_pairs, std::atomic<std::size_t>& cursor)
+      : setup_(query.setup),
+        index_(index),
+        want_(want),
+        terms_(without_sums && wantsContacts(want) ? 0
+               : want == Want::volume              ? core::kVolumeTerms
+                                                   : core::kTerms),
+        found_pairs_(found_pairs),
+        cursor_(cursor) {
     sums_.clear();
   }
 
@@ -173,10 +180,12 @@ class CpuBackend::Summer : public CandidateSink {
   bool take(Candidates& candidates) override {
     if (candidates.count == 0) return true;
     const CpuKernels& kernels = cpuKernels();
-    const bool all = want_ != Want::volume;
-    (all ? kernels.sumAll : kernels.sumVolumes)(setup_, from_a_, candidates, tally_);
+    const auto sum = terms_ == 0                    ? kernels.decide
+                     : terms_ == core::kVolumeTerms ? kernels.sumVolumes
+                                                    : kernels.sumAll;
+    sum(setup_, from_a_, candidates, tally_);
     if (tally_.pairs > 0) {
-      add(all ? core::kTerms : core::kVolumeTerms);
+      addTally();
       if (wantsPairs(want_)) write(candidates);
     }
     candidates.count = 0;
@@ -186,9 +195,9 @@ class CpuBackend::Summer : public CandidateSink {
   const core::Sums& sums() const { return sums_; }
 
  private:
-  void add(int terms) {
+  void addTally() {
     sums_.pairs += tally_.pairs;
-    for (int i = 0; i < terms; ++i) {
+    for (int i = 0; i < terms_; ++i) {
       const core::FixedSum sum = toFixed(tally_.sums[static_cast<std::size_t>(i)], unitOf(setup_.units, i));
       sums_.terms[i] = sums_.terms[i] + sum;
     }
@@ -210,6 +219,7 @@ class CpuBackend::Summer : public CandidateSink {
   const core::Setup& setup_;
   std::uint32_t index_;
   Want want_;
+  int terms_;  ///< that are summed, the first ones
   OverlappingPairs& found_pairs_;
   std::atomic<std::size_t>& cursor_;
   bool from_a_ = true;
@@ -292,7 +302,7 @@ void CpuBackend::traverseQuery(std::uint32_t index, std::size_t begin, std::size
     if (!toucher.done()) traverseClusters(query, begin, end, 1, toucher);
     return;
   }
-  Summer summer(query, index, want_, found_pairs_, cursor_);
+  Summer summer(query, index, want_, without_sums_, found_pairs_, cursor_);
   traverseClusters(query, begin, end, kTogether, summer);
   if (summer.sums().pairs == 0) return;
   const tbb::spin_mutex::scoped_lock lock(locks_[index % locks_.size()]);

@@ -25,6 +25,8 @@ class CpuBackend : public QueryBackend {
   explicit CpuBackend(Workers& workers) : workers_(workers) {}
 
   void start(std::span<const PreparedQuery> queries, Want want) override;
+  /// Whether batches that want contacts leave out all other sums but the number of pairs, from now on.
+  void leaveOutSums(bool leave_out) { without_sums_ = leave_out; }
   bool ready() override { return true; }
   void finish(QueryResult& result) override;
   void sweep(const Sweep& sweep, Overlap* overlaps) override;
@@ -48,6 +50,7 @@ class CpuBackend : public QueryBackend {
   Workers& workers_;
   std::span<const PreparedQuery> queries_;
   Want want_ = Want::wrench;
+  bool without_sums_ = false;
   std::vector<core::Sums> sums_;
   OverlappingPairs found_pairs_;  ///< of the last part
   PairSorter sorter_;

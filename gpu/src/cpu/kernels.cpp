@@ -41,10 +41,25 @@ struct SpherePairs {
   Sphere b(std::size_t k) const { return {columns[4][k], columns[5][k], columns[6][k], columns[7][k]}; }
 };
 
-template <typename Lanes, bool kWrench>
+/// Says which terms of pairs are made. Those of contacts are not summed: that is left to their spheres.
+enum class Make { volumes, contacts, all };
+
+constexpr bool isMade(Make make, int term) {
+  if (make == Make::all || term < core::kVolumeTerms) return true;
+  return make == Make::contacts && term >= core::kArea && term < core::kStiffness;
+}
+
+template <Make kMake>
+inline core::Terms makeTerms(const core::Pair& pair) {
+  if constexpr (kMake != Make::contacts) return core::makeTerms<kMake == Make::all>(pair);
+  core::Terms terms;
+  core::setTerms<true>(pair, core::makeContact(pair), terms);
+  return terms;
+}
+
+template <typename Lanes, Make kMake>
 inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally) {
   constexpr std::size_t kSize = Candidates::kSize;
-  constexpr int kTerms = kWrench ? core::kTerms : core::kVolumeTerms;
   SpherePairs<kSize> spheres;
   const std::size_t n = spheres.template load<Lanes>(
       setup, (from_a ? candidates.query_sphere : candidates.partner).data(),
@@ -59,13 +74,16 @@ inline void sumImpl(const core::Setup& setup, bool from_a, const Candidates& can
     found_pairs[k] = found ? 1 : 0;
     const double sum = pair.ra + pair.rb;
     pair.distance2 = found ? pair.distance2 : sum * sum;  // two balls that touch from outside add nothing
-    const core::Terms added = core::makeTerms<kWrench>(pair);
-    for (int i = 0; i < kTerms; ++i) terms[i][k] = added.terms[i];
+    const core::Terms added = makeTerms<kMake>(pair);
+    for (int i = 0; i < core::kTerms; ++i) {
+      if (isMade(kMake, i)) terms[i][k] = added.terms[i];
+    }
   }
   tally.pairs = 0;
   for (std::size_t k = 0; k < n; ++k) tally.pairs += static_cast<std::size_t>(found_pairs[k]);
   for (std::size_t k = 0; k < n; ++k) tally.found[k] = static_cast<std::uint8_t>(found_pairs[k]);
-  for (int i = 0; i < kTerms; ++i) {
+  if constexpr (kMake == Make::contacts) return;
+  for (int i = 0; i < core::kTerms && isMade(kMake, i); ++i) {
     const core::Unit unit = core::unitOf(setup.units, i);
     core::ShortSum sum{0, 0};
     for (std::size_t k = 0; k < n; ++k) core::addBits(sum, terms[i][k], unit);
@@ -168,11 +186,15 @@ inline void nearestDirectionsImpl(const float* x, const float* y, const float* z
     }                                                                                                      \
     attributes static void sumAll(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
                                   Tally& tally) {                                                          \
-      sumImpl<Lanes, true>(setup, from_a, candidates, tally);                                              \
+      sumImpl<Lanes, Make::all>(setup, from_a, candidates, tally);                                         \
     }                                                                                                      \
     attributes static void sumVolumes(const core::Setup& setup, bool from_a, const Candidates& candidates, \
                                       Tally& tally) {                                                      \
-      sumImpl<Lanes, false>(setup, from_a, candidates, tally);                                             \
+      sumImpl<Lanes, Make::volumes>(setup, from_a, candidates, tally);                                     \
+    }                                                                                                      \
+    attributes static void decide(const core::Setup& setup, bool from_a, const Candidates& candidates,     \
+                                  Tally& tally) {                                                          \
+      sumImpl<Lanes, Make::contacts>(setup, from_a, candidates, tally);                                    \
     }                                                                                                      \
     attributes static void writeValues(const Tally& tally, std::size_t count, ContactValues* values) {     \
       writeValuesImpl<Lanes>(tally, count, values);                                                        \
@@ -187,8 +209,8 @@ inline void nearestDirectionsImpl(const float* x, const float* y, const float* z
                                              std::size_t direction_count, std::uint32_t* nearest) {        \
       nearestDirectionsImpl(x, y, z, count, directions, direction_count, nearest);                         \
     }                                                                                                      \
-    static constexpr CpuKernels kKernels{ballsMeeting, traverse,    sumAll,           sumVolumes,          \
-                                         writeValues,  sumContacts, nearestDirections};                    \
+    static constexpr CpuKernels kKernels{ballsMeeting, traverse,    sumAll,      sumVolumes,               \
+                                         decide,       writeValues, sumContacts, nearestDirections};       \
   }
 
 INNERSPHERE_KERNELS(Baseline, LanesAny, __attribute__((flatten)));

@@ -51,6 +51,9 @@ struct CpuKernels {
   /// Decides candidates and sums those that count: all terms, or only volumes.
   void (*sumAll)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
   void (*sumVolumes)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
+  /// Decides candidates for writeValues() alone, which finds the same as after sumAll(). Leaves sums as they
+  /// are.
+  void (*decide)(const core::Setup& setup, bool from_a, const Candidates& candidates, Tally& tally);
   /// Writes the values of those of the first `count` candidates that count, after sumAll().
   void (*writeValues)(const Tally& tally, std::size_t count, ContactValues* values);
   /// Sums overlapping pairs order[heads[c]] to order[heads[c + 1]] into the contact number c, from `begin` to

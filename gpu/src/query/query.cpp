@@ -100,6 +100,8 @@ struct QueryContext::Impl {
     for_surfaces.keep(queries, count, query_options);
     if (needsNoSpheres(query_options)) prepared.clear();  // they have been checked
     QueryBackend& backend = choose(query_options.want);
+    without_sums = wantsContacts(query_options.want) && !query_options.sums;
+    cpu.leaveOutSums(without_sums);
     backend.start(prepared, query_options.want);
     under_way = &backend;
   }
@@ -210,6 +212,12 @@ struct QueryContext::Impl {
     under_way = nullptr;
     backend.finish(result);
     for_surfaces.refine(workers, result.overlaps);
+    if (!without_sums) return;
+    for (Overlap& overlap : result.overlaps) {
+      const std::uint64_t pairs = overlap.pair_count;
+      overlap = Overlap();
+      overlap.pair_count = pairs;
+    }
   }
 
   QueryContextOptions options;
@@ -218,6 +226,7 @@ struct QueryContext::Impl {
   std::unique_ptr<QueryBackend> cuda;
   bool looked_for_device = false;
   Backend last = Backend::cpu;
+  bool without_sums = false;  ///< in the batch that is under way
   QueryBackend* under_way = nullptr;
   QueryBackend* sweeping = nullptr;  ///< what has sweeps under way, in a stream of the user's
   std::exception_ptr failed;         ///< what start() met, for wait()

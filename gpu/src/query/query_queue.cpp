@@ -127,8 +127,9 @@ struct QueryQueue::Impl {
 
   Lane& of(const QueryOptions& wanted) {
     const std::lock_guard<std::mutex> lock(mutex);
-    std::unique_ptr<Lane>& lane = lanes[static_cast<std::size_t>(wanted.want) * kEstimators +
-                                        static_cast<std::size_t>(wanted.estimator)];
+    const std::size_t kind =
+        static_cast<std::size_t>(wanted.want) * kEstimators + static_cast<std::size_t>(wanted.estimator);
+    std::unique_ptr<Lane>& lane = lanes[2 * kind + (wanted.sums ? 1 : 0)];
     if (!lane) lane = std::make_unique<Lane>(options);
     return *lane;
   }
@@ -143,7 +144,7 @@ struct QueryQueue::Impl {
 
   QueryContextOptions options;
   std::mutex mutex;  ///< of lanes
-  std::array<std::unique_ptr<Lane>, kWants * kEstimators> lanes;
+  std::array<std::unique_ptr<Lane>, 2 * kWants * kEstimators> lanes;
 };
 
 QueryQueue::QueryQueue(const QueryContextOptions& options) : impl_(std::make_unique<Impl>(options)) {}

@@ -19,6 +19,10 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// time, so bodies would move in another way in a program that uses both.
 template <typename Job>
 void inParallel(std::size_t count, const Job& job) {
+  if (count == 1 || tbb::this_task_arena::max_concurrency() == 1) {
+    for (std::size_t i = 0; i < count; ++i) job(i);
+    return;
+  }
   tbb::task_group_context as_here(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
   tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t(0), count, job, as_here); });
 }

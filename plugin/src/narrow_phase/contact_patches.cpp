@@ -80,8 +80,7 @@ std::size_t bestPatch(const SphereContact& contact, const std::vector<Patch>& pa
   return best;
 }
 
-void sortIntoPatches(const std::vector<SphereContact>& contacts, const btMatrix3x3& reference,
-                     SortedContacts& sorted) {
+void sortIntoPatches(const std::vector<SphereContact>& contacts, SortedContacts& sorted) {
   const PatchOptions options;
   buildPatches(contacts.data(), contacts.size(), options, sorted.patches);
   const std::size_t count = sorted.patches.size();
@@ -91,8 +90,12 @@ void sortIntoPatches(const std::vector<SphereContact>& contacts, const btMatrix3
     for (std::size_t i = 0; i < contacts.size(); ++i)
       sorted.members[bestPatch(contacts[i], sorted.patches, options)].push_back(i);
   }
+}
+
+void measure(const std::vector<SphereContact>& contacts, const btMatrix3x3& reference,
+             SortedContacts& sorted) {
   sorted.moments.clear();
-  for (std::size_t p = 0; p < count; ++p)
+  for (std::size_t p = 0; p < sorted.patches.size(); ++p)
     sorted.moments.push_back(patchMoments(contacts, sorted.members[p], reference));
 }
 
@@ -114,14 +117,16 @@ void aimAtSurface(const std::vector<SphereContact>& contacts, const SurfaceProbe
 void measureByPacking(const std::vector<SphereContact>& contacts, const ContactSpheres& spheres,
                       const btMatrix3x3& reference, std::vector<std::size_t>& indices,
                       SortedContacts& sorted) {
-  for (std::size_t p = 0; p < sorted.moments.size(); ++p) {
+  sorted.moments.clear();
+  for (std::size_t p = 0; p < sorted.patches.size(); ++p) {
     const std::vector<std::size_t>& members = sorted.members[p];
     indices.clear();
     std::copy_if(members.begin(), members.end(), std::back_inserter(indices),
                  [&](std::size_t i) { return spheres.isOfPacking(i); });
-    if (indices.empty() || indices.size() == members.size()) continue;
-    const PatchMoments moments = patchMoments(contacts, indices, reference);
-    if (moments.area > 0) sorted.moments[p] = moments;
+    PatchMoments moments;
+    if (!indices.empty()) moments = patchMoments(contacts, indices, reference);
+    if (!(moments.area > 0)) moments = patchMoments(contacts, members, reference);
+    sorted.moments.push_back(moments);
   }
 }
 
@@ -160,10 +165,11 @@ void selectFiltered(const std::vector<SphereContact>& contacts, const Probe& pro
   clear(samples);
   // Most pairs of a pile are apart, and take no memory.
   if (!contacts.empty()) makeRoom(samples);
-  sortIntoPatches(contacts, reference, scratch.sorted);
+  sortIntoPatches(contacts, scratch.sorted);
   if (scratch.sorted.patches.empty() && !contacts.empty()) {
     aimAtSurface(contacts, probe, scratch.aimed);
-    sortIntoPatches(scratch.aimed, reference, scratch.sorted);
+    sortIntoPatches(scratch.aimed, scratch.sorted);
+    measure(scratch.aimed, reference, scratch.sorted);
   } else {
     measureByPacking(contacts, probe, reference, scratch.indices, scratch.sorted);
   }
@@ -256,7 +262,8 @@ void volumePatches(const std::vector<SphereContact>& contacts, btScalar spacing,
                    std::vector<ContactPatch>& patches) {
   SortedContacts& sorted = scratchOfThread().sorted;
   patches.clear();
-  sortIntoPatches(contacts, reference, sorted);
+  sortIntoPatches(contacts, sorted);
+  measure(contacts, reference, sorted);
   for (const PatchMoments& m : sorted.moments) appendVolumePatch(m, spacing, patches);
 }
 

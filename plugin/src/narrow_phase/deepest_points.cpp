@@ -40,10 +40,10 @@ bool isUsable(const ProbedSample& sample) {
 /// Guesses how much deeper it is at the top by the slope and by how the surfaces bend. That is worth nothing
 /// where it is steep.
 void guessTop(const SurfaceProbe& probe, ProbedSample& sample) {
-  const Hillside here = hillsideAt(sample.points, sample.direction);
   sample.below_top = 0;
-  if (fitTogether(sample.points.curvature_a, sample.points.curvature_b) || here.slope.length() > kSteepSlope)
-    return;
+  if (fitTogether(sample.points.curvature_a, sample.points.curvature_b)) return;
+  const Hillside here = hillsideAt(sample.points, sample.direction);
+  if (here.slope.length() > kSteepSlope) return;
   sample.below_top = here.slope.dot(hillAt(probe, sample).toTop(here.slope)) / 2;
 }
 

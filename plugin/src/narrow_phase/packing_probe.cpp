@@ -136,14 +136,15 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
 }
 
 bool PackingProbe::crossesOnFaces(const OpposedPoints& points) const {
-  const auto isThin = [](const PlacedPacking& body, const btVector3& place, const btVector3& normal) {
+  const auto isThin = [](const PlacedPacking& body, std::size_t triangle, const btVector3& place,
+                         const btVector3& normal) {
     const btMatrix3x3& axes = body.world.getBasis();
     const btScalar thickness = 2 * gContactBreakingThreshold * body.shape().size / body.scale();
     const btVector3 on_surface = ((place - normal * body.margin) * axes) / body.scale();
-    return body.shape().surfaceQueries().isThinner(thickness, on_surface, normal * axes);
+    return body.shape().surfaceQueries().isThinner(thickness, triangle, on_surface, normal * axes);
   };
-  return thin_ || isThin(a_, points.on_a, points.normal_a) ||
-         isThin(b_, points.on_b - apart(), -points.normal_b);
+  return thin_ || isThin(a_, points.triangle_a, points.on_a, points.normal_a) ||
+         isThin(b_, points.triangle_b, points.on_b - apart(), -points.normal_b);
 }
 
 bool PackingProbe::crossing(const OpposedPoints& points, const btVector3& direction,

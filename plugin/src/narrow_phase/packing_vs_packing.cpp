@@ -62,11 +62,11 @@ QueryOptions queryOptionsOf(SearchPass pass, Estimator estimator) {
   switch (pass) {
     case SearchPass::surfaces:
     case SearchPass::nearby:
-      return {Want::contacts, Estimator::raw};
+      return {Want::contacts, Estimator::raw, false};
     case SearchPass::touch:
       return {Want::touch, Estimator::raw};
     case SearchPass::deep:
-      return {Want::contacts, Estimator::volume_true};
+      return {Want::contacts, Estimator::volume_true, false};
     default:
       return {Want::contacts, estimator};
   }

@@ -24,6 +24,10 @@ constexpr btScalar kGrazing = btScalar(0.1);
 constexpr btScalar kOver = btScalar(0.966);
 /// In the thickness asked for: a ray starts so far below the surface, so as not to meet it there.
 constexpr btScalar kBelow = btScalar(1e-3);
+/// Distance of unit vectors: a smoothed normal that is closer to its triangle's is drawn for it.
+constexpr btScalar kUpright = btScalar(0.01);
+/// In the thickness asked for: what lies within this much beside a triangle may be met by such lines, too.
+constexpr btScalar kAround = btScalar(0.1);
 
 /// The same vector in every lane.
 struct VectorLanes {
@@ -267,7 +271,8 @@ btScalar diagonalOf(const Surface& surface) {
   return (max - min).length();
 }
 
-SurfaceQueries::SurfaceQueries(const Surface& surface) : surface_(surface), tree_(surface) {}
+SurfaceQueries::SurfaceQueries(const Surface& surface)
+    : surface_(surface), tree_(surface), open_below_(surface.triangles.size()) {}
 
 void SurfaceQueries::processTriangles(btTriangleCallback* callback, const btVector3& min,
                                       const btVector3& max) const {
@@ -317,6 +322,37 @@ bool SurfaceQueries::isThinner(btScalar thickness, const btVector3& place, const
   Hit hit;
   return cast(place - normal * (kBelow * thickness), -normal, thickness, -normal, hit) &&
          hit.face.dot(normal) < -kOpposedCosine;
+}
+
+bool SurfaceQueries::isThinner(btScalar thickness, std::size_t triangle, const btVector3& place,
+                               const btVector3& normal) const {
+  const bool upright = normal.distance2(normals().face(triangle)) < kUpright * kUpright;
+  return (!upright || isOpposedBelow(thickness, triangle)) && isThinner(thickness, place, normal);
+}
+
+/// Whether a triangle that looks the other way may be met by a line drawn inwards from this one.
+bool SurfaceQueries::isOpposedBelow(btScalar thickness, std::size_t triangle) const {
+  std::atomic<btScalar>& open = open_below_[triangle];
+  const btScalar known = open.load(std::memory_order_relaxed);
+  if (known < 0 || known >= thickness) return known < 0;
+  const btVector3& face = normals().face(triangle);
+  const btVector3* const corners = normals().corners(triangle);
+  btVector3 min = corners[0], max = corners[0];
+  for (int k = 0; k < 3; ++k) {
+    for (const btVector3& at : {corners[k], corners[k] - face * thickness}) {
+      min.setMin(at);
+      max.setMax(at);
+    }
+  }
+  const btScalar around = kAround * thickness;
+  const btVector3 beside(around, around, around);
+  bool opposed = false;
+  tree_.search(0, Apart(min - beside, max + beside, tree_.rounding()), [&](std::uint32_t t) {
+    opposed = opposed || normals().face(t).dot(face) < -kOpposedCosine + kUpright;
+    return btScalar(opposed ? -1 : 0);
+  });
+  open.store(opposed ? btScalar(-1) : thickness, std::memory_order_relaxed);
+  return opposed;
 }
 
 btScalar SurfaceQueries::untilSharpEdge(std::size_t triangle, const btVector3& point,

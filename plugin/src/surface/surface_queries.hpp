@@ -1,6 +1,9 @@
 // Searches on a solid's surface.
 #pragma once
 
+#include <atomic>
+#include <vector>
+
 #include <LinearMath/btVector3.h>
 
 #include "common/lazy.hpp"
@@ -50,6 +53,10 @@ class SurfaceQueries {
   /// Whether the solid is thinner than this [m] below a place of its surface: the normal, drawn inwards,
   /// comes out of a face that looks the other way.
   bool isThinner(btScalar thickness, const btVector3& place, const btVector3& normal) const;
+  /// Does the same for a place on `triangle`. What is found out about a flat one is kept: below most there is
+  /// nothing, and then no line is drawn.
+  bool isThinner(btScalar thickness, std::size_t triangle, const btVector3& place,
+                 const btVector3& normal) const;
 
   struct Nearest {
     btScalar distance;  ///< [m], negative inside the solid
@@ -66,9 +73,14 @@ class SurfaceQueries {
   btScalar rounding() const { return tree_.rounding(); }
 
  private:
+  bool isOpposedBelow(btScalar thickness, std::size_t triangle) const;
+
   const Surface& surface_;
   TriangleBvh tree_;
   Lazy<SmoothNormals> normals_;
+  /// How far below each triangle no other looks the other way, as far as that is known [m]; negative if one
+  /// may be near.
+  mutable std::vector<std::atomic<btScalar>> open_below_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -53,6 +53,30 @@ TEST_P(ContactsConformance, EqualBruteForce) {
   }
 }
 
+TEST_P(ContactsConformance, AreTheSameWithoutSums) {
+  QueryContext context = makeContext();
+  const auto a = makeModel(randomSpheres(300, 0.3, 20, 3), true),
+             b = makeModel(randomSpheres(200, 0.3, 20, 4), true);
+  Scene scene(a, b);
+  for (const Want want : {Want::contacts, Want::contacts_of_a, Want::wrench}) {
+    for (const double margin : {0.0, 0.3}) {
+      scene.query.margin = margin;
+      QueryResult with, without;
+      context.run(&scene.query, 1, {want, Estimator::raw}, with);
+      context.run(&scene.query, 1, {want, Estimator::raw, false}, without);
+      expectSameRanges(without.contacts_a, with.contacts_a);
+      expectSameRanges(without.contacts_b, with.contacts_b);
+      Overlap expected = with.overlaps[0];
+      EXPECT_GT(expected.volume, 0);
+      if (want != Want::wrench) {
+        expected = Overlap();
+        expected.pair_count = with.overlaps[0].pair_count;
+      }
+      EXPECT_TRUE(sameBits(without.overlaps[0], expected));
+    }
+  }
+}
+
 TEST_P(ContactsConformance, RangesFollowTheBatch) {
   QueryContext context = makeContext();
   const auto model = makeModel({{0, 0, 0, 1}, {3, 0, 0, 0.5}});

@@ -48,7 +48,8 @@ TEST_P(QueueConformance, EachThreadGetsWhatItWouldGetAlone) {
   std::vector<std::vector<QueryResult>> results(kThreads);
   const auto wantOf = [](std::size_t thread, std::size_t i) {
     constexpr Want kWants[] = {Want::contacts, Want::wrench, Want::pairs, Want::contacts, Want::touch};
-    return QueryOptions{kWants[(thread + i) % 5], i % 2 == 0 ? Estimator::volume_true : Estimator::raw};
+    return QueryOptions{kWants[(thread + i) % 5], i % 2 == 0 ? Estimator::volume_true : Estimator::raw,
+                        (thread + i) % 5 != 0};
   };
   const auto queriesOf = [&](std::size_t thread, std::size_t i) {
     return batch((3 * thread + i) % 5, static_cast<unsigned>(100 * thread + i));

@@ -216,6 +216,33 @@ TEST(SurfaceQueries, TellsHowThickABoxIs) {
   }
 }
 
+/// Whatever was asked of its triangle before.
+TEST(SurfaceQueries, TellsHowThickItIsBelowATriangle) {
+  std::mt19937 rng(9);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const Surface& surface : {latticeBox(kSize, 1).surface, wavyBall()}) {
+    const SurfaceQueries queries(surface);
+    int thinner = 0, thicker = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const std::size_t t = rng() % std::min<std::size_t>(surface.triangles.size(), 500);
+      const Corners corners(surface, t);
+      double u = uniform(rng), v = uniform(rng);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const btVector3 at =
+          toBullet(corners.at[0] + u * (corners.at[1] - corners.at[0]) + v * (corners.at[2] - corners.at[0]));
+      btVector3 normal = queries.normals().face(t);
+      if (i % 5 == 0)
+        normal = (normal + btVector3(btScalar(uniform(rng)), btScalar(uniform(rng)), 0) / 5).normalized();
+      const auto thickness = btScalar(2.5 * uniform(rng));
+      const bool expected = queries.isThinner(thickness, at, normal);
+      ASSERT_EQ(queries.isThinner(thickness, t, at, normal), expected) << i;
+      ++(expected ? thinner : thicker);
+    }
+    EXPECT_GT(thinner, 500);
+    EXPECT_GT(thicker, 500);
+  }
+}
+
 TEST(VertexHillClimb, BringsBothEndsOfALevelEdge) {
   const Packing box = latticeBox({1, 1, 1}, 1);
   const VertexHillClimb climb(box.surface);
