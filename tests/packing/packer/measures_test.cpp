@@ -346,8 +346,8 @@ TEST(PackerMeasures, ErrorsAreForetoldFromTheScatterOfAllDepths) {
   }
 }
 
-// The means of others are below the limit in 19 of 20 cases, whatever the distribution of the errors looks
-// like.
+// The means of others are below the limit in 19 of 20 cases, also of errors that scatter as much as they are
+// large.
 TEST(PackerMeasures, MeansOfOthersAreBelowTheirLimit) {
   std::mt19937 random(1);
   std::exponential_distribution<double> any(10);
