@@ -89,16 +89,17 @@ double overlapDepth(double volume, const Vec3d& area);
 /// So the solid is also cut by planes, which are as thick as any.
 struct OverlapErrors {
   /// Holds the errors of kOverlapErrorPoses poses, next to each other in depth: a limit of 95 % for the mean
-  /// of as many others that are all of one kind (Student's t, with the variance between kinds), and the
-  /// largest one, which one more pose exceeds with a probability of 1 / (kOverlapErrorPoses + 1), whatever
+  /// of as many others, from the scatter of the poses of all depths, relative to their mean, and the largest
+  /// one, which one more pose exceeds with a probability of 1 / (kOverlapErrorPoses + 1), whatever
   /// the distribution.
   struct AtDepth {
     double depth = 0;     ///< See overlapDepth(), relative to the cube root of the solid's volume.
     ExpectedError error;  ///< The errors there.
     /// The volume of these overlaps, relative to the solid's: the geometric mean.
     double volume = 1;
-    /// The power of the volume with which errors fall at this depth: a lower limit of 95 %, from 0, where all
-    /// spheres err alike, to 1/2, where their errors cancel. From the poses of five depths.
+    /// The power of the volume with which errors fall at this depth, less its standard error: up to 1/2,
+    /// where those of all spheres cancel; 0 where all err alike; down to -1/2, where walls lie along walls
+    /// and spheres leave them out. From the poses of five depths.
     double power = 0;
   };
   /// Holds the errors with one kind of radii, by rising depth.

@@ -1,7 +1,6 @@
 #include "packer/errors_by_depth.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -11,17 +10,17 @@
 namespace innersphere {
 namespace {
 
-// Student's t of 95 %, one-sided, with kOverlapErrorPoses - 1 degrees of freedom.
-constexpr double kStudent = 1.734;
-static_assert(kOverlapErrorPoses == 19);
-
-constexpr std::size_t kKinds = 3;  // of OverlapKind
+// What a normal distribution exceeds in 1 of 20 cases.
+constexpr double kNormal = 1.645;
 
 // Runs on either side that tell how errors fall with the volume, too: 19 poses tell little of that.
 constexpr std::size_t kNeighbours = 2;
 
-// Errors of parts that know nothing of each other fall as the root of their number: none fall faster.
+// Errors of parts that know nothing of each other fall as the root of their number: none fall faster. Nor
+// may they rise faster where walls lie along walls that the spheres leave out.
 constexpr double kMostPower = 0.5;
+
+constexpr auto kPoses = static_cast<double>(kOverlapErrorPoses);
 
 using Run = std::span<const Finding>;
 
@@ -38,51 +37,21 @@ std::vector<Run> runsOf(std::vector<Finding>& findings) {
   return runs;
 }
 
-/// The mean error of a run and what makes it uncertain: an analysis of variance with kinds as random effects.
-/// Walls that lie along walls err alike, and otherwise than walls that cross, at the same depth.
-struct Variances {
-  double mean = 0, within = 0;
-  double between = 0;  // unbiased, so it may be less than zero
-  double same = 0;     // the probability that two poses are of one kind
-
-  explicit Variances(Run run) {
-    const auto count = static_cast<double>(run.size());
-    struct Group {
-      double count = 0, sum = 0;
-    };
-    std::array<Group, kKinds> groups;
-    double squares = 0;
-    for (const Finding& one : run) {
-      Group& group = groups[static_cast<std::size_t>(one.kind)];
-      ++group.count;
-      group.sum += one.error;
-      squares += one.error * one.error;
-      mean += one.error / count;
-    }
-    double kinds = 0, explained = 0;
-    for (const Group& group : groups) {
-      if (group.count == 0) continue;
-      ++kinds;
-      explained += group.sum * group.sum / group.count;
-      same += group.count / count * (group.count / count);
-    }
-    within = std::max(0.0, squares - explained) / (count - kinds);
-    if (kinds > 1) between = (explained - count * mean * mean - (kinds - 1) * within) / (count * (1 - same));
-  }
-};
-
 /// How the errors of a run go with the logarithms of volumes: sums of squares about the means, errors as
 /// parts of their mean.
 struct Trend {
+  double mean = 0;  // of the errors
   double volumes = 0, errors = 0, both = 0;
 
-  Trend() = default;
-  Trend(Run run, double mean_error) {
-    const auto count = static_cast<double>(run.size());
-    double mean = 0;
-    for (const Finding& one : run) mean += logOf(one) / count;
+  explicit Trend(Run run) {
+    double middle = 0;
     for (const Finding& one : run) {
-      const double volume = logOf(one) - mean, error = one.error / mean_error - 1;
+      mean += one.error / kPoses;
+      middle += logOf(one) / kPoses;
+    }
+    if (!(mean > 0)) return;
+    for (const Finding& one : run) {
+      const double volume = logOf(one) - middle, error = one.error / mean - 1;
       volumes += volume * volume;
       errors += error * error;
       both += volume * error;
@@ -92,37 +61,40 @@ struct Trend {
   static double logOf(const Finding& one) { return std::numbers::ln2 * steady::log2(one.volume); }
 };
 
-/// The power of the volume with which errors fall near a run, a lower limit of 95 %.
-double fallingPower(std::span<const Trend> trends, std::size_t run) {
+/// The variance of errors as parts of their mean: they scatter about as much at all depths.
+double scatterOf(std::span<const Trend> trends) {
+  double squares = 0, runs = 0;
+  for (const Trend& one : trends) {
+    squares += one.errors;
+    runs += one.mean > 0;
+  }
+  return runs > 0 ? squares / (runs * (kPoses - 1)) : 0;
+}
+
+/// The power of the volume with which errors fall near a run, less its standard error: volumes may be far
+/// larger than these.
+double fallingPower(std::span<const Trend> trends, std::size_t run, double scatter) {
   const std::size_t first = run - std::min(run, kNeighbours),
                     last = std::min(run + kNeighbours, trends.size() - 1);
-  Trend sum;
+  double volumes = 0, both = 0;
   for (std::size_t i = first; i <= last; ++i) {
-    sum.volumes += trends[i].volumes;
-    sum.errors += trends[i].errors;
-    sum.both += trends[i].both;
+    volumes += trends[i].volumes;
+    both += trends[i].both;
   }
-  if (!(sum.volumes > 0)) return 0;
-  const auto freedom = static_cast<double>((last - first + 1) * (kOverlapErrorPoses - 1) - 1);
-  const double power = -sum.both / sum.volumes;
-  const double variance = std::max(0.0, sum.errors / sum.volumes - power * power) / freedom;
-  return std::clamp(power - kStudent * std::sqrt(variance), 0.0, kMostPower);
+  if (!(volumes > 0)) return 0;
+  return std::clamp(-both / volumes - std::sqrt(scatter / volumes), -kMostPower, kMostPower);
 }
 
 }  // namespace
 
 std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings) {
   const std::vector<Run> runs = runsOf(findings);
-  std::vector<Variances> variances;
   std::vector<Trend> trends;
-  // Three kinds tell little of how kinds differ, but they do so in all runs.
-  double between = 0;
-  for (const Run& run : runs) {
-    const Variances& one = variances.emplace_back(run);
-    if (one.mean > 0) between += one.between / (one.mean * one.mean) / static_cast<double>(runs.size());
-    trends.push_back(one.mean > 0 ? Trend(run, one.mean) : Trend());
-  }
-  between = std::max(0.0, between);
+  for (const Run& run : runs) trends.emplace_back(run);
+  const double scatter = scatterOf(trends);
+  // How many times this mean the mean of as many others may be. Both scatter; where this one is small, so
+  // would be a limit that adds to it, so it is one for the logarithm of their ratio.
+  const double limit = steady::pow(std::numbers::e, kNormal * std::sqrt(2 * scatter / kPoses));
 
   std::vector<OverlapErrors::AtDepth> rows;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -132,17 +104,13 @@ std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings)
       depths += steady::log2(one.depth);
       volumes += steady::log2(one.volume);
     }
-    const auto count = static_cast<double>(runs[i].size());
-    const Variances& of = variances[i];
-    // The scatter of as many others counts, too, and that they are of one kind.
-    const double variance = 2 * of.within / count + between * of.mean * of.mean * (1 + of.same);
-    const double depth = steady::pow(2, depths / count);
+    const double depth = steady::pow(2, depths / kPoses);
     // All may be equally deep, as where one sphere is inside another.
     if (rows.empty() || depth > rows.back().depth)
       rows.push_back({depth,
-                      {std::min(of.mean + kStudent * std::sqrt(variance), 1.0), largest},
-                      steady::pow(2, volumes / count),
-                      fallingPower(trends, i)});
+                      {std::min(limit * trends[i].mean, largest), largest},
+                      steady::pow(2, volumes / kPoses),
+                      fallingPower(trends, i, scatter)});
   }
   return rows;
 }

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "innersphere/packing.hpp"
-#include "packer/overlap_trials.hpp"
 
 namespace innersphere {
 
@@ -12,7 +11,6 @@ namespace innersphere {
 struct Finding {
   double depth, error;  ///< as of OverlapErrors::AtDepth
   double volume;        ///< that was found, relative to the solid's
-  OverlapKind kind;
 };
 
 /// Returns limits of the errors that others will have, by rising depth: see OverlapErrors::AtDepth. What has

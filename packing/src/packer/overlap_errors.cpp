@@ -108,11 +108,11 @@ double meanOfLargest(std::vector<double> numbers) {
 }
 
 /// What was found in one pose.
-Finding findingOf(const Found& found, double truth, double volume, OverlapKind kind) {
+Finding findingOf(const Found& found, double truth, double volume) {
   const double error = std::abs(found.volume - truth) / std::max(found.volume, truth);
   const double depth =
       found.volume > 0 ? overlapDepth(found.volume, {found.area[0], found.area[1], found.area[2]}) : 0;
-  return {depth / steady::pow(volume, 1.0 / 3), error, found.volume / volume, kind};
+  return {depth / steady::pow(volume, 1.0 / 3), error, found.volume / volume};
 }
 
 }  // namespace
@@ -146,7 +146,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
       std::vector<double> thicknesses;
       for (std::size_t i = 0; i < trials.size(); ++i) {
         const Found& found = copies[i].*sum;
-        findings.push_back(findingOf(found, trials[i].truth.fraction * volume, volume, trials[i].kind));
+        findings.push_back(findingOf(found, trials[i].truth.fraction * volume, volume));
         if (found.stiffness > 0)
           thicknesses.push_back(found.volume / found.stiffness / steady::pow(volume, 1.0 / 3));
       }
@@ -154,7 +154,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
       result.copies = errorsByDepth(std::move(findings));
       findings = {};
       for (std::size_t i = 0; i < planes.size(); ++i) {
-        Finding one = findingOf(cuts[i].*sum, planes[i].truth * volume, volume, OverlapKind::any);
+        Finding one = findingOf(cuts[i].*sum, planes[i].truth * volume, volume);
         // A plane has no error, but the other body may have one as large.
         one.error = std::min(std::numbers::sqrt2 * one.error, 1.0);
         findings.push_back(one);

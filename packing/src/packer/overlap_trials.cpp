@@ -157,15 +157,14 @@ class TrueOverlap {
 struct Start {
   Eigen::Matrix3d turn;
   Point shift, way;
-  OverlapKind kind;  ///< if it is facing, it does no more than touch: it is pushed in first
+  bool touches = false;  ///< and no more: it is pushed in first
 };
 
 /// The copy is turned at random, and a random point of it lies on one of the solid.
 Start anyStart(const TrueOverlap& overlap, std::size_t number) {
   const Point places = random(number, 1);
   const Eigen::Matrix3d turn = rotation(random(number, 2)).toRotationMatrix();
-  return {turn, overlap.point(places[0]) - turn * overlap.point(places[1]), direction(random(number, 0)),
-          OverlapKind::any};
+  return {turn, overlap.point(places[0]) - turn * overlap.point(places[1]), direction(random(number, 0))};
 }
 
 /// A turn by some degrees about any axis.
@@ -179,7 +178,7 @@ Eigen::Quaterniond slightTurn(double part, const Point& axis) {
 Start nestedStart(const TrueOverlap& overlap, std::size_t number) {
   const Point places = random(number, 1), middle = overlap.point(places[0]);
   const Eigen::Matrix3d turn = slightTurn(places[1], random(number, 2)).toRotationMatrix();
-  return {turn, middle - turn * middle, direction(random(number, 0)), OverlapKind::nested};
+  return {turn, middle - turn * middle, direction(random(number, 0))};
 }
 
 /// A face of the copy touches a face of the solid, but for some degrees.
@@ -197,7 +196,7 @@ Start facingStart(const SurfaceSamples& samples, std::size_t number) {
   const Eigen::Quaterniond facing = w > 1e-6 ? Eigen::Quaterniond(w, axis[0], axis[1], axis[2]).normalized()
                                              : Eigen::Quaterniond::Identity();
   const Eigen::Matrix3d turn = (slightTurn(places[2], random(number, 3)) * facing * any).toRotationMatrix();
-  return {turn, samples.points()[at] - turn * samples.points()[of], outwards, OverlapKind::facing};
+  return {turn, samples.points()[at] - turn * samples.points()[of], outwards, true};
 }
 
 /// Moves the copy away until both share about the fraction `target`, or leaves it there if they share less:
@@ -213,8 +212,7 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
     return Step{distance, overlap.roughlyAt(poseAt(distance), most)};
   };
   Step near = look(0, 1), far{std::numbers::sqrt3, {}};
-  const bool touches = start.kind == OverlapKind::facing;
-  for (double push = kFirstPush; touches && near.share.fraction < target && push < kLastPush;
+  for (double push = kFirstPush; start.touches && near.share.fraction < target && push < kLastPush;
        push *= kPushes) {
     far = near;
     near = look(-push, 1);
@@ -242,7 +240,7 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
   }
   const double share = near.share.fraction;
   const Pose pose = poseAt(near.distance);
-  return {pose, near.share.exact ? Voxels::Shared{share, 0} : overlap.at(pose, share), start.kind};
+  return {pose, near.share.exact ? Voxels::Shared{share, 0} : overlap.at(pose, share)};
 }
 
 /// A plane through a random point of the solid.

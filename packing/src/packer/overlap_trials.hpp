@@ -12,14 +12,10 @@
 
 namespace innersphere {
 
-/// Says how a copy lies on the solid.
-enum class OverlapKind { any, nested, facing };
-
 /// Says where a copy is, and which part of the solid both share.
 struct OverlapTrial {
   Pose pose;
   Voxels::Shared truth;
-  OverlapKind kind;
 };
 
 /// Says which part of the solid a plane cuts off: where `normal` x is less than `height`.
