@@ -40,8 +40,9 @@ enum class Reuse : std::uint8_t {
 /// that have friction, but no rolling or spinning friction, and touch in one place or along a line, resist
 /// rolling as if their load lay 0.00001 sizes of the smaller one ahead (a ball of 1 m loses 0.07 mm/s of its
 /// speed in a second), and spinning as the friction of a small round contact does: else balls would never
-/// come to rest. Friction that holds is anchored, but with Response::penalty: CF_HAS_FRICTION_ANCHOR changes
-/// nothing.
+/// come to rest. What rocks where surfaces are nearly flat together, as rings on rings, is braked
+/// as backward Euler does. Friction that holds is anchored, but with Response::penalty:
+/// CF_HAS_FRICTION_ANCHOR changes nothing.
 struct ContactOptions {
   /// How bodies push each other; Response::compliant by default.
   Response response = Response::compliant;

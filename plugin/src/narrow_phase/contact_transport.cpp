@@ -105,7 +105,7 @@ void ContactTransport::carryTo(const Placed& now, const PackingShape& a, btScala
       axes.y = turn_b * axes.y;
       point.on_b = turn_b * (point.on_b - to_b_then) + to_b_now;
       point.to_top = turn_b * point.to_top;
-      rollOn(turn_a * point.normal, turn_b * point.normal, on_a, axes, kRefineAgain * spacing, point);
+      rollOn(turn_a * point.normal, turn_b * point.normal, on_a, axes, kRollsOn * spacing, point);
     }
   }
 }

@@ -29,6 +29,9 @@ constexpr btScalar kRefineAgain = btScalar(0.1);
 /// other spheres are the ones to measure sooner, and other samples the deepest.
 constexpr btScalar kSearchEnclosedAgain = btScalar(0.1);
 constexpr btScalar kRefineEnclosedAgain = btScalar(0.01);
+/// In units of the spacing: where surfaces are so flat together that a contact would roll on further than
+/// this, it stays. That is a sixteenth of a body's size, on which they bend about alike.
+constexpr btScalar kRollsOn = 3;
 
 /// Returns an upper bound for how far a place on one body moves, as seen from the other, where both reach:
 /// within the smaller one [m].

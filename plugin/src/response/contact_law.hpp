@@ -48,9 +48,10 @@ struct PointLaw {
 /// A SubstepSolver is told the measured depth, without a spring but for one that is given: it has its own.
 ///
 /// Where bodies touch in one place or along a line, on which they could roll, they resist it as if their load
-/// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second. Links that bear several others
-/// tilt against a stiffness N s of their load N, which a step takes as it was when it began. Backward Euler
-/// takes it at the end, a way s w dt further ahead, with w the speed at which they tilt.
+/// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second. Links that bear several
+/// others tilt against a stiffness N s of their load N, which a step takes as it was when it began. Backward
+/// Euler takes it at the end, a way s w dt further ahead, with w the speed at which they tilt. So it does
+/// where bodies rock on each other, see rockingSpeed().
 class ContactLaw {
  public:
   /// Makes the law of a pair. `reduced_mass` is in kg, and 0 counts as 1; `time_step` is in s, and 0 counts
@@ -66,6 +67,8 @@ class ContactLaw {
     /// Returns the slip of the reduced mass that Bullet's friction anchors undo by this impulse [N s] in a
     /// step: of a slip s they undo the part e by m e s / dt [m].
     btScalar slipUndoneBy(btScalar impulse) const;
+    /// Returns the size of the smaller body [m].
+    btScalar size() const { return law_->size_; }
 
    private:
     friend class ContactLaw;

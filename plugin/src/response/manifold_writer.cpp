@@ -32,6 +32,7 @@ struct NewPoint {
   btVector3 aside{0, 0, 0};    ///< of the point on A from the one on B
   btScalar friction = 1;       ///< share of it
   btScalar curvature = 0;      ///< mean of both surfaces together [1/m]
+  btScalar ahead = 0;          ///< how much further on bodies that rock touch when the step ends [m]
   PointBends bends;
 };
 
@@ -118,7 +119,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   if (!belt) point.m_combinedFriction *= from.friction;
   if (point.m_combinedFriction > 0 && point.m_combinedRollingFriction == 0) {
     const btScalar tilts = motion.spin().cross(from.normal).length() * law.time_step;
-    point.m_combinedRollingFriction = law.rolling + law.tilting * tilts;
+    point.m_combinedRollingFriction = law.rolling + law.tilting * tilts + from.ahead;
   }
   // Bullet reads the one only where there is the other.
   if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
@@ -236,6 +237,8 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     point.normal = patch.points[i].normal;
     point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
     point.on_b = origin + patch.points[i].on_b;
+    point.ahead = btMin(law.size(), point.law.time_step *
+                                        rockingSpeed(patch.points[i], point.on_b, motion, a, b, law.size()));
     if (solver.substeps) point.bends = bendsAcross(patch.points[i]);
     point.aside = patch.points[i].aside;
     point.local_a = start.a.invXform(point.on_b + point.normal * point.depth);

@@ -71,5 +71,28 @@ btScalar spinningLever(btScalar depth, btScalar curvature) {
   return depth > 0 && curvature > 0 ? 3 * SIMD_PI / 16 * btSqrt(depth / curvature) : btScalar(0);
 }
 
+btScalar rockingSpeed(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
+                      const btCollisionObject& a, const btCollisionObject& b, btScalar size) {
+  const btVector3 tilt = motion.spin().cross(point.normal);
+  const btScalar all = tilt.length();
+  if (all == 0) return 0;
+  const Across axes(point.bend_x, point.normal.cross(point.bend_x));
+  const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
+  const btScalar height_a = (place - motion.originA()).dot(point.normal),
+                 height_b = (motion.originB() - place).dot(point.normal);
+  btScalar work = 0;
+  for (int i = 0; i < 2; ++i) {
+    if (!hill.hasTop(i)) continue;
+    const btVector3& axis = hill.axis(i);
+    const auto past = [&](const btCollisionObject& body, btScalar height, const Bend& bend) {
+      return body.isStaticOrKinematicObject() ? BT_LARGE_FLOAT : 1 - height * bend.turn(axis, axes).dot(axis);
+    };
+    const btScalar share = btMin(past(a, height_a, point.bend_a), past(b, height_b, point.bend_b));
+    const btScalar along = tilt.dot(axis);
+    if (share > size * hill.fall(i)) work += share / hill.fall(i) * along * along;
+  }
+  return work / all;
+}
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

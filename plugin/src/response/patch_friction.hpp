@@ -38,5 +38,17 @@ btScalar slidingShare(const PairMotion& motion, const ContactPatch& patch,
 /// of Hertz's contact. It is 0 where they are flat, or apart.
 btScalar spinningLever(btScalar depth, btScalar curvature);
 
+/// Returns how fast the line of the push between bodies that rock on each other gets past their centres
+/// [m/s]. Where they tilt by t along an axis in which they bend by A and B, they touch t / (A + B) further
+/// on, and it gets past A's centre, h under the surface, by
+///   l t = (1 - h A) / (A + B) t.
+/// The smaller l of A's and B's counts, of those that can be moved; their load times that is a stiffness
+/// which holds them upright. It is 0 where what is round rolls, on whatever, and is large where surfaces are
+/// nearly flat together, as two rings that lie on each other. Axes in which it is less than `size` [m], that
+/// of the smaller body, do not count: steps are short for what rocks so slowly. The speed is that by which
+/// the load does as much work about all that the bodies tilt as in both axes together.
+btScalar rockingSpeed(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
+                      const btCollisionObject& a, const btCollisionObject& b, btScalar size);
+
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere
