@@ -20,6 +20,13 @@ float roundedUp(double x) {
   return std::nextafter(static_cast<float>(x), kInfinity);
 }
 
+/// Begins to load what is looked at soon: of large meshes it is far away in memory. Its end may lie beyond.
+inline void fetch(const void* begin, std::size_t size) {
+  constexpr std::size_t kLine = 64;
+  const auto at = reinterpret_cast<std::uintptr_t>(begin);
+  for (std::size_t k = 0; k < size; k += kLine) __builtin_prefetch(reinterpret_cast<const void*>(at + k));
+}
+
 Vec3d unit(const Vec3d& v) {
   return (1 / norm(v)) * v;
 }
@@ -200,6 +207,7 @@ void ClosestTriangle::visitWithin(const Reach& reach, const Look& look) const {
     if (!goToLeaf()) continue;
     const std::uint32_t first = (next.child & ~kLeaf) * kWidth;
     const Leaf& leaf = leaves_[first / kWidth];
+    fetch(&triangles_[first], kWidth * sizeof(Triangle));
     FourFloats squared = reach.squaredTo(leaf);
     const auto size = std::min(kWidth, static_cast<std::uint32_t>(triangles_.size()) - first);
     for (unsigned near = reach.within(squared, size); near != 0; near &= reach.within(squared, size)) {

@@ -36,31 +36,39 @@ class Sampler {
   Sampler(const Container& container, double spacing, Counts& counts)
       : container_(container), spacing_(spacing), counts_(counts) {}
 
-  /// The cube of `lattice` points along an edge, the first of which is `at`; `around` are the balls that can
-  /// be nearest in a cube that holds this one.
-  void descend(const Index& at, std::uint32_t lattice, bool inside, const NearBalls& around) const {
+  /// The cube of `lattice` points along an edge, the first of which is `at`. Of a cube that holds this one
+  /// `around` are the balls that can be nearest in it, and `above` is what is known of its centre.
+  void descend(const Index& at, std::uint32_t lattice, bool inside, const NearBalls& around,
+               const ClearanceCache::Entry& above) const {
     const double half = lattice * spacing_ / 2;
     const Point centre = Point(at[0], at[1], at[2]) * spacing_ + Point::Constant(half);
-    Container::Nearest wall;
+    ClearanceCache::Entry here{centre, 0};
     if (!inside) {
-      wall = container_.closest(centre, std::numeric_limits<double>::infinity());
-      if (wall.distance > std::numbers::sqrt3 * half) {
-        if (!container_.contains(centre, wall)) return;
+      // How far the surface is beyond the cube counts only where it has to tell the side.
+      const double reach = std::numbers::sqrt3 * half;
+      const bool known = above.clearance(centre) > container_.margin();
+      const Container::Nearest wall =
+          container_.closest(centre, known ? reach : std::numeric_limits<double>::infinity());
+      const bool within = known ? above.distance > 0 : container_.contains(centre, wall);
+      if (wall.distance > reach) {
+        if (!within) return;
         inside = true;
+      } else {
+        here.distance = within ? wall.distance : -wall.distance;
       }
     }
     const NearBalls balls(around, centre, half);
     if (balls.insideOne()) return;
     if (lattice == kSampleBlock) {
       ClearanceCache clearances(container_.margin());
-      if (!inside) clearances.add(centre, container_.contains(centre, wall) ? wall.distance : -wall.distance);
+      if (!inside) clearances.add(centre, here.distance);
       sampleBlock(at, half, inside, balls, clearances);
       return;
     }
     const std::uint32_t step = lattice / 2;
     const auto visit = [&](std::uint32_t octant) {
       descend({at[0] + (octant & 1) * step, at[1] + (octant >> 1 & 1) * step, at[2] + (octant >> 2) * step},
-              step, inside, balls);
+              step, inside, balls, here);
     };
     if (half >= kSharedHalf) {
       tbb::parallel_for(0u, 8u, visit);
@@ -103,7 +111,8 @@ CellVolumes findCellVolumes(const Container& container, std::span<const Ball> ba
   std::uint32_t lattice = kSampleBlock;
   while (lattice * spacing < 1) lattice *= 2;
   Counts counts(balls.size());
-  Sampler(container, spacing, counts).descend({0, 0, 0}, lattice, false, NearBalls(balls));
+  Sampler(container, spacing, counts)
+      .descend({0, 0, 0}, lattice, false, NearBalls(balls), {Point::Zero(), 0});
 
   double sum = 0, difference = 0;
   for (const auto& c : counts) {
