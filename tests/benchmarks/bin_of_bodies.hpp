@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
@@ -11,6 +13,10 @@
 #include "innersphere/contact_options.hpp"
 
 namespace innersphere::benchmarks {
+
+/// As an option of a program names them.
+inline const std::map<std::string, Backend> kBackends{
+    {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
 
 constexpr double kRing = 1, kTube = 0.3;  ///< of a torus [m]
 

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <map>
 #include <string>
 
 #include "bin_of_bodies.hpp"
@@ -33,8 +32,6 @@ struct Settings {
   double settle = 2;
   double dt = 1.0 / 120;
   int samples = 15;
-  std::map<std::string, Backend> backends{
-      {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
   Backend backend = Backend::automatic;
   bool compare = true;
 };
@@ -271,7 +268,7 @@ int main(int argc, char** argv) try {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   app.add_option("--backend", settings.backend, "auto, cpu or cuda")
-      ->transform(CLI::CheckedTransformer(settings.backends, CLI::ignore_case));
+      ->transform(CLI::CheckedTransformer(kBackends, CLI::ignore_case));
   app.add_flag("!--alone", settings.compare, "only packings, nothing to compare them with");
   CLI11_PARSE(app, argc, argv);
   std::printf(

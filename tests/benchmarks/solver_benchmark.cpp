@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <map>
 #include <string>
 
 #include "bin_of_bodies.hpp"
@@ -35,9 +34,6 @@ struct Settings {
 
   double step() const { return 1 / rate; }
 };
-
-const std::map<std::string, Backend> kBackends{
-    {"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}};
 
 /// Boxes of half a metre.
 BinOptions binOfBoxes(int bodies) {

@@ -211,8 +211,7 @@ struct QueryContext::Impl {
     QueryBackend& backend = *under_way;
     under_way = nullptr;
     backend.finish(result);
-    for_surfaces.refine(workers, result.overlaps);
-    if (!without_sums) return;
+    if (!without_sums) return for_surfaces.refine(workers, result.overlaps);
     for (Overlap& overlap : result.overlaps) {
       const std::uint64_t pairs = overlap.pair_count;
       overlap = Overlap();

@@ -94,7 +94,7 @@ std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings)
   const double scatter = scatterOf(trends);
   // How many times this mean the mean of as many others may be. Both scatter; where this one is small, so
   // would be a limit that adds to it, so it is one for the logarithm of their ratio.
-  const double limit = steady::pow(std::numbers::e, kNormal * std::sqrt(2 * scatter / kPoses));
+  const double limit = steady::exp(kNormal * std::sqrt(2 * scatter / kPoses));
 
   std::vector<OverlapErrors::AtDepth> rows;
   for (std::size_t i = 0; i < runs.size(); ++i) {

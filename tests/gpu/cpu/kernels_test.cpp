@@ -29,7 +29,8 @@ class Recorder : public CandidateSink {
     recordContacts(tallies.back(), candidates.count);
     Tally decided;
     kernels_.decide(setup_, true, candidates, decided);
-    EXPECT_EQ(valuesOf(decided, candidates.count), valuesOf(tallies.back(), candidates.count));
+    EXPECT_EQ(valuesOf(pairsOf(decided, candidates.count)),
+              valuesOf(pairsOf(tallies.back(), candidates.count)));
     tallies.emplace_back();
     kernels_.sumVolumes(setup_, true, candidates, tallies.back());
     candidates.count = 0;
@@ -42,18 +43,20 @@ class Recorder : public CandidateSink {
   std::vector<float> contacts;  ///< of three of them each, and a last one of the rest, of many
 
  private:
-  std::vector<double> valuesOf(const Tally& tally, std::size_t count) const {
+  std::vector<ContactValues> pairsOf(const Tally& tally, std::size_t count) const {
     std::vector<ContactValues> found_pairs(tally.pairs);
     kernels_.writeValues(tally, count, found_pairs.data());
+    return found_pairs;
+  }
+  static std::vector<double> valuesOf(const std::vector<ContactValues>& found_pairs) {
     std::vector<double> all;
     for (const ContactValues& found : found_pairs)
       all.insert(all.end(), std::begin(found.of), std::end(found.of));
     return all;
   }
   void recordContacts(const Tally& tally, std::size_t count) {
-    std::vector<ContactValues> found_pairs(tally.pairs);
-    kernels_.writeValues(tally, count, found_pairs.data());
-    const std::vector<double> all = valuesOf(tally, count);
+    const std::vector<ContactValues> found_pairs = pairsOf(tally, count);
+    const std::vector<double> all = valuesOf(found_pairs);
     values.insert(values.end(), all.begin(), all.end());
     std::vector<std::uint32_t> order;
     for (int turn = 0; turn < 3; ++turn) {
