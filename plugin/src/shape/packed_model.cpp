@@ -182,6 +182,10 @@ const VertexHillClimb& PackedModel::vertexHillClimb() const {
   return vertex_hill_climb_.get([this] { return std::make_unique<VertexHillClimb>(packing().surface); });
 }
 
+const SupportBounds& PackedModel::bounds() const {
+  return bounds_.get([this] { return std::make_unique<SupportBounds>(packing(), principal.from_packing); });
+}
+
 PackedModel::Built PackedModel::built() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool spheres = std::any_of(prefixes_.begin(), prefixes_.end(),

@@ -12,6 +12,7 @@
 #include "shape/principal_frame.hpp"
 #include "shape/shape_frame.hpp"
 #include "shape/sphere_bvh.hpp"
+#include "shape/support_bounds.hpp"
 #include "surface/surface_queries.hpp"
 #include "surface/vertex_hill_climb.hpp"
 
@@ -86,6 +87,8 @@ class PackedModel {
   /// Returns the triangle that is nearest to the centre of a sphere. Call it only if hasSurface().
   std::size_t triangleNear(std::size_t sphere) const;
   const VertexHillClimb& vertexHillClimb() const;
+  /// Returns how far the solid reaches, in its principal frame.
+  const SupportBounds& bounds() const;
   /// Tells what has been built so far.
   struct Built {
     bool sphere_bvh, surface_queries, vertex_hill_climb;
@@ -104,6 +107,7 @@ class PackedModel {
   using Triangles = std::unique_ptr<std::atomic<std::uint32_t>[]>;
   Lazy<Triangles> triangles_near_;
   Lazy<VertexHillClimb> vertex_hill_climb_;
+  Lazy<SupportBounds> bounds_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -63,6 +63,7 @@ btTransform translation(const btVector3& by) {
 PackingShape::Impl::Impl(std::shared_ptr<const PackedModel> packed_solid)
     : solid(std::move(packed_solid)),
       frame(solid->in_principal),
+      from_principal(btTransform::getIdentity()),
       prefix(&solid->prefix(packing().spheres.size())) {
   prefix->warnOnce();
 }
@@ -70,6 +71,7 @@ PackingShape::Impl::Impl(std::shared_ptr<const PackedModel> packed_solid)
 PackingShape::Impl::Impl(std::shared_ptr<const PackedModel> packed_solid, const btTransform& mesh_to_body)
     : solid(std::move(packed_solid)),
       frame(packing(), mesh_to_body * translation(toBullet(packing().origin))),
+      from_principal(frame.from_packing * solid->principal.from_packing.inverse()),
       prefix(&solid->prefix(packing().spheres.size())) {
   prefix->warnOnce();
 }
@@ -80,15 +82,12 @@ btTransform PackingShape::Impl::toWorld(const btTransform& body) const {
 }
 
 btVector3 PackingShape::Impl::moments() const {
-  const PrincipalFrame& principal = solid->principal;
-  if (frame.from_packing == principal.from_packing) return principal.moments;
-  const btTransform to_shape = frame.from_packing * principal.from_packing.inverse();
-  const btVector3& centre_of_mass = to_shape.getOrigin();
+  const btVector3& centre_of_mass = from_principal.getOrigin();
   btVector3 moments;
   for (int i = 0; i < 3; ++i) {
-    const btVector3& axis = to_shape.getBasis()[i];
+    const btVector3& axis = from_principal.getBasis()[i];
     const btScalar from_axis2 = centre_of_mass.length2() - centre_of_mass[i] * centre_of_mass[i];
-    moments[i] = (axis * axis).dot(principal.moments) + from_axis2;
+    moments[i] = (axis * axis).dot(solid->principal.moments) + from_axis2;
   }
   return moments;
 }
@@ -163,9 +162,15 @@ const ContactOptions* PackingShape::contactOptions() const {
 
 void PackingShape::getAabb(const btTransform& t, btVector3& min, btVector3& max) const {
   noticeBox();
-  const btScalar scale = impl_->scaling.x();
-  btTransformAabb(impl_->frame.box_min * scale, impl_->frame.box_max * scale,
-                  impl_->overshoot() * scale + getMargin(), t, min, max);
+  const btScalar scale = impl_->scaling.x(), margin = impl_->overshoot() * scale + getMargin();
+  btTransformAabb(impl_->frame.box_min * scale, impl_->frame.box_max * scale, margin, t, min, max);
+  const SupportBounds& bounds = impl_->solid->bounds();
+  const btVector3 origin = t(impl_->from_principal.getOrigin() * scale);
+  const btMatrix3x3 axes = t.getBasis() * impl_->from_principal.getBasis();
+  for (int i = 0; i < 3; ++i) {
+    min[i] = btMax(min[i], origin[i] - bounds.along(-axes[i]) * scale - margin);
+    max[i] = btMin(max[i], origin[i] + bounds.along(axes[i]) * scale + margin);
+  }
 }
 
 void PackingShape::getBoundingSphere(btVector3& centre, btScalar& radius) const {

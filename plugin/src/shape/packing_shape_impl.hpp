@@ -24,7 +24,7 @@ struct PackingShape::Impl {
   bool hasSurface() const { return solid->hasSurface(); }
   const SurfaceQueries& surfaceQueries() const { return solid->surfaceQueries(); }
   const VertexHillClimb& vertexHillClimb() const { return solid->vertexHillClimb(); }
-  /// Returns by how much volume-true spheres reach out of the boxes below: without a surface they are what
+  /// Returns by how much volume-true spheres reach out of the solid's bounds: without a surface they are what
   /// collides.
   btScalar overshoot() const { return hasSurface() ? btScalar(0) : prefix->largest_overshoot; }
   /// Returns the spheres to use where gaps of `accuracy` [m] at the surface are allowed; 0: those the user
@@ -43,7 +43,8 @@ struct PackingShape::Impl {
 
   const std::shared_ptr<const PackedModel> solid;
   const ShapeFrame frame;
-  const Prefix* prefix;  ///< that the user chose
+  const btTransform from_principal;  ///< to the shape's frame, for scale 1
+  const Prefix* prefix;              ///< that the user chose
   btVector3 scaling{1, 1, 1};
   btScalar disc = 0;  ///< the angular motion disc, asked for many times in a step [m]
   /// The same in the principal frame: it says how large the solid is, wherever the origin lies [m].
