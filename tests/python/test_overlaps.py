@@ -298,6 +298,7 @@ def numbered(wrong):
     "poses, error",
     [
         (numbered(np.diag([1, 1, np.nan, 1])), innersphere.NotFiniteError),
+        (numbered(np.full((4, 4), np.nan)), innersphere.NotFiniteError),
         (numbered(moved(np.inf)), innersphere.NotFiniteError),
         (numbered(np.full((4, 4), np.nan)), innersphere.InvalidArgumentError),
         (numbered(np.diag([1, 1, -1, 1])), innersphere.InvalidArgumentError),

@@ -220,6 +220,14 @@ def test_bad_options(options):
         innersphere.pack((BOX_VERTICES, BOX_FACES), **options)
 
 
+def test_counts_may_be_written_as_floats():
+    packing = innersphere.pack((BOX_VERTICES, BOX_FACES), spheres=1e1, threads=np.int32(1), overlap_errors=False)
+    assert len(packing.spheres) == 10
+    for bad in (1.5, "10", None):
+        with pytest.raises(TypeError, match="spheres is .*whole number"):
+            innersphere.pack((BOX_VERTICES, BOX_FACES), spheres=bad)
+
+
 def test_too_large_a_radius():
     with pytest.raises(innersphere.NoSphereFitsError):
         innersphere.pack((BOX_VERTICES, BOX_FACES), min_radius=1.0)

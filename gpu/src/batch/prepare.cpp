@@ -51,7 +51,8 @@ void failFor(Fault fault, std::size_t index, const std::string& name) {
       fail(ErrorCode::bad_argument, index,
            "the rotation of " + name + " is off orthonormal by more than " +
                std::to_string(core::kRotationTolerance) +
-               "; put uniform scaling into Placement::scale and normalise the rest");
+               "; it may only turn (in C++ Placement::scale scales, in Python solids are packed at their "
+               "size)");
     case Fault::reflection:
       fail(ErrorCode::bad_argument, index, "the rotation of " + name + " is a reflection");
     case Fault::last_row:

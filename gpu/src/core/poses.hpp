@@ -17,7 +17,8 @@ INNERSPHERE_HD inline Mat3<double> matrixOf(const double* q) {
            2 * (x * z - y * w), 2 * (y * z + x * w), w * w - x * x - y * y + z * z}};
 }
 
-/// Reads a pose as it is, without a check of its rotation. Returns last_row or none.
+/// Reads a pose as it is, without a check of its rotation. Returns last_row, not_finite
+/// (of the last row) or none.
 INNERSPHERE_HD inline Fault loadPose(const Poses& poses, std::size_t number, Mat3<double>& rotation,
                                      Vec3d& translation) {
   if (!poses.matrices) {
@@ -33,7 +34,7 @@ INNERSPHERE_HD inline Fault loadPose(const Poses& poses, std::size_t number, Mat
   }
   const double off[] = {m[12], m[13], m[14], m[15] - 1};
   for (const double x : off) {
-    if (!(fabs(x) <= kRounding)) return Fault::last_row;
+    if (!(fabs(x) <= kRounding)) return fabs(x) < INFINITY ? Fault::last_row : Fault::not_finite;
   }
   return Fault::none;
 }

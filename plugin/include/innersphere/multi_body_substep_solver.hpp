@@ -18,7 +18,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 ///     world.getSolverInfo().m_minimumSolverBatchSize = -1;
 ///
 /// The last line has each group solved by itself. Bullet's default, 128, puts small groups into one, in which
-/// a btMultiBody has all of them solved by sequential impulses. Worlds of deformable bodies
+/// a btMultiBody has all of them solved by sequential impulses; the log says so once. Worlds of deformable bodies
 /// (btDeformableMultiBodyDynamicsWorld) solve in another way, and must have a solver of theirs.
 class MultiBodySubstepSolver : public btMultiBodyConstraintSolver {
  public:
@@ -50,8 +50,12 @@ class MultiBodySubstepSolver : public btMultiBodyConstraintSolver {
   void reset() override;
 
  private:
+  void logBatches();
+
   SubstepSolver substep_solver_;
   btMultiBodyConstraintSolver* others_;
+  bool solved_ = false;  ///< a group of rigid bodies in this step
+  bool logged_ = false;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,16 @@ def on_device(values: Any) -> Any:
         return values.__dlpack__(stream=_DEFAULT_STREAM)
     except BufferError:  # it is not handed out there: it is copied to the host
         return None
+
+
+def as_count(value: Any, name: str) -> int:
+    """Makes an int of a number of things, also of 1e3. Raises TypeError for anything but whole numbers."""
+    if isinstance(value, (float, np.floating)) and value.is_integer():
+        return int(value)
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}; it must be a whole number") from None
 
 
 def as_indices(values: Any, name: str) -> NDArray[np.int64]:

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from . import _core
-from ._arrays import as_float64, as_indices
+from ._arrays import as_count, as_float64, as_indices
 from ._errors import InvalidArgumentError
 from ._progress import ProgressBar
 
@@ -38,7 +38,8 @@ def pack(
         rows of vertices, counter-clockwise seen from outside; or an object with such arrays as ``vertices`` and
         ``faces``, like a trimesh.Trimesh. It must bound a volume.
 
-    The first limit that is reached ends the packing; 0 sets none:
+    The first limit that is reached ends the packing; 0 sets none. Without a number of spheres, name another limit: down to
+    1e-4 of the diagonal there are millions, which takes many minutes.
     spheres: number of spheres. 256 are enough for contacts, thousands for volumes.
     min_radius: radius of the smallest sphere [m]; 0: 1e-4 of the diagonal.
     density: fraction of the solid that is filled, 0 to 1.
@@ -65,6 +66,7 @@ def pack(
     if isinstance(mesh, (str, os.PathLike)):
         name = os.fspath(mesh) if name is None else name
     triangles = triangles_of(mesh, scale)
+    spheres = as_count(spheres, "spheres")
     bar = ProgressBar() if progress is True else None
     callback = bar if progress is True else None if progress is False or progress is None else progress
     if callback is not None and not callable(callback):
@@ -80,7 +82,7 @@ def pack(
             order,
             delta,
             overlap_errors,
-            threads,
+            as_count(threads, "threads"),
             repair,
             "" if cache is None else os.fspath(cache),
             callback,

@@ -3,6 +3,7 @@
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "innersphere/query.hpp"
@@ -168,6 +169,10 @@ Placement Poses::placement(std::size_t number, const std::vector<std::size_t>& a
   }
   const std::optional<Placement> place = placementAt(one, 0);
   if (!place) {
+    if (!std::all_of(matrix + 12, matrix + 16, [](double x) { return std::isfinite(x); })) {
+      throw Error(ErrorCode::not_finite, "query " + std::to_string(number) + ": the placement of " + name_ +
+                                             " has a number that is not finite");
+    }
     throw Error(ErrorCode::bad_argument, "query " + std::to_string(number) + ": the last row of " + name_ +
                                              " is not 0 0 0 1; matrices act on columns");
   }

@@ -4,6 +4,8 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
+#include "common/log.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
@@ -17,6 +19,7 @@ bool MultiBodySubstepSolver::isMovingLink(const btCollisionObject& object) {
 
 void MultiBodySubstepSolver::prepareSolve(int bodies, int manifolds) {
   substep_solver_.prepareSolve(bodies, manifolds);
+  solved_ = false;
   if (others_ != nullptr) others_->prepareSolve(bodies, manifolds);
 }
 
@@ -29,9 +32,16 @@ void MultiBodySubstepSolver::solveMultiBodyGroup(btCollisionObject** bodies, int
                                                  btDispatcher* dispatcher) {
   const auto moving = [](const btCollisionObject* body) { return isMovingLink(*body); };
   if (multi_body_constraint_count == 0 && std::none_of(bodies, bodies + body_count, moving)) {
+    solved_ = true;
     substep_solver_.solveGroup(bodies, body_count, manifolds, manifold_count, constraints, constraint_count,
                                info, drawer, dispatcher);
-  } else if (others_ != nullptr) {
+    return;
+  }
+  const auto rigid = [](const btCollisionObject* body) {
+    return btRigidBody::upcast(body) != nullptr && !body->isStaticOrKinematicObject();
+  };
+  if (info.m_minimumSolverBatchSize > 1 && std::any_of(bodies, bodies + body_count, rigid)) logBatches();
+  if (others_ != nullptr) {
     others_->solveMultiBodyGroup(bodies, body_count, manifolds, manifold_count, constraints, constraint_count,
                                  multi_body_constraints, multi_body_constraint_count, info, drawer,
                                  dispatcher);
@@ -42,8 +52,16 @@ void MultiBodySubstepSolver::solveMultiBodyGroup(btCollisionObject** bodies, int
   }
 }
 
+void MultiBodySubstepSolver::logBatches() {
+  if (logged_) return;
+  logged_ = true;
+  log("MultiBodySubstepSolver was given rigid bodies in one group with a btMultiBody, which Bullet's solver "
+      "solves: set world.getSolverInfo().m_minimumSolverBatchSize = -1, so that only those that touch are in "
+      "one group. This is said once.");
+}
+
 void MultiBodySubstepSolver::allSolved(const btContactSolverInfo& info, btIDebugDraw* drawer) {
-  substep_solver_.allSolved(info, drawer);
+  if (solved_) substep_solver_.allSolved(info, drawer);
   if (others_ != nullptr) others_->allSolved(info, drawer);
 }
 

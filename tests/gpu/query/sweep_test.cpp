@@ -132,6 +132,7 @@ TEST_P(SweepConformance, NamesTheFirstPoseThatIsNone) {
       {"NaN", ErrorCode::not_finite, [](double* m) { m[5] = kNaN; }},
       {"infinite", ErrorCode::not_finite, [](double* m) { m[3] = std::numeric_limits<double>::infinity(); }},
       {"last row", ErrorCode::bad_argument, [](double* m) { m[13] = 0.5; }},
+      {"NaN in the last row", ErrorCode::not_finite, [](double* m) { m[15] = kNaN; }},
       {"transposed", ErrorCode::bad_argument, [](double* m) { m[15] = 0; }},
       {"shear", ErrorCode::bad_argument, [](double* m) { m[1] += 0.01; }},
       {"reflection", ErrorCode::bad_argument,

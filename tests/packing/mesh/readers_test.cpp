@@ -107,6 +107,25 @@ TEST(MeshReaders, DoublesStayDoubles) {
   }
 }
 
+// As editors for Windows write it before a text in UTF-8.
+TEST(MeshReaders, AByteOrderMarkIsNoPartOfTheText) {
+  const Scratch scratch;
+  const std::string mark = "\xEF\xBB\xBF",
+                    head = "element vertex 3\nproperty double x\nproperty double y\nproperty double z\n";
+  for (const std::string& path :
+       {scratch.write("a.obj", mark + "v 7 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        scratch.write("a.off", mark + "OFF\n3 1 0\n7 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+        scratch.write("a.stl", mark + "solid\nfacet normal 0 0 1\nouter loop\nvertex 7 0 0\nvertex 1 0 0\n"
+                                      "vertex 0 1 0\nendloop\nendfacet\nendsolid\n"),
+        scratch.write("a.ply", mark + "ply\nformat ascii 1.0\n" + head +
+                                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                   "7 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")}) {
+    const Mesh mesh = readMesh(path);
+    ASSERT_EQ(mesh.vertices.size(), 3u) << path;
+    EXPECT_EQ(mesh.vertices[0][0], 7) << path;
+  }
+}
+
 // A star prism: its area is known, and a fan would leave the star.
 TEST(MeshReaders, DentedPolygonsAreCutInside) {
   const Scratch scratch;

@@ -9,6 +9,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
+#include "capture_log.hpp"
 #include "innersphere/multi_body_substep_solver.hpp"
 #include "solver/solver_world.hpp"
 
@@ -123,6 +124,21 @@ TEST(MultiBodySubstep, BulletsSolverHasTheGroupOfAMultiBodyWholeAndNoOther) {
     const std::vector<btScalar> places = both.placesOfBoxes(), alone = stack.placesOfBoxes();
     EXPECT_EQ(std::vector(places.begin(), places.begin() + 6), expected);
     EXPECT_EQ(std::vector(places.begin() + 6, places.end()), std::vector(alone.begin() + 3, alone.end()));
+  }
+}
+
+TEST(MultiBodySubstep, TheLogSaysOnceThatBulletPutsAllIntoOneGroup) {
+  for (const int batch : {128, -1}) {
+    MultiBodySubstepSolver solver;
+    MixedWorld mixed(solver);
+    mixed.world.getSolverInfo().m_minimumSolverBatchSize = batch;
+    mixed.addFloor();
+    mixed.addStack(1, 0);
+    mixed.addBall(btVector3(20, 0, kHalf));
+    const CaptureLog log;
+    mixed.run(10);
+    ASSERT_EQ(log.messages.size(), batch > 0 ? 1u : 0u);
+    if (batch > 0) EXPECT_NE(log.messages[0].find("m_minimumSolverBatchSize = -1"), std::string::npos);
   }
 }
 

@@ -15,7 +15,9 @@ class TextCursor {
   /// The bytes have to outlive the cursor; `path` is for messages. `comment` begins what is skipped up to the
   /// end of its line, 0 for none. `continues` makes one line of two where it is the last of the first.
   TextCursor(std::string_view bytes, const std::string& path, char comment = 0, char continues = 0)
-      : bytes_(bytes), path_(path), comment_(comment), continues_(continues) {}
+      : bytes_(bytes), path_(path), comment_(comment), continues_(continues) {
+    if (bytes_.substr(0, kByteOrderMark.size()) == kByteOrderMark) at_ = kByteOrderMark.size();
+  }
 
   /// Returns the next word of this line, empty at its end.
   std::string_view wordInLine();
@@ -41,6 +43,9 @@ class TextCursor {
   [[noreturn]] void fail(const std::string& what, ErrorCode code = ErrorCode::bad_format) const;
 
  private:
+  /// Some editors begin a text in UTF-8 with it.
+  static constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
   bool atLineEnd() const { return at_ == bytes_.size() || bytes_[at_] == '\n' || bytes_[at_] == '\r'; }
 
   std::string_view bytes_;
