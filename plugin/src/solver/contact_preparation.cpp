@@ -61,7 +61,7 @@ std::optional<Spring> springOf(const btManifoldPoint& point, btScalar time_step)
 
 void ContactRows::beginStep(const btContactSolverInfo& info, int substeps, btScalar depth) {
   depth_ = depth;
-  impact_ = false;
+  impact_ = arrival_ = false;
   substeps_ = btScalar(substeps);
   substep_ = info.m_timeStep / substeps_;
   slop_ = info.m_linearSlop;

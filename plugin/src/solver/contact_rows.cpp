@@ -274,8 +274,10 @@ void ContactRows::solveFriction(const Block& block, PointLanes& point, LaneBodie
   b.turn(turn * inAll(-1));
 }
 
-/// Returns by how much it has slowed down what does not bounce [m/s].
-Lanes ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const {
+/// Tells `slowed` what it takes from a speed, unless that bounces. In passes that push, what is apart may
+/// come as near as it is; passes that relax, when the bodies have got there, stop it.
+void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b,
+                              Slowed& slowed) const {
   const Lanes none{}, one = inAll(1);
   const Lanes gap = point.gap;
   const Lanes speed = dot(a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b), point.normal);
@@ -304,7 +306,11 @@ Lanes ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, Lane
   point.impulse = total;
   a.pushAt(point.arm_a, push);
   b.pushAt(point.arm_b, push * inAll(-1));
-  return bounces || point.mass == none ? none : added / point.mass;
+  const Lanes taken = point.mass == none ? none : added / point.mass;
+  slowed.now = larger(slowed.now, bounces ? none : taken);
+  if (pass != Pass::push) return;
+  const Lanes left = gap * inAll(1 / substep_) + speed + taken;  // where the substep ends, in substeps
+  slowed.later = larger(slowed.later, open ? (left + speed + taken) * inAll(-1) : none);
 }
 
 void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& states) {
@@ -315,21 +321,22 @@ void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& state
   if (pass != Pass::push) {
     for (PointLanes* point = begin; point != end; ++point) follow(block, *point, a, b);
   }
-  Lanes stopped{};
+  Slowed slowed{};
   for (int round = block.bouncing ? kBounceRounds : 1; round > 0; --round) {
     for (PointLanes* point = begin; point != end; ++point) {
-      stopped = larger(stopped, solveNormal(*point, pass, a, b));
+      solveNormal(*point, pass, a, b, slowed);
       solveFriction(block, *point, a, b);
     }
   }
   a.put(block.a, movable_, states);
   b.put(block.b, movable_, states);
-  if (pass == Pass::push) {
+  if (pass != Pass::finish) {
     for (int lane = 0; lane < kLanes; ++lane) {
-      if (stopped[lane] > block.calm[lane]) impact_.store(true, std::memory_order_relaxed);
+      if (slowed.now[lane] > block.calm[lane]) impact_.store(true, std::memory_order_relaxed);
+      if (slowed.later[lane] > block.calm[lane]) arrival_.store(true, std::memory_order_relaxed);
     }
+    return;
   }
-  if (pass != Pass::finish) return;
   for (PointLanes* point = begin; point != end; ++point) {
     point->sum += point->impulse;
     point->sum_1 += point->impulse_1;

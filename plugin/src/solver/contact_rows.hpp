@@ -66,9 +66,12 @@ class ContactRows {
   /// Finds those that they reach in this substep. Bodies are only read.
   void findBounces(int block, const std::vector<BodyState>& states);
   void solve(int block, Pass pass, std::vector<BodyState>& states);
-  /// Returns true if passes that push have stopped a pair since it was asked last, so fast that it would have
-  /// come deeper into each other within the step than is wanted. By one thread, between passes.
+  /// Returns true if passes that push or relax have stopped a pair since it was asked last, so fast that it
+  /// would have come deeper into each other within the step than is wanted. By one thread, between passes.
   bool takeImpact() { return impact_.exchange(false, std::memory_order_relaxed); }
+  /// Returns true if passes that push have left as much of a speed to passes that relax since it was asked
+  /// last: of a pair that arrives at each other.
+  bool takeArrival() { return arrival_.exchange(false, std::memory_order_relaxed); }
   /// Tells the points what they have borne, and remembers what they have no place for.
   void writeBack(int block);
   /// Forgets that.
@@ -119,6 +122,11 @@ class ContactRows {
     bool bounces, rolls, bends;  ///< what some of its points do
     bool bouncing;               ///< in this substep
   };
+  /// What a pass takes from the speeds of pairs, and what passes that relax will take after it, at most
+  /// [m/s].
+  struct Slowed {
+    Lanes now, later;
+  };
   struct Entry {
     btPersistentManifold* manifold;  ///< null: there are none up to `number`
     int number;                      ///< among those that Bullet gave
@@ -151,7 +159,7 @@ class ContactRows {
   inline static void roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way,
                           Lanes3& to_a, Lanes3& to_b);
   inline static void solveFriction(const Block& block, PointLanes& point, LaneBodies& a, LaneBodies& b);
-  inline Lanes solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b) const;
+  inline void solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneBodies& b, Slowed& slowed) const;
 
   std::vector<Entry> entries_;  ///< room for each manifold, then one for each that pushes
   std::vector<Entry> sorted_;
@@ -170,7 +178,7 @@ class ContactRows {
   bool warm_starting_ = true;
   btScalar depth_ = 0;  ///< that is wanted at most, in sizes of the smaller body
   std::atomic<bool> bounces_{false};
-  std::atomic<bool> impact_{false};
+  std::atomic<bool> impact_{false}, arrival_{false};
   bool wide_;
   int movable_ = 0;
   int broken_ = 0;
