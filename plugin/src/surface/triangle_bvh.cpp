@@ -85,9 +85,9 @@ std::uint32_t TriangleBvh::build(const Surface& surface, std::size_t first, std:
   for (std::size_t k = 0; k < kWidth; ++k) {
     enclose(surface, cuts[k], cuts[k + 1], k, nodes_[index].boxes);
     const bool is_leaf = cuts[k + 1] - cuts[k] <= kWidth;
-    const std::uint32_t child =
-        is_leaf ? appendLeaf(surface, cuts[k], cuts[k + 1]) : build(surface, cuts[k], cuts[k + 1]);
-    nodes_[index].children[k] = {child, is_leaf};
+    const Child child =
+        is_leaf ? kLeaf | appendLeaf(surface, cuts[k], cuts[k + 1]) : build(surface, cuts[k], cuts[k + 1]);
+    nodes_[index].children[k] = static_cast<std::int32_t>(child | static_cast<Child>(k) << kNumberShift);
   }
   return static_cast<std::uint32_t>(index);
 }
@@ -126,7 +126,7 @@ std::size_t TriangleBvh::halve(const Surface& surface, std::size_t first, std::s
   return half;
 }
 
-/// The box of triangles [first, end); of none it is infinitely far from everything.
+/// The box of triangles [first, end); of none it is infinitely far from everything, and no ray leaves it.
 void TriangleBvh::enclose(const Surface& surface, std::size_t first, std::size_t end, std::size_t child,
                           Boxes& boxes) const {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -138,7 +138,7 @@ void TriangleBvh::enclose(const Surface& surface, std::size_t first, std::size_t
       }
     }
     boxes.min[k][child] = least;
-    boxes.max[k][child] = most;
+    boxes.max[k][child] = first < end ? most : kFar;
   }
 }
 

@@ -1,13 +1,14 @@
 // Holds the triangles of a solid's surface in a bounding volume tree.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include <LinearMath/btVector3.h>
@@ -31,6 +32,7 @@ class TriangleBvh {
   /// One number of each of a node's children lies side by side: one instruction looks at all of them.
   static constexpr std::size_t kWidth = 4;
   using Lanes = FourFloats;
+  using Integers = FourInts;
   struct Boxes {
     Lanes min[3], max[3];  ///< x, y, z
   };
@@ -54,10 +56,10 @@ class TriangleBvh {
   /// Returns how far off heights over planes may be, for rounding [m].
   float rounding() const { return rounding_; }
 
-  /// Visits triangles, those in nearer boxes first. bound(boxes) and bound(leaf) tell in Lanes how far away
-  /// the triangles in each box, and those of a leaf, are at least. visit(triangle) returns how far away
-  /// further ones may be to be visited still; `farthest` is how far away the first ones may be. Distances may
-  /// have any unit.
+  /// Visits triangles, those in nearer boxes first, and of boxes that are equally near always the same one.
+  /// bound(boxes) and bound(leaf) tell in Lanes how far away the triangles in each box, and those of a leaf,
+  /// are at least: no box is nearer than one around it. visit(triangle) returns how far away further ones may
+  /// be to be visited still; `farthest` is how far away the first ones may be. Distances may have any unit.
   template <typename Bound, typename Visit>
   void search(btScalar farthest, const Bound& bound, const Visit& visit) const;
 
@@ -66,17 +68,28 @@ class TriangleBvh {
     const auto rounded = static_cast<float>(x);
     return rounded < x ? std::nextafter(rounded, kFar) : rounded;
   }
-  struct Child {
-    std::uint32_t index;  ///< of its leaf or its node
-    bool is_leaf;
-  };
+  /// Holds a child's number in its node in two bits, then kLeaf if it is one, then its index among all leaves
+  /// or nodes.
+  using Child = std::uint32_t;
+  static constexpr Child kLeaf = Child(1) << 29;
+  static constexpr int kNumberShift = 30;
+  /// A child that is to be looked at: its distance, which is not negative, then the child. So these are in
+  /// the order of distances, and children of a node that are as far as each other in theirs.
+  using Open = std::uint64_t;
+  static constexpr int kDistanceShift = 32;
   struct Node {
     Boxes boxes;
-    std::array<Child, kWidth> children;
+    Integers children;
   };
   /// Children are of equal size, so that no tree is deeper.
   static constexpr std::size_t kMaxDepth = 16;
+  /// Of each depth, children of two nodes may be open, but for the two that are looked at.
+  static constexpr std::size_t kMostOpen = 2 * (kWidth - 1) * kMaxDepth + 1;
 
+  /// Writes the near ones of a node's children before those that are open, the nearest one first, and before
+  /// them what is not open. Returns how many are near.
+  static std::size_t openNear(const Integers& near, const Lanes& distances, const Integers& children,
+                              Open* before);
   std::uint32_t build(const Surface& surface, std::size_t first, std::size_t end);
   std::uint32_t appendLeaf(const Surface& surface, std::size_t first, std::size_t end);
   std::size_t halve(const Surface& surface, std::size_t first, std::size_t end);
@@ -89,54 +102,73 @@ class TriangleBvh {
   std::vector<std::uint32_t> triangles_;  ///< in order; only while it is built
 };
 
+inline std::size_t TriangleBvh::openNear(const Integers& near, const Lanes& distances,
+                                         const Integers& children, Open* before) {
+  static_assert(kWidth == 4);
+  // What is far becomes 0, which comes first; -0 would come last.
+  const Integers near_distances = reinterpret_cast<Integers>(distances + 0.0F) & near;
+  const Integers near_children = children & near;
+  std::uint32_t high[kWidth], low[kWidth];
+  std::memcpy(high, &near_distances, sizeof high);
+  std::memcpy(low, &near_children, sizeof low);
+  Open all[kWidth];
+  for (std::size_t k = 0; k < kWidth; ++k) all[k] = Open(high[k]) << kDistanceShift | low[k];
+  // A network without branches, which no processor would foresee.
+  const auto sort = [&](std::size_t i, std::size_t j) {
+    const Open change = (all[i] ^ all[j]) & (0 - Open(all[j] < all[i]));
+    all[i] ^= change;
+    all[j] ^= change;
+  };
+  sort(0, 1);
+  sort(2, 3);
+  sort(0, 2);
+  sort(1, 3);
+  sort(1, 2);
+  std::memcpy(before - kWidth, all, sizeof all);
+  constexpr std::uint64_t kCounts = 0x4332322132212110;  // of the bits in each digit
+  return kCounts >> 4 * signBits(near) & 7;
+}
+
 template <typename Bound, typename Visit>
 void TriangleBvh::search(btScalar farthest, const Bound& bound, const Visit& visit) const {
-  struct Entry {
-    Child child;
-    float distance;
-  };
-  std::array<Entry, (kWidth - 1) * kMaxDepth + 1> open;
-  std::size_t count = 0;
-  Entry next{{0, false}, 0};
+  std::array<Open, kMostOpen + kWidth> open;  // from `first` on; before it there is room for far ones
+  std::size_t first = open.size();
   float limit = roundedUp(farthest);
-  const auto takeOpen = [&] {
-    while (count > 0) {
-      next = open[--count];
-      if (next.distance <= limit) return true;
-    }
-    return false;
+  const auto isNear = [&](Open item) {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(item >> kDistanceShift)) <= limit;
   };
-  // Always on with the nearest child. The others stay open, the nearest of them on top.
-  const auto goToLeaf = [&] {
-    while (!next.child.is_leaf) {
-      const Node& node = nodes_[next.child.index];
+  const auto isLeaf = [](Open item) { return (item & kLeaf) != 0; };
+  const auto indexOf = [](Open item) { return static_cast<std::uint32_t>(item) & (kLeaf - 1); };
+  if (!nodes_.empty()) open[--first] = 0;
+  while (first < open.size()) {
+    const Open next = open[first++];
+    if (!isNear(next)) continue;
+    // Two of a kind are looked at side by side, for each is a long chain of steps. They stay in their order.
+    const bool two = first < open.size() && isLeaf(open[first]) == isLeaf(next) && isNear(open[first]);
+    if (!isLeaf(next)) {
+      const Node& node = nodes_[indexOf(next)];
       const Lanes distances = bound(node.boxes);
-      unsigned near = signBits(distances <= limit);
-      if (near == 0) return false;
-      const auto takeLast = [&] {
-        const auto k = static_cast<std::size_t>(std::bit_width(near) - 1);
-        near ^= 1u << k;
-        return Entry{node.children[k], distances[k]};
-      };
-      const std::size_t bottom = count;
-      next = takeLast();
-      while (near != 0) {
-        Entry other = takeLast();
-        if (!(next.distance < other.distance)) std::swap(other, next);
-        std::size_t at = count++;
-        for (; at > bottom && open[at - 1].distance < other.distance; --at) open[at] = open[at - 1];
-        open[at] = other;
+      if (two) {
+        const Node& second = nodes_[indexOf(open[first++])];
+        const Lanes of_second = bound(second.boxes);
+        first -= openNear(of_second <= limit, of_second, second.children, open.data() + first);
       }
+      first -= openNear(distances <= limit, distances, node.children, open.data() + first);
+      continue;
     }
-    return true;
-  };
-  for (bool more = !nodes_.empty(); more; more = takeOpen()) {
-    if (!goToLeaf()) continue;
-    const Leaf& leaf = leaves_[next.child.index];
-    const Lanes distances = bound(leaf);
-    for (unsigned near = signBits(distances <= limit) & leaf.used; near != 0; near &= near - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(near));
-      if (distances[k] <= limit) limit = roundedUp(visit(leaf.triangles[k]));
+    const Leaf* leaf = &leaves_[indexOf(next)];
+    Lanes distances = bound(*leaf);
+    const Open after = two ? open[first++] : 0;
+    const Leaf* const second = two ? &leaves_[indexOf(after)] : nullptr;
+    const Lanes of_second = two ? bound(*second) : Lanes{};
+    while (true) {
+      for (unsigned near = signBits(distances <= limit) & leaf->used; near != 0; near &= near - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(near));
+        if (distances[k] <= limit) limit = roundedUp(visit(leaf->triangles[k]));
+      }
+      if (!two || leaf == second || !isNear(after)) break;
+      leaf = second;
+      distances = of_second;
     }
   }
 }
