@@ -20,10 +20,14 @@ namespace {
 using namespace innersphere;
 using namespace innersphere::benchmarks;
 
-constexpr std::array<double, 8> kCells{1e-4, 3e-4, 0.001, 0.003, 0.01, 0.03, 0.1, 1};  // parts of the solid
+// Parts of the solid; the last ones where copies lie nearly upon it.
+const std::vector<double> kCells{1e-4, 3e-4, 0.001, 0.003, 0.01, 0.03, 0.1, 1},
+    kDeepCells{0.45, 0.6, 0.8, 0.95, 1};
 constexpr std::array<std::uint32_t, 3> kCounts{256, 1024, 4096};
 constexpr std::size_t kFewest = 30;  // poses of a cell that says anything
 constexpr double kNestedTurn = 20;   // one over the tangent of half the angle: 6 degrees
+
+enum class Kind { any, nested, deep };
 
 struct Body {
   std::string name;
@@ -32,12 +36,12 @@ struct Body {
   double diagonal, volume;
 };
 
-/// Random rotations and directions, and what two bodies share in such poses. `nested`: B is turned by a few
-/// degrees at most, and moved from where it lies upon A, as cups stand in each other.
+/// Random rotations and directions, and what two bodies share in such poses. Nested: B is turned by a few
+/// degrees at most, and moved from where it lies upon A, as cups stand in each other. Deep: by a third moved
+/// only, by a third turned only, and by no more than leaves 45 to 100 % shared.
 class Poses {
  public:
-  Poses(const Body& a, const Body& b, bool nested)
-      : a_(a), b_(b), nested_(nested), context_({Backend::cpu, 1}) {
+  Poses(const Body& a, const Body& b, Kind kind) : a_(a), b_(b), kind_(kind), context_({Backend::cpu, 1}) {
     query_.a = a.model.get();
     query_.b = b.model.get();
     query_.placement_b.scale = a.diagonal / b.diagonal;
@@ -50,14 +54,13 @@ class Poses {
   /// Turns B, puts a point of it on one of A, and moves it away until the true volume is a part of the
   /// smaller body, if it is not less from the start. Returns the volume.
   double next() {
+    if (kind_ == Kind::deep) return nextDeep();
     std::uniform_real_distribution<double> part(std::log(1e-5), std::log(0.45));
     const double wanted = std::exp(part(random_)) * whole_;
     turn();
     from_ = pointIn(a_);
-    to_ = nested_ ? from_ : pointIn(b_);
-    std::normal_distribution<double> normal;
-    Vec3d way{normal(random_), normal(random_), normal(random_)};
-    way = (a_.diagonal / norm(way)) * way;
+    to_ = kind_ == Kind::nested ? from_ : pointIn(b_);
+    const Vec3d way = a_.diagonal * direction();
     double near = 0, far = 2.1;
     for (int step = 0; step < 18; ++step) {
       const double middle = (near + far) / 2;
@@ -76,10 +79,39 @@ class Poses {
   }
 
  private:
+  double nextDeep() {
+    std::uniform_real_distribution<double> part;
+    const double wanted = (0.45 + 0.55 * part(random_)) * whole_;
+    from_ = to_ = pointIn(a_);
+    const int third = static_cast<int>(3 * part(random_));
+    const Vec3d axis = direction(), way = (third == 1 ? 0 : a_.diagonal * part(random_)) * direction();
+    const double angle = third == 0 ? 0 : part(random_);
+    double small = 0, large = 1, volume = 0;
+    for (int step = 0; step < 14; ++step) {
+      const double size = step == 0 ? 1 : (small + large) / 2, s = std::sin(size * angle / 2);
+      turn(std::cos(size * angle / 2), s * axis[0], s * axis[1], s * axis[2]);
+      place(size, way);
+      volume = context_.overlap(query_, {Want::volume, Estimator::surface}).volume;
+      if (std::abs(volume - wanted) < 0.02 * whole_ || (step == 0 && volume > wanted)) break;
+      (volume > wanted ? small : large) = size;
+    }
+    return volume;
+  }
+
+  Vec3d direction() {
+    std::normal_distribution<double> normal;
+    const Vec3d way{normal(random_), normal(random_), normal(random_)};
+    return (1 / norm(way)) * way;
+  }
+
   void turn() {
     std::normal_distribution<double> normal;
     double w = normal(random_), x = normal(random_), y = normal(random_), z = normal(random_);
-    if (nested_) w = kNestedTurn * std::hypot(x, y, z);
+    if (kind_ == Kind::nested) w = kNestedTurn * std::hypot(x, y, z);
+    turn(w, x, y, z);
+  }
+
+  void turn(double w, double x, double y, double z) {
     const double length = std::hypot(std::hypot(w, x), std::hypot(y, z));
     w /= length, x /= length, y /= length, z /= length;
     query_.placement_b.rotation = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
@@ -116,7 +148,7 @@ class Poses {
   }
 
   const Body &a_, &b_;
-  bool nested_;
+  Kind kind_;
   QueryContext context_;
   PairQuery query_;
   double whole_;
@@ -155,19 +187,25 @@ struct Verdict {
   }
 };
 
-void printPair(const Body& a, const Body& b, bool nested, std::size_t poses, Verdict& verdict,
+const std::vector<double>& cellsOf(Kind kind) {
+  return kind == Kind::deep ? kDeepCells : kCells;
+}
+
+void printPair(const Body& a, const Body& b, Kind kind, std::size_t poses, Verdict& verdict,
                Verdict& of_bare) {
-  Poses all(a, b, nested);
-  std::array<std::array<Cell, kCells.size() - 1>, kCounts.size()> table;
+  Poses all(a, b, kind);
+  const std::vector<double>& cells = cellsOf(kind);
+  std::array<std::vector<Cell>, kCounts.size()> table;
+  table.fill(std::vector<Cell>(cells.size() - 1));
   for (std::size_t i = 0; i < poses; ++i) {
     const double truth = all.next();
     if (!(truth > 0)) continue;
     for (std::size_t k = 0; k < kCounts.size(); ++k) {
       ExpectedError expected;
       const double found = all.found(kCounts[k], expected);
-      if (found < kCells[0] * all.whole() || std::isnan(expected.mean)) continue;
+      if (found < cells[0] * all.whole() || std::isnan(expected.mean)) continue;
       std::size_t cell = 0;
-      while (cell + 2 < kCells.size() && found >= kCells[cell + 1] * all.whole()) ++cell;
+      while (cell + 2 < cells.size() && found >= cells[cell + 1] * all.whole()) ++cell;
       table[k][cell].add(std::abs(found - truth) / std::max(found, truth), expected);
     }
   }
@@ -204,20 +242,21 @@ Body bodyOf(const std::string& source) {
           packing->solid.volume};
 }
 
-void run(const std::vector<std::string>& sources, bool nested, std::size_t poses) {
+void run(const std::vector<std::string>& sources, Kind kind, std::size_t poses) {
+  const std::vector<double>& cells = cellsOf(kind);
   std::vector<Body> bodies;
   for (const std::string& source : sources) bodies.push_back(bodyOf(source));
   std::printf("| solid | spheres |");
-  for (std::size_t k = 0; k + 1 < kCells.size(); ++k)
-    std::printf(" %g-%g %% |", 100 * kCells[k], 100 * kCells[k + 1]);
+  for (std::size_t k = 0; k + 1 < cells.size(); ++k)
+    std::printf(" %g-%g %% |", 100 * cells[k], 100 * cells[k + 1]);
   std::printf("\n|---|---|");
-  for (std::size_t k = 0; k + 1 < kCells.size(); ++k) std::printf("---|");
+  for (std::size_t k = 0; k + 1 < cells.size(); ++k) std::printf("---|");
   std::printf("\n");
   Verdict copies, pairs, bare;
-  for (const Body& body : bodies) printPair(body, body, nested, poses, copies, bare);
-  const bool has_pairs = bodies.size() > 1 && !nested;
+  for (const Body& body : bodies) printPair(body, body, kind, poses, copies, bare);
+  const bool has_pairs = bodies.size() > 1 && kind == Kind::any;
   for (std::size_t i = 0; i < bodies.size() && has_pairs; ++i)
-    printPair(bodies[i], bodies[(i + 1) % bodies.size()], false, poses, pairs, bare);
+    printPair(bodies[i], bodies[(i + 1) % bodies.size()], Kind::any, poses, pairs, bare);
   std::printf(
       "\n| | cells | foretold below measured | more than 3 times above | poses | single errors beyond their "
       "bound "
@@ -233,11 +272,12 @@ int main(int argc, char** argv) {
   CLI::App app("Foretold and measured errors of overlap volumes, as Markdown tables on stdout");
   std::vector<std::string> sources;
   std::size_t poses = 500;
-  bool nested = false;
+  bool nested = false, deep = false;
   app.add_option("SOLID", sources, "Mesh files or names of solids; with :coverage behind it, in that order")
       ->required();
   app.add_option("--poses", poses, "Poses of each solid, and of each pair")->capture_default_str();
   app.add_flag("--nested", nested, "Copies that lie nearly upon each other, instead of any poses and pairs");
+  app.add_flag("--deep", deep, "Copies that share 45 to 100 %, instead of any poses and pairs");
   CLI11_PARSE(app, argc, argv);
   try {
     std::printf("%s", heading("Foretold and measured errors", argc, argv).c_str());
@@ -245,7 +285,7 @@ int main(int argc, char** argv) {
         "Mean |error| of the volume relative to the larger of found and true, %% foretold / %% measured, by "
         "the part of the smaller solid that was "
         "found.\n\n");
-    run(sources, nested, poses);
+    run(sources, deep ? Kind::deep : nested ? Kind::nested : Kind::any, poses);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -94,7 +94,8 @@ inline bool sameErrors(const std::vector<OverlapErrors::AtDepth>& a,
 }
 
 inline bool sameEstimate(const OverlapErrors::Estimate& a, const OverlapErrors::Estimate& b) {
-  return sameErrors(a.copies, b.copies) && a.thickest == b.thickest && sameErrors(a.planes, b.planes);
+  return sameErrors(a.copies, b.copies) && sameErrors(a.deep, b.deep) && a.thickest == b.thickest &&
+         sameErrors(a.planes, b.planes);
 }
 
 inline bool sameBytes(const Packing& a, const Packing& b) {

@@ -30,8 +30,9 @@ struct BoundedOverlap {
 /// overlaps of this depth when the packings were made (see Packing::overlap_errors), from A and from B.
 /// Theirs are independent: the logarithms of found over true have half the variance of each. That takes area,
 /// stiffness and energy: NaN without area and energy, as Want::volume gives none. NaN also if nothing
-/// overlaps, nothing was measured, or nothing so shallow; 0 with Estimator::surface. Margins and
-/// CollisionModel::update() are not considered. Throws Error bad_argument for a null model.
+/// overlaps, nothing was measured, or nothing so shallow, and with volume-true radii from kDeepOverlap of
+/// both bodies on if one packing is of a file that knows no errors there; 0 with Estimator::surface. Margins
+/// and CollisionModel::update() are not considered. Throws Error bad_argument for a null model.
 ExpectedError expectedError(const PairQuery& query, Estimator estimator, const Overlap& found);
 
 /// Runs single queries with the longest prefixes that a budget allows. Both bodies use 64, 128, 256, ...

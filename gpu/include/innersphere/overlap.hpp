@@ -13,17 +13,24 @@ namespace innersphere {
 /// A, which is the translation of its placement, so that they keep their digits far from the origin of the
 /// world. n is the unit vector from the centre of A's sphere to the centre of B's. Forces push B away; A gets
 /// the opposite.
+///
+/// Volume-true spheres of one body overlap each other a little. Where a body lies nearly upon its copy they
+/// meet themselves, and their lenses sum up to 10 to 30 % more than there is. `volume` ends at what the
+/// smaller solid has; everything else stays that of the lenses.
 struct Overlap {
-  double volume = 0;  ///< The sum of V [m^3].
-  Vec3d centroid{};   ///< The volume-weighted centroid of the lenses [m]. Zero when nothing overlaps.
-  Vec3d force{};      ///< The sum of V n [m^3]: the penalty force on B for unit stiffness.
-  Vec3d torque{};     ///< The torque of that force on B about the origin of B [m^4].
+  /// The sum of V [m^3]; with volume-true radii at most Packing::solid.volume of the smaller body. A body
+  /// whose solid is not known, that is grown by a margin or was changed by CollisionModel::update() sets no
+  /// limit.
+  double volume = 0;
+  Vec3d centroid{};  ///< The volume-weighted centroid of the lenses [m]. Zero when nothing overlaps.
+  Vec3d force{};     ///< The sum of V n [m^3]: the penalty force on B for unit stiffness.
+  Vec3d torque{};    ///< The torque of that force on B about the origin of B [m^4].
   /// The sum of pi a^2 n [m^2], where a is the radius of the lens' rim. It is minus the gradient of the
-  /// volume with respect to the position of B. So it points along the contact normal, and its length is the
+  /// sum of V with respect to the position of B. So it points along the contact normal, and its length is the
   /// contact's area.
   Vec3d area{};
-  double stiffness = 0;          ///< The sum of pi a^2 [m^2]: how fast the force grows with depth.
-  double energy = 0;             ///< The potential of `force` for unit stiffness [m^4].
+  double stiffness = 0;  ///< The sum of pi a^2 [m^2]: how fast the force grows with depth.
+  double energy = 0;     ///< The potential of `force` for unit stiffness [m^4].
   /// The number of overlapping pairs of spheres; with Estimator::surface, of pairs of triangles that meet.
   std::uint64_t pair_count = 0;
 };

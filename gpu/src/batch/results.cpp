@@ -19,13 +19,14 @@ core::Totals toTotals(const core::Sums& sums, const core::Units& units) {
   return totals;
 }
 
-Overlap toOverlap(const core::Totals& totals) {
+Overlap toOverlap(const core::Totals& totals, const core::PairSetup& setup) {
   Overlap overlap;
   overlap.pair_count = totals.pairs;
-  overlap.volume = totals.terms[core::kVolume];
-  if (overlap.volume > 0) {
+  const double lenses = totals.terms[core::kVolume];
+  overlap.volume = core::sharedVolume(lenses, setup);
+  if (lenses > 0) {
     overlap.centroid = toVec(totals.terms + core::kMoment);
-    for (double& c : overlap.centroid) c /= overlap.volume;
+    for (double& c : overlap.centroid) c /= lenses;
   }
   overlap.force = toVec(totals.terms + core::kForce);
   overlap.torque = toVec(totals.terms + core::kTorque);

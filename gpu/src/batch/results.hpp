@@ -10,6 +10,6 @@ namespace innersphere {
 core::Totals toTotals(const core::Sums& sums, const core::Units& units);
 
 /// Returns the overlap that the sums of a query describe.
-Overlap toOverlap(const core::Totals& totals);
+Overlap toOverlap(const core::Totals& totals, const core::PairSetup& setup);
 
 }  // namespace innersphere

@@ -95,6 +95,7 @@ struct GridView {
   float radius;   ///< The radius of a ball about `centre` around all spheres.
   float reach;    ///< The radius of a ball about the packing's origin around all spheres.
   float largest;  ///< The largest radius of any sphere.
+  double volume;  ///< The volume of the solid that the spheres stand for; 0: not known.
 };
 
 /// Returns the grid level where a sphere of this size level looks for partners that are at least as large.

@@ -151,10 +151,18 @@ INNERSPHERE_HD inline Fault makeUnits(const Side& a, const Side& b, Units& units
   return Fault::none;
 }
 
+/// Returns the volume of a body; infinity if it is not known.
+INNERSPHERE_HD inline double volumeOf(const Side& side) {
+  if (!(side.grid.volume > 0) || side.margin > 0) return INFINITY;
+  return side.scale * side.scale * side.scale * side.grid.volume;
+}
+
 /// Prepares a pair; `offset` goes from the origin of A to that of B, in axes of the world.
 INNERSPHERE_HD inline Fault makePairSetup(const Side& a, const Side& b, const Vec3d& offset,
                                           PairSetup& setup) {
   setup.frame = {a.matrix, b.matrix, a.scale, b.scale, a.margin, b.margin, offset};
+  const double volume_a = volumeOf(a), volume_b = volumeOf(b);
+  setup.most_volume = volume_a < volume_b ? volume_a : volume_b;
   setup.clusters[0] = setup.clusters[1] = 0;
   Fault fault = makeUnits(a, b, setup.units);
   if (fault != Fault::none || !ballsMeet(a, b, offset)) return fault;

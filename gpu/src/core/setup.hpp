@@ -42,6 +42,7 @@ struct PairSetup {
   Frame frame;
   Search searches[2];  ///< Of A's spheres in B's grid, and of B's in A's.
   Units units;
+  double most_volume;         ///< The volume that the smaller body has [m^3]; infinity: not known.
   std::uint32_t clusters[2];  ///< Those of each body that traverse the other's grid: 0 if they are apart.
 };
 

@@ -65,6 +65,12 @@ INNERSPHERE_HD inline Terms makeTerms(const Pair& pair) {
   return terms;
 }
 
+/// Returns the volume that a sum of lenses stands for. Spheres of one body overlap each other: where bodies
+/// lie upon each other their lenses sum up to more than there is.
+INNERSPHERE_HD inline double sharedVolume(double lenses, const PairSetup& setup) {
+  return lenses < setup.most_volume ? lenses : setup.most_volume;
+}
+
 /// Holds the sums in floating point.
 struct Totals {
   double terms[kTerms];

@@ -56,7 +56,7 @@ void CpuBackend::finish(QueryResult& result) {
   result.overlaps.resize(queries_.size());
   workers_.forRanges(queries_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      result.overlaps[i] = toOverlap(toTotals(sums_[i], queries_[i].setup.units));
+      result.overlaps[i] = toOverlap(toTotals(sums_[i], queries_[i].setup.units), queries_[i].setup);
   });
 }
 

@@ -179,7 +179,7 @@ class CudaBackend : public OneDevice {
     const BatchPart& part = oldest();
     const BatchPart::Range range = part.range();
     for (std::size_t q = range.begin; q < range.end; ++q)
-      staged_.overlaps[q] = toOverlap(part.results()[q - range.begin]);
+      staged_.overlaps[q] = toOverlap(part.results()[q - range.begin], queries_[q].setup);
     if (want_ == Want::pairs) append(part.lists().pairs, range, staged_.pairs);
     if (wantsContacts(want_)) append(part.lists().contacts[0], range, staged_.contacts_a);
     if (want_ == Want::contacts) append(part.lists().contacts[1], range, staged_.contacts_b);

@@ -89,13 +89,14 @@ __global__ void prepareQueries(const __grid_constant__ Batch batch, Query* queri
 
 /// Returns word `word` of an Overlap: as toOverlap() does it, to the bit.
 template <Goal goal>
-__device__ unsigned long long overlapWord(const DeviceSums& sums, const core::Units& units, unsigned word) {
-  const bool of_centroid = word >= core::kMoment && word < core::kMoment + 3;
-  if (!of_centroid || goal == Goal::touch) return resultOf<goal>(sums, units, word);
-  const double volume = totalOf(sums, units, core::kVolume);
-  if (!(volume > 0)) return 0;
-  return static_cast<unsigned long long>(
-      __double_as_longlong(totalOf(sums, units, static_cast<int>(word)) / volume));
+__device__ unsigned long long overlapWord(const DeviceSums& sums, const core::PairSetup& setup,
+                                          unsigned word) {
+  const core::Units& units = setup.units;
+  if (word >= core::kVolumeTerms || goal == Goal::touch) return resultOf<goal>(sums, units, word);
+  const double lenses = totalOf(sums, units, core::kVolume);
+  double value = core::sharedVolume(lenses, setup);
+  if (word != core::kVolume) value = lenses > 0 ? totalOf(sums, units, static_cast<int>(word)) / lenses : 0;
+  return static_cast<unsigned long long>(__double_as_longlong(value));
 }
 
 /// Brings the sums of all queries home.
@@ -104,13 +105,13 @@ __global__ void finishBatch(const __grid_constant__ Batch batch) {
   const unsigned thread = blockIdx.x * blockDim.x + threadIdx.x, query = thread / kResultWords;
   if (query < batch.count) {
     const unsigned word = thread % kResultWords;
-    const core::Units& units = batch.queries[query].units;
+    const core::PairSetup& setup = batch.queries[query];
     if (batch.overlaps) {
       reinterpret_cast<unsigned long long*>(batch.overlaps + query)[word] =
-          overlapWord<goal>(batch.sums[query], units, word);
+          overlapWord<goal>(batch.sums[query], setup, word);
     } else {
       reinterpret_cast<unsigned long long*>(batch.results + query)[word] =
-          resultOf<goal>(batch.sums[query], units, word);
+          resultOf<goal>(batch.sums[query], setup.units, word);
     }
   }
   __threadfence_system();

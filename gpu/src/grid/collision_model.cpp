@@ -127,6 +127,11 @@ void CollisionModel::Impl::withSpheres(std::size_t count, const VolumeTrueRadii*
   isolated(radii ? withRadii(moved_, scratch_.spheres) : moved_.data(), scratch_.grid);
 }
 
+/// Spheres with their own radii leave gaps: they find less. Of moved ones nobody knows what they stand for.
+double CollisionModel::Impl::volume(const VolumeTrueRadii* radii) const {
+  return radii && moved_.empty() ? std::max(packing->solid.volume, 0.0) : 0;
+}
+
 float CollisionModel::Impl::radiusOf(std::size_t sphere, const VolumeTrueRadii& radii) const {
   if (moved_.empty()) return radii.radii[sphere];
   return static_cast<float>(double{radii.radii[sphere]} * moved_[sphere].radius /

@@ -29,6 +29,8 @@ class GridSource {
   /// Calls use(spheres, scratch) with them, in the order of the packing.
   using Use = std::function<void(const Sphere*, GridScratch&)>;
   virtual void withSpheres(std::size_t count, const VolumeTrueRadii* radii, const Use& use) = 0;
+  /// Returns the volume of the solid that spheres of these radii stand for; 0 if it is not known.
+  virtual double volume(const VolumeTrueRadii* radii) const = 0;
 };
 
 /// Holds the grid of one prefix and set of radii. What is known of a grid comes first; the grid itself is
@@ -41,7 +43,10 @@ class ModelGrid {
       : source_(source), count_(count), radii_(radii) {}
 
   const core::GridPlan& plan() const {
-    bring(planned_, [&](const Sphere* spheres, GridScratch&) { plan_ = planGrid(spheres, count_); });
+    bring(planned_, [&](const Sphere* spheres, GridScratch&) {
+      plan_ = planGrid(spheres, count_);
+      plan_.view.volume = source_.volume(radii_);
+    });
     return plan_;
   }
 

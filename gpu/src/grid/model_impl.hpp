@@ -33,6 +33,7 @@ struct CollisionModel::Impl : GridSource {
 
   std::uint64_t version() const override { return version_; }
   void withSpheres(std::size_t count, const VolumeTrueRadii* radii, const Use& use) override;
+  double volume(const VolumeTrueRadii* radii) const override;
 
   std::shared_ptr<const Packing> packing;
 

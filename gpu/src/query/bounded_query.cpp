@@ -44,9 +44,10 @@ std::size_t stepsOf(const PairQuery& query) {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr ExpectedError kUnknown{kNan, kNan};
 
-/// The errors that a packing, scaled, gives for an overlap; NaN if it gives none.
+/// The errors that a packing, scaled, gives for an overlap with a body of another volume; NaN if it gives
+/// none.
 ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, double scale, Estimator estimator,
-                      const Overlap& found) {
+                      const Overlap& found, double other) {
   const OverlapErrors& errors = packing.overlap_errors;
   const OverlapErrors::Prefix* best = nullptr;
   for (const OverlapErrors::Prefix& candidate : errors.prefixes) {
@@ -58,7 +59,8 @@ ExpectedError errorOf(const Packing& packing, std::uint32_t prefix, double scale
   // Infinite if all spheres that meet are inside one another: such lenses have no rim.
   const double thickness = found.volume / found.stiffness;
   return expectedError(estimator == Estimator::raw ? best->raw : best->volume_true,
-                       overlapDepth(found.volume, found.area) / size, thickness / size, fraction);
+                       overlapDepth(found.volume, found.area) / size, thickness / size, fraction,
+                       estimator == Estimator::raw ? 0 : std::min(fraction, found.volume / other));
 }
 
 /// The error of a pair. What each packing measured is from two bodies like it, so half of the variance is its
@@ -75,11 +77,12 @@ ExpectedError expectedError(const PairQuery& query, Estimator estimator, const O
                       prefix_b = limitOf(query.b, query.prefix_b);
   if (estimator == Estimator::surface) return {0, 0};
   if (found.area == Vec3d{} && found.energy == 0) return kUnknown;
-  const auto of = [&](const CollisionModel& model, std::uint32_t prefix, double scale) {
-    return errorOf(model.packing(), prefix, scale, estimator, found);
-  };
-  const ExpectedError a = of(*query.a, prefix_a, query.placement_a.scale),
-                      b = of(*query.b, prefix_b, query.placement_b.scale);
+  const Packing &in_a = query.a->packing(), &in_b = query.b->packing();
+  const double scale_a = query.placement_a.scale, scale_b = query.placement_b.scale;
+  const double volume_a = in_a.solid.volume * std::pow(scale_a, 3),
+               volume_b = in_b.solid.volume * std::pow(scale_b, 3);
+  const ExpectedError a = errorOf(in_a, prefix_a, scale_a, estimator, found, volume_b),
+                      b = errorOf(in_b, prefix_b, scale_b, estimator, found, volume_a);
   return {together(a.mean, b.mean), together(a.bound, b.bound)};
 }
 

@@ -67,11 +67,13 @@ std::vector<OverlapErrors::AtDepth> errorsOf(const JsonEntry& entry) {
   return rows;
 }
 
-/// Returns the errors of a prefix with one kind of radii. The first files know nothing of planes.
-OverlapErrors::Estimate estimateOf(const JsonEntry& prefix, const char* radii, const char* radii_of_planes) {
-  OverlapErrors::Estimate estimate{errorsOf(prefix[radii]), 0, {}};
-  if (prefix.has(radii_of_planes)) {
-    const JsonEntry planes = prefix[radii_of_planes];
+/// Returns the errors of a prefix with one kind of radii. The first files know nothing of planes, nor of
+/// copies that lie nearly upon the solid.
+OverlapErrors::Estimate estimateOf(const JsonEntry& prefix, const std::string& radii) {
+  OverlapErrors::Estimate estimate{errorsOf(prefix[radii]), 0, {}, {}};
+  if (prefix.has(radii + "_deep")) estimate.deep = errorsOf(prefix[radii + "_deep"]);
+  if (prefix.has(radii + "_planes")) {
+    const JsonEntry planes = prefix[radii + "_planes"];
     estimate.thickest = planes["thicker_than"].number();
     estimate.planes = errorsOf(planes["errors"]);
   }
@@ -84,8 +86,8 @@ OverlapErrors overlapErrorsOf(const JsonEntry& entry) {
   errors.shallowest = entry["shallowest"].number();
   errors.sampling_error = entry["sampling_error"].number();
   for (const JsonEntry& prefix : entry["prefixes"].items()) {
-    errors.prefixes.push_back({prefix["count"].index(), estimateOf(prefix, "raw", "raw_planes"),
-                               estimateOf(prefix, "volume_true", "volume_true_planes")});
+    errors.prefixes.push_back(
+        {prefix["count"].index(), estimateOf(prefix, "raw"), estimateOf(prefix, "volume_true")});
   }
   return errors;
 }

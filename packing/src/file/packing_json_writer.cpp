@@ -95,6 +95,7 @@ json overlapErrorsEntry(const OverlapErrors& errors) {
     prefixes.push_back({{"count", prefix.count},
                         {"raw", rowsOf(prefix.raw.copies)},
                         {"volume_true", rowsOf(prefix.volume_true.copies)},
+                        {"volume_true_deep", rowsOf(prefix.volume_true.deep)},
                         {"raw_planes", planesOf(prefix.raw)},
                         {"volume_true_planes", planesOf(prefix.volume_true)}});
   }

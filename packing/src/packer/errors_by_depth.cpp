@@ -71,6 +71,12 @@ double scatterOf(std::span<const Trend> trends) {
   return runs > 0 ? squares / (runs * (kPoses - 1)) : 0;
 }
 
+/// How many times a mean the mean of as many others may be. Both scatter; where this one is small, so would
+/// be a limit that adds to it, so it is one for the logarithm of their ratio.
+double limitOf(double scatter) {
+  return steady::exp(kNormal * std::sqrt(2 * scatter / kPoses));
+}
+
 /// The power of the volume with which errors fall near a run, less its standard error: volumes may be far
 /// larger than these.
 double fallingPower(std::span<const Trend> trends, std::size_t run, double scatter) {
@@ -92,9 +98,7 @@ std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings)
   std::vector<Trend> trends;
   for (const Run& run : runs) trends.emplace_back(run);
   const double scatter = scatterOf(trends);
-  // How many times this mean the mean of as many others may be. Both scatter; where this one is small, so
-  // would be a limit that adds to it, so it is one for the logarithm of their ratio.
-  const double limit = steady::exp(kNormal * std::sqrt(2 * scatter / kPoses));
+  const double limit = limitOf(scatter);
 
   std::vector<OverlapErrors::AtDepth> rows;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -113,6 +117,27 @@ std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings)
                       fallingPower(trends, i, scatter)});
   }
   return rows;
+}
+
+std::vector<OverlapErrors::AtDepth> errorsOfDeep(const std::vector<Finding>& findings) {
+  double volumes = 0;  // the sum of logarithms
+  for (const Finding& one : findings) {
+    if (!(one.volume > 0)) return {};
+    volumes += steady::log2(one.volume);
+  }
+  if (findings.size() != kOverlapErrorPoses) return {};
+  const double volume = steady::pow(2, volumes / kPoses);
+  const Trend trend(findings);
+  const double rise = trend.volumes > 0 ? std::max(trend.both / trend.volumes, 0.0) : 0;
+  std::vector<Finding> level = findings;  // all as if they had that volume
+  double largest = 0;
+  for (Finding& one : level) {
+    one.error *= steady::pow(volume / one.volume, rise);
+    largest = std::max(largest, one.error);
+  }
+  const Trend others(level);
+  const double mean = limitOf(scatterOf({&others, 1})) * others.mean;
+  return {{volume, {std::min(mean, largest), largest}, volume, -rise}};
 }
 
 }  // namespace innersphere

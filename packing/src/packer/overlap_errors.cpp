@@ -16,8 +16,8 @@
 namespace innersphere {
 namespace {
 
-// Enough for 15 depths.
-constexpr std::size_t kTrials = 15 * kOverlapErrorPoses;
+// Enough for 14 depths.
+constexpr std::size_t kTrials = 14 * kOverlapErrorPoses;
 
 /// What two balls share, by the closed form of the lens.
 double lens(double r1, double r2, double d) {
@@ -72,6 +72,15 @@ class Prefix {
     return sums;
   }
 
+  /// The volume with volume-true radii.
+  double volume(const Pose& pose) const {
+    double sum = 0;
+    trees_.forMeeting(pose, [&](std::uint32_t i, std::uint32_t j, const Point&, double d) {
+      sum += lens(volume_true_[i].radius, volume_true_[j].radius, d);
+    });
+    return sum;
+  }
+
   Sums below(const PlaneCut& plane) const {
     Sums sums;
     for (std::size_t i = 0; i < volume_true_.size(); ++i) {
@@ -107,12 +116,15 @@ double meanOfLargest(std::vector<double> numbers) {
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
+double errorOf(double found, double truth) {
+  return std::abs(found - truth) / std::max(found, truth);
+}
+
 /// What was found in one pose.
 Finding findingOf(const Found& found, double truth, double volume) {
-  const double error = std::abs(found.volume - truth) / std::max(found.volume, truth);
   const double depth =
       found.volume > 0 ? overlapDepth(found.volume, {found.area[0], found.area[1], found.area[2]}) : 0;
-  return {depth / steady::pow(volume, 1.0 / 3), error, found.volume / volume};
+  return {depth / steady::pow(volume, 1.0 / 3), errorOf(found.volume, truth), found.volume / volume};
 }
 
 }  // namespace
@@ -120,12 +132,13 @@ Finding findingOf(const Found& found, double truth, double volume) {
 OverlapErrors findOverlapErrors(const Container& container, const Surface& surface,
                                 const SurfaceSamples& samples, std::span<const Ball> balls,
                                 const std::vector<VolumeTrueRadii>& radii, double volume) {
-  const OverlapTrials made = makeOverlapTrials(container, surface, samples, volume, kTrials);
+  const OverlapTrials made =
+      makeOverlapTrials(container, surface, samples, volume, kTrials, kOverlapErrorPoses);
   const std::vector<OverlapTrial>& trials = made.trials;
   const std::vector<PlaneCut>& planes = made.planes;
   if (trials.size() < kOverlapErrorPoses) return {};
   OverlapErrors errors;
-  errors.poses = static_cast<std::uint32_t>(trials.size());
+  errors.poses = static_cast<std::uint32_t>(trials.size() + made.deep.size());
   errors.shallowest = made.shallowest;
   double squares = 0;
   for (const OverlapTrial& trial : trials) {
@@ -136,8 +149,14 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
   for (const VolumeTrueRadii& prefix : radii) {
     const Prefix spheres(balls, prefix, container.side());
     std::vector<Prefix::Sums> copies(trials.size()), cuts(planes.size());
+    std::vector<Finding> deep(made.deep.size());
     tbb::parallel_for(std::size_t{0}, trials.size(),
                       [&](std::size_t i) { copies[i] = spheres.overlap(trials[i].pose); });
+    tbb::parallel_for(std::size_t{0}, deep.size(), [&](std::size_t i) {
+      // No more than the solid has, as a query tells.
+      const double found = std::min(spheres.volume(made.deep[i].pose) / volume, 1.0);
+      deep[i] = {0, errorOf(found, made.deep[i].truth.fraction), found};
+    });
     tbb::parallel_for(std::size_t{0}, planes.size(),
                       [&](std::size_t i) { cuts[i] = spheres.below(planes[i]); });
     const auto estimate = [&](Found Prefix::Sums::*sum) {
@@ -164,6 +183,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
     };
     errors.prefixes.push_back(
         {prefix.count, estimate(&Prefix::Sums::raw), estimate(&Prefix::Sums::volume_true)});
+    errors.prefixes.back().volume_true.deep = errorsOfDeep(deep);
   }
   return errors;
 }

@@ -32,7 +32,7 @@ constexpr double kAim = 1.15, kAbout = 1.2;
 constexpr int kMostSteps = 24;
 
 // Overlaps, as fractions of the solid, that are looked for.
-constexpr double kLeastByTriangles = 1e-5, kLeastBySamples = 0.002, kMostShared = 0.45;
+constexpr double kLeastByTriangles = 1e-5, kLeastBySamples = 0.002, kMostShared = kDeepOverlap;
 
 // From here on their errors are told: enough are shallower.
 constexpr double kShallowest = 3e-5;
@@ -118,6 +118,9 @@ class TrueOverlap {
     return by_triangles ? Voxels::Shared{byTriangles(pose), 0} : many_->shared(pose);
   }
 
+  /// The fraction by few points: to about 0.3 % of the solid, half a percent if it is thin.
+  Voxels::Shared sampledAt(const Pose& pose) const { return few_.shared(pose); }
+
   struct Found {
     double fraction;
     bool exact;
@@ -167,11 +170,14 @@ Start anyStart(const TrueOverlap& overlap, std::size_t number) {
   return {turn, overlap.point(places[0]) - turn * overlap.point(places[1]), direction(random(number, 0))};
 }
 
+Eigen::Quaterniond turned(double angle, const Point& axis) {
+  const Point v = steady::sin(angle / 2) * axis;
+  return {steady::cos(angle / 2), v[0], v[1], v[2]};
+}
+
 /// A turn by some degrees about any axis.
 Eigen::Quaterniond slightTurn(double part, const Point& axis) {
-  const double angle = kLeastTurned * steady::pow(kMostTurned / kLeastTurned, part);
-  const Point v = steady::sin(angle / 2) * direction(axis);
-  return {steady::cos(angle / 2), v[0], v[1], v[2]};
+  return turned(kLeastTurned * steady::pow(kMostTurned / kLeastTurned, part), direction(axis));
 }
 
 /// The copy lies upon the solid, but for some degrees about a random point.
@@ -243,6 +249,25 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
   return {pose, near.share.exact ? Voxels::Shared{share, 0} : overlap.at(pose, share)};
 }
 
+/// The copy lies upon the solid, but for a turn and a shift, both so small that they share about `target`.
+OverlapTrial findDeepTrial(const TrueOverlap& overlap, std::size_t number, double target) {
+  const Point places = random(number, 1), middle = overlap.point(places[0]);
+  const Point axis = direction(random(number, 2)), way = direction(random(number, 0));
+  // Turns of one radian and shifts of the cube's side are about as large.
+  double size = 0.1;  // most are smaller
+  OverlapTrial trial;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Eigen::Matrix3d turn = turned(size * places[1], axis).toRotationMatrix();
+    trial.pose = {turn, middle - turn * middle + size * places[2] * way};
+    trial.truth = overlap.sampledAt(trial.pose);
+    // What they do not share grows about as the size.
+    const double times = (1 - trial.truth.fraction) / (1 - target);
+    if (times < kAbout && (size == 1 || times > 1 / kAbout)) break;
+    size = std::min(size / std::max(times, 0.1), 1.0);
+  }
+  return trial;
+}
+
 /// A plane through a random point of the solid.
 PlaneCut cutSolid(const TrueOverlap& overlap, std::size_t number) {
   const Point normal = direction(random(number, 4));
@@ -253,11 +278,12 @@ PlaneCut cutSolid(const TrueOverlap& overlap, std::size_t number) {
 }  // namespace
 
 OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface,
-                                const SurfaceSamples& samples, double volume, std::size_t count) {
+                                const SurfaceSamples& samples, double volume, std::size_t count,
+                                std::size_t deep) {
   const TrueOverlap overlap(container, surface, volume);
   const double least = overlap.knowsSurface() ? kLeastByTriangles : kLeastBySamples;
-  OverlapTrials result{std::vector<OverlapTrial>(count), std::vector<PlaneCut>(count / 3),
-                       overlap.knowsSurface() ? kShallowest : least};
+  OverlapTrials result{std::vector<OverlapTrial>(count), std::vector<OverlapTrial>(deep),
+                       std::vector<PlaneCut>(count / 3), overlap.knowsSurface() ? kShallowest : least};
   if (!overlap.knowsSurface()) result.planes.clear();
   const auto start = [&](std::size_t i) {
     if (i % 3 == 0) return anyStart(overlap, i);
@@ -266,6 +292,10 @@ OverlapTrials makeOverlapTrials(const Container& container, const Surface& surfa
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     result.trials[i] = findTrial(overlap, start(i), least * steady::pow(kMostShared / least, part));
+  });
+  tbb::parallel_for(std::size_t{0}, deep, [&](std::size_t i) {
+    const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(deep);
+    result.deep[i] = findDeepTrial(overlap, count + i, kDeepOverlap + part * (1 - kDeepOverlap));
   });
   tbb::parallel_for(std::size_t{0}, result.planes.size(),
                     [&](std::size_t i) { result.planes[i] = cutSolid(overlap, i); });

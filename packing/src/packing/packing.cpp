@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -53,7 +54,11 @@ ExpectedError errorAt(const std::vector<OverlapErrors::AtDepth>& rows, double de
 }  // namespace
 
 ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness,
-                            double volume) {
+                            double volume, double of_larger) {
+  if (of_larger > kDeepOverlap) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    return estimate.deep.empty() ? ExpectedError{kNan, kNan} : errorAt(estimate.deep, 0, of_larger);
+  }
   const ExpectedError copies = errorAt(estimate.copies, depth, volume);
   if (!(thickness > estimate.thickest)) return copies;
   const ExpectedError planes = errorAt(estimate.planes, depth, volume);
@@ -134,6 +139,7 @@ void validateErrors(const std::vector<OverlapErrors::AtDepth>& rows) {
 
 void validateEstimate(const OverlapErrors::Estimate& estimate) {
   validateErrors(estimate.copies);
+  validateErrors(estimate.deep);
   validateErrors(estimate.planes);
   if (!std::isfinite(estimate.thickest)) notFinite("a number of the overlap errors");
 }

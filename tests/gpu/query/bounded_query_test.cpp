@@ -147,7 +147,7 @@ TEST_P(BoundedQueryConformance, ErrorIsThatOfThePackings) {
 TEST_P(BoundedQueryConformance, ErrorFallsWithTheVolume) {
   const auto packing = makePacking(randomSpheres(64, 0.2, 30, 1));
   packing->solid.volume = 8;
-  packing->overlap_errors.prefixes = {{64, {{{0.1, {0.2, 0.4}, 0.01, 0.5}}, 1e9, {}}, {}}};
+  packing->overlap_errors.prefixes = {{64, {{{0.1, {0.2, 0.4}, 0.01, 0.5}}, 1e9, {}, {}}, {}}};
   const CollisionModel model(packing);
   query.a = query.b = &model;
   Overlap found;

@@ -41,12 +41,13 @@ Packing somePacking(std::size_t n, unsigned seed = 1) {
   packing.certificate = {0.1, 0.00123};
   packing.quality = {0.8, 0.01, 0.02, 0.1 + 0.2};
   packing.coverage = {{2, 0.1, 0.2, 1.0 / 3, {1, -2, 1e-17}, 0.25}, {5, 0.01, 0.02, 0.03, {}, 0}};
-  packing.overlap_errors = {200,
-                            1e-5,
-                            1.0 / 3,
-                            {{2,
-                              {{{1e-3, {0.5, 1.0 / 3}, 1.0 / 7, 1.0 / 9}, {0.1, {0.4, 0.6}}}, 0.1 + 0.2, {}},
-                              {{}, 0, {{0.2, {1e-17, 0.7}, 1e-9, 0.5}}}}}};
+  packing.overlap_errors = {
+      200,
+      1e-5,
+      1.0 / 3,
+      {{2,
+        {{{1e-3, {0.5, 1.0 / 3}, 1.0 / 7, 1.0 / 9}, {0.1, {0.4, 0.6}}}, 0.1 + 0.2, {}, {}},
+        {{}, 0, {{0.2, {1e-17, 0.7}, 1e-9, 0.5}}, {{0.7, {0.1, 0.3}, 0.7, -1.5}}}}}};
   for (std::size_t i = 0; i < n; ++i) packing.mass_weights.push_back(1 + 1 / static_cast<float>(i + 3));
   packing.warnings = {"a \"part\" is empty", ""};
   packing.provenance = {"some \"mesh\".obj", "0123456789abcdef", "--spheres 5", "0.1.0"};
@@ -185,6 +186,19 @@ TEST(FilePacking, EstimatesWithoutPlanesAreRead) {
   EXPECT_TRUE(sameErrors(raw.copies, had.copies));
   EXPECT_TRUE(raw.planes.empty());
   EXPECT_EQ(expectedError(raw, 0.1, 7).mean, expectedError(had, 0.1).mean);
+}
+
+// Of copies that lie nearly upon the solid they know nothing.
+TEST(FilePacking, EstimatesWithoutDeepCopiesAreRead) {
+  const Packing packing = somePacking(3);
+  nlohmann::json document = nlohmann::json::parse(toJson(packing));
+  EXPECT_EQ(document["errors_by_depth"]["prefixes"][0].erase("volume_true_deep"), 1u);
+  const OverlapErrors::Estimate known = packing.overlap_errors.prefixes.at(0).volume_true,
+                                read = fromJson(document.dump()).overlap_errors.prefixes.at(0).volume_true;
+  EXPECT_TRUE(sameErrors(read.planes, known.planes));
+  EXPECT_TRUE(std::isnan(expectedError(read, 0.5, 0, 0.7, 0.7).bound));
+  EXPECT_EQ(expectedError(known, 0.5, 0, 0.7, 0.7).bound, 0.3);
+  EXPECT_EQ(expectedError(read, 0.5, 0, 0.7, 0.4).bound, expectedError(known, 0.5, 0, 0.7, 0.4).bound);
 }
 
 // Nor do they know how errors fall with the volume.
