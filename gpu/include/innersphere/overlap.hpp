@@ -15,8 +15,8 @@ namespace innersphere {
 /// the opposite.
 ///
 /// Volume-true spheres of one body overlap each other a little. Where a body lies nearly upon its copy they
-/// meet themselves, and their lenses sum up to 10 to 30 % more than there is. `volume` ends at what the
-/// smaller solid has; everything else stays that of the lenses.
+/// meet themselves, and their lenses sum up to a tenth to a quarter more than there is. `volume` ends at what
+/// the smaller solid has; everything else stays that of the lenses.
 struct Overlap {
   /// The sum of V [m^3]; with volume-true radii at most Packing::solid.volume of the smaller body. A body
   /// whose solid is not known, that is grown by a margin or was changed by CollisionModel::update() sets no

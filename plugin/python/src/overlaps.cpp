@@ -386,7 +386,7 @@ energy      potential of the force for unit stiffness [m^4]
 pair_count  overlapping pairs of spheres, or of triangles that meet ("surface"), uint64
 
 Where a solid lies nearly upon its copy its spheres with "volume_true", which overlap each other a little, meet themselves, and
-their lenses sum up to 10 to 30 % more than there is. volume ends at what the smaller solid has (without a margin); all else is that
+their lenses sum up to a tenth to a quarter more than there is. volume ends at what the smaller solid has (without a margin); all else is that
 of the lenses.
 
 With estimator="surface" the law of force is another one: energy is the volume, force is area, torque is minus the
