@@ -141,7 +141,9 @@ TEST_P(Hollows, TouchABallAtOnePlace) {
       EXPECT_LT((found.deepest + place.way).length(), 0.3 * kDegree) << ratio;
       EXPECT_LT(found.past_centre, 0.1 * kDegree) << ratio;
       // Where the ball all but fills the hollow, places further up are near, too.
-      if (ratio < 0.9) EXPECT_EQ(found.count, 1) << ratio;
+      if (ratio < 0.9) {
+        EXPECT_EQ(found.count, 1) << ratio;
+      }
     }
   }
 }
