@@ -75,6 +75,8 @@ ContactNormal::ContactNormal(const std::vector<ProbedSample>& samples, const Fac
 
 btVector3 ContactNormal::at(const ProbedSample& sample) const {
   const btVector3 &a = sample.points.normal_a, &b = sample.points.normal_b;
+  // Both lean the same way. That of a ball leads through its centre, wherever it is taken.
+  if (extents_ == nullptr && sample.points.curvature_a < 0 && sample.points.curvature_b > 0) return b;
   if (opposed(sample.points) || isOnEdge(sample.points)) return mean(sample.points, face_a_);
   const bool one_is_flat = flat_a_ != flat_b_;
   if (one_is_flat && extents_ == nullptr) return flat_a_ ? a : b;

@@ -29,7 +29,8 @@ class FaceExtents {
 
 /// Finds the direction of contact at each of the samples of a patch. Beside the deepest point both normals
 /// lean away from it, each in proportion to its curvature, so the flatter surface counts for more; a flat one
-/// counts alone. Of two faces that meet at an angle, that one counts which the other one's edge lies on.
+/// counts alone. In a hollow both lean the same way, and that of a shape of Bullet's, which is exact, counts.
+/// Of two faces that meet at an angle, that one counts which the other one's edge lies on.
 class ContactNormal {
  public:
   /// Takes the samples of one patch. `extents` is null where nothing is known of B but its distance: its

@@ -1,12 +1,11 @@
 #include "narrow_phase/hill.hpp"
 
-#include "common/contact_tolerances.hpp"
-
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Ratio: along a ridge, what is left of how fast the slope falls across it is less than this part.
+/// Ratio: along a ridge, what is left of how fast the slope falls across it is less than this part, and so is
+/// what is left of two curvatures where one surface lies in the other.
 constexpr btScalar kRounding = 64 * SIMD_EPSILON;
 
 }  // namespace
@@ -37,7 +36,7 @@ btVector3 Hill::toTop(const btVector3& slope) const {
 }
 
 bool fitTogether(btScalar curvature_a, btScalar curvature_b) {
-  return !(curvature_a + curvature_b > kConforming * (btFabs(curvature_a) + btFabs(curvature_b)));
+  return !(curvature_a + curvature_b > kRounding * (btFabs(curvature_a) + btFabs(curvature_b)));
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

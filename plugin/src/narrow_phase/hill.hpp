@@ -58,7 +58,8 @@ class Hill {
 };
 
 /// Returns true if surfaces that touch are flat, or curved so that one lies in the other: their curvatures
-/// add up to nothing, or to a small part of themselves. Then there is no deepest point to speak of.
+/// add up to nothing, or less. Then there is no deepest point. A ball in a hollow that is hardly larger has
+/// one: its hill is flat, but how far it spreads is for those to judge who ask for its top.
 bool fitTogether(btScalar curvature_a, btScalar curvature_b);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -1,0 +1,186 @@
+// A ball in a hollow that is hardly larger touches it at one place, and is pushed through its centre.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "innersphere/mesh.hpp"
+#include "innersphere/packer.hpp"
+#include "named_packings.hpp"
+#include "test_packings.hpp"
+#include "test_world.hpp"
+#include "turned_meshes.hpp"
+
+namespace innersphere::test {
+namespace {
+
+constexpr double kHollow = 1, kWall = 0.2, kBend = 3, kLength = 4;  // [m]
+
+/// Half a ring, open upwards, counter-clockwise from where it is outermost, or from its lowest place.
+std::vector<std::array<double, 2>> section(double first, int steps) {
+  std::vector<std::array<double, 2>> outline;
+  for (const double radius : {kHollow + kWall, kHollow}) {
+    for (int i = 0; i <= steps; ++i) {
+      const double t = double(radius > kHollow ? i : steps - i) / steps,
+                   angle = first + (2 * M_PI - first) * t;
+      outline.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+    }
+  }
+  return outline;
+}
+
+Mesh bowl() {
+  std::vector<std::array<double, 2>> profile = section(1.5 * M_PI, 48);
+  profile.front()[0] = profile.back()[0] = 0;
+  return turnedMesh(profile, 128);
+}
+
+/// A quarter of a ring about z, or straight along y.
+Mesh pipe(bool bent) {
+  const auto outline = section(M_PI, 96);
+  const auto around = std::uint32_t(outline.size());
+  const std::uint32_t along = bent ? 64 : 1;
+  Mesh mesh;
+  for (std::uint32_t i = 0; i <= along; ++i) {
+    const double turn = bent ? M_PI / 2 * i / along : 0;
+    for (const auto& [out, up] : outline) {
+      const double x = out + (bent ? kBend : 0);
+      mesh.vertices.push_back(
+          {x * std::cos(turn), bent ? x * std::sin(turn) : kLength * (i / double(along) - 0.5), up});
+    }
+  }
+  for (std::uint32_t k = 0; k < around; ++k) {
+    const std::uint32_t next = (k + 1) % around;
+    for (std::uint32_t i = 0; i < along * around; i += around) {
+      mesh.triangles.push_back({i + k, i + around + k, i + around + next});
+      mesh.triangles.push_back({i + k, i + around + next, i + next});
+    }
+  }
+  for (std::uint32_t k = 0; k + 1 < around / 2; ++k) {
+    const std::uint32_t end = along * around, back = around - 1 - k;
+    mesh.triangles.push_back({k, k + 1, back - 1});
+    mesh.triangles.push_back({k, back - 1, back});
+    mesh.triangles.push_back({end + k, end + back - 1, end + k + 1});
+    mesh.triangles.push_back({end + k, end + back, end + back - 1});
+  }
+  return mesh;
+}
+
+std::shared_ptr<PackingShape> packed(const Mesh& mesh) {
+  PackOptions options;
+  options.spheres = 1000;
+  options.overlap_errors = false;
+  return makeShape(pack(*makeSolid(mesh, "hollow"), options));
+}
+
+/// Of a ball, b.
+struct AllPoints : btCollisionWorld::ContactResultCallback {
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* object0, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    const bool swapped = object0->getCollisionObject() == b;
+    const btVector3 normal = swapped ? point.m_normalWorldOnB : -point.m_normalWorldOnB;
+    const btVector3 on_ball = swapped ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
+    const btVector3 inwards = (b->getWorldTransform().getOrigin() - on_ball).normalized();
+    past_centre = std::max(past_centre, double(inwards.cross(normal).length()));
+    ++count;
+    if (-point.getDistance() < depth) return 0;
+    depth = -point.getDistance();
+    deepest = normal;
+    return 0;
+  }
+  const btCollisionObject* b = nullptr;
+  int count = 0;
+  double past_centre = 0;  ///< sine, at most
+  btScalar depth = -1;
+  btVector3 deepest{0, 0, 0};  ///< normal there, into the ball
+};
+
+/// Where a ball touches: a place in the middle of the hollow, and the way from there.
+struct Place {
+  btVector3 middle, way;
+};
+
+class Hollows : public testing::TestWithParam<const char*> {};
+
+std::vector<Place> placesIn(const std::string& hollow) {
+  std::vector<Place> places;
+  for (int i = 0; i < 8; ++i) {
+    const double side = (i - 3.5) / 7, turn = hollow == "bowl" ? 0.7 * i : M_PI / 4 + 0.03 * i;
+    const btVector3 out(btScalar(std::cos(turn)), btScalar(std::sin(turn)), 0), down(0, 0, -1);
+    if (hollow == "straight") {
+      places.push_back({btVector3(0, btScalar(0.1 * i), 0),
+                        btVector3(btScalar(std::sin(side)), 0, btScalar(-std::cos(side)))});
+    } else {
+      places.push_back({hollow == "bent" ? out * btScalar(kBend) : btVector3(0, 0, 0),
+                        out * btScalar(std::sin(side)) + down * btScalar(std::cos(side))});
+    }
+  }
+  return places;
+}
+
+TEST_P(Hollows, TouchABallAtOnePlace) {
+  constexpr double kDepth = 0.0005 * kHollow, kDegree = M_PI / 180;
+  const std::string hollow = GetParam();
+  const auto shape = packed(hollow == "bowl" ? bowl() : pipe(hollow == "bent"));
+  TestWorld world;
+  btRigidBody& a = world.add(shape, 0, btVector3(0, 0, 0));
+  a.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
+  for (const double ratio : {0.3, 0.5, 0.56, 0.7, 0.85, 0.95}) {
+    btSphereShape ball{btScalar(ratio * kHollow)};
+    btCollisionObject b;
+    b.setCollisionShape(&ball);
+    for (const Place& place : placesIn(hollow)) {
+      const btVector3 at = place.middle + place.way * btScalar((1 - ratio) * kHollow + kDepth);
+      b.setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
+      AllPoints found;
+      found.b = &b;
+      world.world.contactPairTest(&a, &b, found);
+      EXPECT_NEAR(found.depth, kDepth, 0.05 * kDepth) << ratio;
+      EXPECT_LT((found.deepest + place.way).length(), 0.3 * kDegree) << ratio;
+      EXPECT_LT(found.past_centre, 0.1 * kDegree) << ratio;
+      // Where the ball all but fills the hollow, places further up are near, too.
+      if (ratio < 0.9) {
+        EXPECT_EQ(found.count, 1) << ratio;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Hollows, testing::Values("straight", "bent", "bowl"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(Bowl, LetsABallSwingWithoutLossOrSpin) {
+  constexpr double kStart = 1;  // [rad]
+  const auto shape = packed(bowl());
+  for (const double ratio : {0.3, 0.6, 0.9}) {
+    for (const bool is_packed : {false, true}) {
+      const double radius = ratio * kHollow, far = kHollow - radius;
+      const std::shared_ptr<btCollisionShape> ball =
+          is_packed ? std::shared_ptr<btCollisionShape>(makeFineBallShape(radius, 256))
+                    : std::make_shared<btSphereShape>(btScalar(radius));
+      TestWorld world;
+      btRigidBody& a = world.add(shape, 0, btVector3(0, 0, 0));
+      a.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
+      btRigidBody& b = world.add(
+          ball, 1, btVector3(btScalar(far * std::sin(kStart)), 0, btScalar(-far * std::cos(kStart))));
+      b.setFriction(0);
+      b.setActivationState(DISABLE_DEACTIVATION);
+      const double height = far * (1 - std::cos(kStart));
+      double fastest_spin = 0;
+      for (int i = 0; i < 6; ++i) {
+        world.run(0.5, 1.0 / 240);
+        fastest_spin = std::max(fastest_spin, double(b.getAngularVelocity().length()));
+      }
+      const btVector3 at = b.getWorldTransform().getOrigin();
+      const double energy = 0.5 * b.getLinearVelocity().length2() + 9.81 * (at.z() + far);
+      EXPECT_NEAR(energy / (9.81 * height), 1, 0.04) << ratio << is_packed;
+      EXPECT_LT(fastest_spin, 0.02) << ratio << is_packed;
+      EXPECT_NEAR(at.y(), 0, 0.01 * kHollow) << ratio << is_packed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace innersphere::test
