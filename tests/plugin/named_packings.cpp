@@ -55,6 +55,19 @@ Surface roundSurface(int along, int around, bool closed, const std::function<Vec
   return surface;
 }
 
+Surface torusSurface(int along, int around, double ring, double tube) {
+  return roundSurface(along, around, true, [=](double way, double turn) {
+    const double angle = 2 * M_PI * way, out = ring + tube * std::cos(turn);
+    return Vec3d{out * std::cos(angle), out * std::sin(angle), tube * std::sin(turn)};
+  });
+}
+
+Surface cylinderSurface(double radius, double height) {
+  return roundSurface(2, 192, false, [=](double way, double turn) {
+    return Vec3d{radius * std::cos(turn), radius * std::sin(turn), (0.5 - way) * height};
+  });
+}
+
 std::shared_ptr<PackingShape> withSurface(const Solid& solid, std::size_t n, Surface surface) {
   PackOptions options;
   options.spheres = n;
@@ -67,10 +80,19 @@ std::shared_ptr<PackingShape> withSurface(const Solid& solid, std::size_t n, Sur
 }  // namespace
 
 std::shared_ptr<PackingShape> makeFineTorusShape(double ring, double tube, std::size_t n) {
-  return withSurface(*makeTorus(ring, tube), n, roundSurface(192, 96, true, [=](double along, double around) {
-    const double turn = 2 * M_PI * along, out = ring + tube * std::cos(around);
-    return Vec3d{out * std::cos(turn), out * std::sin(turn), tube * std::sin(around)};
-  }));
+  return withSurface(*makeTorus(ring, tube), n, torusSurface(192, 96, ring, tube));
+}
+
+std::shared_ptr<PackingShape> makeRingTubeShape(double ring, double tube, std::size_t n) {
+  const double radius = ring + 1.5 * tube, height = 3 * tube;
+  Surface surface = cylinderSurface(radius, height);
+  const Surface inside = torusSurface(256, 96, ring, tube);
+  const auto first = std::uint32_t(surface.vertices.size());
+  surface.vertices.insert(surface.vertices.end(), inside.vertices.begin(), inside.vertices.end());
+  for (const auto& [a, b, c] : inside.triangles)
+    surface.triangles.push_back({first + a, first + c, first + b});
+  return withSurface(*makeDifference(makeCylinder(radius, height), makeTorus(ring, tube)), n,
+                     std::move(surface));
 }
 
 std::shared_ptr<PackingShape> makeFineBallShape(double radius, std::size_t n) {
@@ -78,10 +100,7 @@ std::shared_ptr<PackingShape> makeFineBallShape(double radius, std::size_t n) {
 }
 
 std::shared_ptr<PackingShape> makeFineCylinderShape(double radius, double height, std::size_t n) {
-  return withSurface(
-      *makeCylinder(radius, height), n, roundSurface(2, 192, false, [=](double along, double around) {
-        return Vec3d{radius * std::cos(around), radius * std::sin(around), (0.5 - along) * height};
-      }));
+  return withSurface(*makeCylinder(radius, height), n, cylinderSurface(radius, height));
 }
 
 }  // namespace innersphere::test

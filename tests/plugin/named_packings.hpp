@@ -18,6 +18,10 @@ std::shared_ptr<PackingShape> makeTorusShape(double ring, double tube, std::size
 /// The same with three times as many triangles along each circle as the packer's mesh has.
 std::shared_ptr<PackingShape> makeFineTorusShape(double ring, double tube, std::size_t n);
 
+/// A thick disc about the z axis with a tube in it that is bent to a ring. Radii of the ring and of the tube
+/// [m].
+std::shared_ptr<PackingShape> makeRingTubeShape(double ring, double tube, std::size_t n);
+
 /// With 16,000 triangles.
 std::shared_ptr<PackingShape> makeFineBallShape(double radius, std::size_t n);
 

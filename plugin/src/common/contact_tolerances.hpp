@@ -62,6 +62,9 @@ constexpr btScalar kOneNormal = btScalar(1e-3);
 
 /// Cosine, 60 degrees: a surface that leans more from the line has no usable slope.
 constexpr btScalar kUsableCosine = btScalar(0.5);
+/// Ratio: a hollow surface that is convex along its other axis by less than this part is straight there, but
+/// for its triangles.
+constexpr btScalar kConvex = btScalar(0.01);
 /// An ascent to a top takes so many steps at most: each is one of Newton's method, whose error falls
 /// quadratically.
 constexpr int kAscentSteps = 8;

@@ -256,17 +256,47 @@ class PatchContactPoints {
     const Kind kind = faces ? Kind::faces : probe_.isOnFaceOfB(points) ? Kind::edge : Kind::line;
     if (!add(points, normal, sample.id, kind)) return;
     WeightedPoint& point = found_.back();
-    const Across axes(normal);
+    point.bends = !points.areFlat();
+    point.slope = points.normal_b - points.normal_a;
+    point.is_top = sample.is_top;
+    keepInHollow(points, point);
+    const Across axes(point.point.normal);
     const SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
     point.point.bend_a = bends.a;
     point.point.bend_b = bends.b;
     point.point.bend_x = axes.x;
-    point.bends = !points.areFlat();
-    point.slope = points.normal_b - points.normal_a;
     const Hill hill(bends.a, bends.b, point.point.depth, axes);
     point.point.to_top = hill.toTop(point.slope);
     point.point.below_top = point.slope.dot(point.point.to_top) / 2;
-    point.is_top = sample.is_top;
+  }
+
+  /// What is round stays within the planes that touch a hollow around it. Other planes say nothing about
+  /// where it may go: those that lean against its way brake what slides past them. So a hollow bears along
+  /// its own normal, where what is round reaches furthest that way, if it goes on to there.
+  void keepInHollow(const OpposedPoints& points, WeightedPoint& point) {
+    if (point.is_top || point.slope.isZero()) return;
+    const Across axes_a(points.normal_a), axes_b(points.normal_b);
+    const Bend a = surfaces_.bends(points, axes_a).a, b = surfaces_.bends(points, axes_b).b;
+    const bool in_b = b.isHollow();
+    const btScalar fall =
+        a.turn(point.slope, axes_a).dot(point.slope) + b.turn(point.slope, axes_b).dot(point.slope);
+    if (in_b == a.isHollow() || !(fall > 0)) return;
+    const btVector3& normal = in_b ? points.normal_b : points.normal_a;
+    // No shorter radius than that of the strongest bend: what is round reaches no less far.
+    const Hill round(in_b ? a : b, Bend(), 0, in_b ? axes_a : axes_b);
+    const btVector3 further = point.slope / round.fall(0);
+    const btVector3 on_a = in_b ? points.on_a + further : points.on_a,
+                    on_b = in_b ? points.on_b : points.on_b + further;
+    const btScalar over = points.depthAlong(normal), depth = (on_a - on_b).dot(normal), bulge = depth - over;
+    SurfaceQueries::Nearest wall;
+    const bool goes_on = surfaces_.nearestWall(!in_b, in_b ? on_a : on_b, btFabs(depth) + bulge, wall) &&
+                         wall.distance < bulge - depth &&
+                         wall.normal.dot(normal) * (in_b ? -1 : 1) > points.normal_a.dot(points.normal_b);
+    if (!goes_on) return;
+    point.point.normal = normal;
+    point.point.depth = point.point.depth < 0 ? btMin(depth, btScalar(0)) : over;
+    point.point.on_b = on_a - normal * point.point.depth;
+    point.moved = point.point.on_b - points.on_b;
   }
 
   const EdgeProbe& probe_;

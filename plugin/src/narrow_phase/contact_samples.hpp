@@ -30,6 +30,7 @@ struct WeightedPoint {
   bool is_top = false;        ///< see ProbedSample
   bool bends = false;         ///< between curved surfaces
   btVector3 slope{0, 0, 0};   ///< B's normal less A's
+  btVector3 moved{0, 0, 0};   ///< the point on B, from where that was measured
 };
 
 /// Keeps room to work in from one patch to the next.

@@ -10,6 +10,11 @@ constexpr btScalar kRounding = 64 * SIMD_EPSILON;
 
 }  // namespace
 
+bool Bend::isHollow() const {
+  const btScalar half = (xx - yy) / 2, spread = btSqrt(half * half + xy * xy);
+  return mean() < 0 && mean() + spread <= kConvex * (spread - mean());
+}
+
 Hill::Hill(const Bend& a, const Bend& b, btScalar depth, const Across& axes) {
   const btScalar xx = a.xx + b.xx - depth * (a.xx * b.xx + a.xy * b.xy);
   const btScalar yy = a.yy + b.yy - depth * (a.yy * b.yy + a.xy * b.xy);

@@ -22,6 +22,8 @@ struct Bend {
 
   static Bend round(btScalar curvature) { return {curvature, 0, curvature}; }
   btScalar mean() const { return (xx + yy) / 2; }
+  /// Returns true if it is hollow, at least along one axis, and along none convex, but for rounding.
+  bool isHollow() const;
   /// Returns the turn of the normal along `way`.
   btVector3 turn(const btVector3& way, const Across& axes) const {
     const btScalar wx = way.dot(axes.x), wy = way.dot(axes.y);

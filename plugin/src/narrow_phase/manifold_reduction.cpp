@@ -184,7 +184,7 @@ void keepTops(btScalar separation, const StepAhead& step, std::vector<WeightedPo
     const ContactPoint top = found[i].point;
     const Hill hill(top.bend_a, top.bend_b, top.depth, Across(top.normal));
     const auto isBeside = [&](const WeightedPoint& p) {
-      return p.bends && isOnHill(p.point.on_b - top.on_b, p.slope, hill, separation);
+      return p.bends && isOnHill(p.point.on_b - p.moved - top.on_b, p.slope, hill, separation);
     };
     const bool alone = i == 0 && std::all_of(found.begin() + 1, found.end(), isBeside);
     const bool sunk_in = alone ? step.depthAtEnd(top.on_b, top.normal, top.depth) > kDrivenIn * step.size

@@ -36,6 +36,14 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
   btVector3 lineStart(std::size_t index) const override;
   btScalar reach(std::size_t index) const override { return surfaceDistance(index); }
   bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const override;
+  bool nearestWall(bool of_a, const btVector3& place, btScalar max_distance,
+                   SurfaceQueries::Nearest& nearest) const override {
+    const PlacedPacking& body = of_a ? a_ : b_;
+    const btVector3 at = of_a ? place : place - apart();
+    if (!body.nearest(at, max_distance + body.margin, nearest)) return false;
+    nearest.distance -= body.margin;
+    return true;
+  }
   Bends bends(const OpposedPoints& points, const Across& axes) const override;
   void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;

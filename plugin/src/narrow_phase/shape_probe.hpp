@@ -39,6 +39,12 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
     return a_.centreOf(near_spheres_[index].sphere) + near_spheres_[index].aside;
   }
   bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const override;
+  bool nearestWall(bool of_a, const btVector3& place, btScalar max_distance,
+                   SurfaceQueries::Nearest& nearest) const override {
+    if (!of_a || !a_.nearest(place, max_distance + a_.margin, nearest)) return false;
+    nearest.distance -= a_.margin;
+    return true;
+  }
   Bends bends(const OpposedPoints& points, const Across& axes) const override;
   void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;

@@ -11,6 +11,7 @@
 
 #include "innersphere/bullet_precision.hpp"
 #include "narrow_phase/hill.hpp"
+#include "surface/surface_queries.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -85,6 +86,9 @@ class SurfaceProbe {
   /// Finds the direction from A to B in which the sphere is nearest to the other solid's surface. Returns
   /// false if it is too far away to tell. Leaves the triangles near the sphere in `points`.
   virtual bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const = 0;
+  /// Finds the nearest point of A's surface, or of B's. Returns false if it is further from `place` than
+  /// `max_distance` [m], or not known, as by default.
+  virtual bool nearestWall(bool, const btVector3&, btScalar, SurfaceQueries::Nearest&) const { return false; }
   struct Bends {
     Bend a, b;
   };

@@ -33,6 +33,7 @@ struct NewPoint {
   btScalar friction = 1;       ///< share of it
   btScalar curvature = 0;      ///< mean of both surfaces together [1/m]
   btScalar ahead = 0;          ///< how much further on bodies that rock touch when the step ends [m]
+  btScalar nearer = 0;         ///< how much nearer the bodies come in the step as a hollow bends [m]
   PointBends bends;
 };
 
@@ -151,10 +152,19 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   // instead, and would brake it.
   if (depth < 0 && !solver.substeps) {
     const btScalar turning = motion.approachByTurningAt(from.on_b, from.normal);
-    depth = btMin(btScalar(0), depth + turning * law.time_step * law.time_step / 2);
+    depth = btMin(btScalar(0),
+                  depth + (from.nearer > 0 ? from.nearer : turning * law.time_step * law.time_step / 2));
   }
   // A spring gives way by a part of the speed that it stops: too far for what is thin.
   if (motion.isSwept() && meets && approach * law.time_step > depth) spring = false;
+  // What the bend of a hollow would drive in within the step is to leave as fast: bodies follow it, neither
+  // braked nor sinking in.
+  const btScalar driven_in = from.nearer + btMin(from.depth, btScalar(0));
+  if (driven_in > 0 && !users_own && !(meets && bounces)) {
+    const btScalar held = law.time_step * law.stiffness;
+    const btScalar share = spring ? held / (held + law.damping) : solver.erp;
+    depth = btMin(depth + driven_in / share, spring ? solver.deepest_spring : solver.deepest_push);
+  }
   if (spring) {
     // The solver starts with a part of the last impulse. What is short of a load that lies still would make
     // it sink until its spring has replaced it: where the spring bears more, it starts with all of it. A
@@ -206,6 +216,32 @@ bool leavesItToTop(const ContactPatch& patch, int index, btScalar separation) {
   return false;
 }
 
+/// How much nearer bodies come to each other in the step where one lies in a hollow of the other, as that
+/// bends [m]: d^2 / 2 c, where their centres of curvature are c apart, and one passes the other by d. Not
+/// where they touch only later, further on.
+btScalar nearerByBending(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
+                         btScalar time_step) {
+  const bool in_b = point.bend_b.isHollow();
+  if (in_b == point.bend_a.isHollow()) return 0;
+  const Across axes(point.bend_x, point.normal.cross(point.bend_x));
+  const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
+  btScalar nearer = 0;
+  for (int i = 0; i < 2; ++i) {
+    const btVector3& axis = hill.axis(i);
+    const btScalar bend_a = point.bend_a.turn(axis, axes).dot(axis),
+                   bend_b = point.bend_b.turn(axis, axes).dot(axis);
+    const btScalar hollow = in_b ? bend_b : bend_a;
+    if (!hill.hasTop(i) || !(hollow < 0)) continue;
+    const btScalar apart = btFabs(1 / bend_a + 1 / bend_b);
+    const btVector3 speed = motion.velocityAt(place) - motion.a().spin.cross(point.normal / bend_a) -
+                            motion.b().spin.cross(point.normal / bend_b);
+    const btScalar passes = btMin(btFabs(speed.dot(axis)) * time_step, kSteepSlope * apart) +
+                            hollow * apart * btFabs(point.to_top.dot(axis));
+    if (passes > 0) nearer += passes * passes / (2 * apart);
+  }
+  return nearer;
+}
+
 /// How bodies bend at a point, in the axes in which a SubstepSolver is told so.
 PointBends bendsAcross(const ContactPoint& point) {
   const Across to(point.normal), from(point.bend_x, point.normal.cross(point.bend_x));
@@ -239,7 +275,10 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     point.on_b = origin + patch.points[i].on_b;
     point.ahead = btMin(law.size(), point.law.time_step *
                                         rockingSpeed(patch.points[i], point.on_b, motion, a, b, law.size()));
-    if (solver.substeps) point.bends = bendsAcross(patch.points[i]);
+    if (solver.substeps)
+      point.bends = bendsAcross(patch.points[i]);
+    else
+      point.nearer = nearerByBending(patch.points[i], point.on_b, motion, point.law.time_step);
     point.aside = patch.points[i].aside;
     point.local_a = start.a.invXform(point.on_b + point.normal * point.depth);
     ++count;
