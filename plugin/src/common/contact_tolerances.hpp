@@ -77,10 +77,6 @@ constexpr int kAscentStepsBeside = 2;
 constexpr btScalar kSlowestFall = btScalar(0.02);
 /// Ratio: a step that did not lead uphill is taken again, shorter by this.
 constexpr btScalar kShorter = 3;
-/// Ratio: a step out of reach is taken again, this part of it at most.
-constexpr btScalar kPartOfWay = btScalar(0.5);
-/// Ratio: it then goes this part of what its sphere still reaches, so that rounding does not lose it again.
-constexpr btScalar kWithinReach = btScalar(0.9);
 /// Ratio: a step leads uphill if it gains this part of what the slope at its start promises. On a paraboloid
 /// it gains a half.
 constexpr btScalar kClimbs = btScalar(0.25);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
-#include <numeric>
 
 #include "common/contact_tolerances.hpp"
 #include "common/parallel.hpp"
@@ -347,10 +346,7 @@ void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separati
   keepSideways(of, scratch);
   const std::size_t count = scratch.probed.size();
   const std::size_t tops_of_patch = sortTops(of, tops, scratch);
-  // A sphere that was not chosen may be the one over the top.
-  scratch.starts.resize(probe.count());
-  std::iota(scratch.starts.begin(), scratch.starts.end(), std::size_t(0));
-  const LineStarts lines{probe, scratch.starts, true};
+  const LineStarts lines{probe, samples.indices};
   appendDeepestPoints(lines, separation, scratch.tops, tops_of_patch, scratch.probed);
   ascendBeside(lines, count, scratch.probed);
   keepAscents(scratch, samples);

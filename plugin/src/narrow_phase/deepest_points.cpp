@@ -120,9 +120,8 @@ std::optional<btVector3> startNearer(const LineStarts& lines, const btVector3& s
 /// Moves a sample uphill along lines beside that from `shift` beside its sphere; not where slopes above
 /// `steepest` say that the top is far. Notes whether it got there. What is out of reach of its sphere is
 /// probed from another one. Over edges the slope may fall suddenly, so a step which loses the surface there
-/// is taken again, shorter; elsewhere a step out of reach of all spheres is, once. What has all but reached a
-/// top goes on to it beyond `steps`: as deep as that but for rounding, it would be taken for the top, with a
-/// normal that leans.
+/// is taken again, shorter. What has all but reached a top goes on to it beyond `steps`: as deep as that but
+/// for rounding, it would be taken for the top, with a normal that leans.
 void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shift, ProbedSample& sample) {
   const SurfaceProbe& probe = lines.probe;
   const bool over_edges = probe.hasEdges();
@@ -140,25 +139,16 @@ void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shif
     OpposedPoints points;
     points.triangle_a = sample.points.triangle_a;
     points.triangle_b = sample.points.triangle_b;
-    btVector3 step = falls.toTop(here.slope);
-    const auto goes = [&] {
-      return probe.probeLine(sample.index, sample.direction, shift + step, points) &&
-             isUsable(points, sample.direction);
-    };
-    if (!goes()) {
+    const btVector3 step = falls.toTop(here.slope);
+    if (!probe.probeLine(sample.index, sample.direction, shift + step, points) ||
+        !isUsable(points, sample.direction)) {
       if (const auto from_there = startNearer(lines, step, sample)) {
         shift = *from_there;
         continue;
       }
-      if (over_edges) {
-        falls.shorten();
-        continue;
-      }
-      if (!lines.are_all) return;
-      // Part of the way, from where another sphere may go on.
-      const btScalar left = probe.reach(sample.index) - shift.length();
-      step *= btMin(kPartOfWay, kWithinReach * left / step.length());
-      if (!(left > 0) || !goes()) return;
+      if (!over_edges) return;
+      falls.shorten();
+      continue;
     }
     const Hillside next = hillsideAt(points, sample.direction);
     const btScalar gain = next.depth - here.depth, promised = here.slope.dot(step);

@@ -14,9 +14,6 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 struct LineStarts {
   const SurfaceProbe& probe;
   const std::vector<std::size_t>& spheres;
-  /// Whether they are all that are near: if not, those that an ascent would go on from may be missing, and a
-  /// place half way up is no better than its start.
-  bool are_all = false;
 
   /// Returns the sphere that has most to spare for a line through `place`; nothing if all are out of reach.
   std::optional<std::size_t> nearest(const btVector3& place, const btVector3& direction) const;

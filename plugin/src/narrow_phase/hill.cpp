@@ -1,5 +1,7 @@
 #include "narrow_phase/hill.hpp"
 
+#include "common/contact_tolerances.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {

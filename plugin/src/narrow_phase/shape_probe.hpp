@@ -66,9 +66,6 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
     return a_.ownRadius(near_sphere.sphere) + a_.margin - near_sphere.distance;
   }
 
-  /// Returns the number of contacts.
-  std::size_t count() const { return near_spheres_.size(); }
-
  private:
   /// Finds what a sphere at `from` would see, beside where one of ours is. Returns false if that is not
   /// known.

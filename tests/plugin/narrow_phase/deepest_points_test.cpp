@@ -147,19 +147,6 @@ TEST(DeepestPoints, OutOfReachOfASphereAreReachedFromAnother) {
   EXPECT_FALSE(samples.back().is_top);
 }
 
-// A step that no sphere spans is taken as far as the first one reaches, if the other one is sure to be there.
-TEST(DeepestPoints, FurtherAwayThanAnySphereReachesAreComeToInParts) {
-  const Reliefs reliefs(ball(0, 0, 0.01, 1), kFlat, {start(-0.3, 0), start(0.05, 0)},
-                        {btScalar(0.25), btScalar(0.28)});
-  for (const bool are_all : {false, true}) {
-    std::vector<ProbedSample> samples{reliefs.samples()[0]};
-    appendDeepestPoints({reliefs, reliefs.all(), are_all}, btScalar(0.05), {}, 0, samples);
-    ASSERT_EQ(samples.size(), 2u);
-    EXPECT_EQ(samples[1].is_top, are_all);
-    EXPECT_NEAR(samples[1].points.on_a.x(), are_all ? 0 : -0.3, 5e-3);
-  }
-}
-
 // The large sphere is of another wall: it sees other places.
 TEST(DeepestPoints, AreNotLookedForFromSpheresOfOtherWalls) {
   class TwoWalls : public Reliefs {
