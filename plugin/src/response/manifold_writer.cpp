@@ -20,6 +20,10 @@ constexpr btScalar kSlipShare = btScalar(0.5);
 /// A slip of more than this share of the threshold at which Bullet drops contacts is given up.
 constexpr btScalar kFarthestSlip = btScalar(0.2);
 
+/// Ratio: curvatures are those of triangles. Where less than this part of two is left, as in threads, nobody
+/// knows how far their centres are apart.
+constexpr btScalar kSureRadius = btScalar(0.3);
+
 using PointIndices = std::array<int, kPatchPoints>;
 
 struct NewPoint {
@@ -218,7 +222,7 @@ bool leavesItToTop(const ContactPatch& patch, int index, btScalar separation) {
 
 /// How much nearer bodies come to each other in the step where one lies in a hollow of the other, as that
 /// bends [m]: d^2 / 2 c, where their centres of curvature are c apart, and one passes the other by d. Not
-/// where they touch only later, further on.
+/// where they touch only later, further on, nor where c is not known.
 btScalar nearerByBending(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
                          btScalar time_step) {
   const bool in_b = point.bend_b.isHollow();
@@ -231,7 +235,8 @@ btScalar nearerByBending(const ContactPoint& point, const btVector3& place, cons
     const btScalar bend_a = point.bend_a.turn(axis, axes).dot(axis),
                    bend_b = point.bend_b.turn(axis, axes).dot(axis);
     const btScalar hollow = in_b ? bend_b : bend_a;
-    if (!hill.hasTop(i) || !(hollow < 0)) continue;
+    const bool sure = bend_a + bend_b > kSureRadius * (btFabs(bend_a) + btFabs(bend_b));
+    if (!hill.hasTop(i) || !(hollow < 0) || !sure) continue;
     const btScalar apart = btFabs(1 / bend_a + 1 / bend_b);
     const btVector3 speed = motion.velocityAt(place) - motion.a().spin.cross(point.normal / bend_a) -
                             motion.b().spin.cross(point.normal / bend_b);
