@@ -17,8 +17,8 @@ INNERSPHERE_HD inline Mat3<double> matrixOf(const double* q) {
            2 * (x * z - y * w), 2 * (y * z + x * w), w * w - x * x - y * y + z * z}};
 }
 
-/// Reads a pose as it is, without a check of its rotation. Returns last_row, not_finite
-/// (of the last row) or none.
+/// Reads a pose as it is, without a check of its rotation. Returns what is wrong with a matrix' last row, or
+/// none.
 INNERSPHERE_HD inline Fault loadPose(const Poses& poses, std::size_t number, Mat3<double>& rotation,
                                      Vec3d& translation) {
   if (!poses.matrices) {

@@ -191,7 +191,7 @@ const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count
 /// Where lenses have a larger `thickness` than Estimate::thickest, those of planes count if they are smaller.
 /// Errors are those of overlaps of this `volume`, relative to the solid's; 0: as large as those measured.
 /// Where they are more than kDeepOverlap `of_larger`, the part of the larger of both solids, those of copies
-/// that lie nearly upon the solid count if they are larger; NaN if these were not measured.
+/// that lie nearly upon the solid count instead; NaN if these were not measured.
 ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness = 0,
                             double volume = 0, double of_larger = 0);
 

@@ -18,8 +18,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 ///     world.getSolverInfo().m_minimumSolverBatchSize = -1;
 ///
 /// The last line has each group solved by itself. Bullet's default, 128, puts small groups into one, in which
-/// a btMultiBody has all of them solved by sequential impulses; the log says so once. Worlds of deformable bodies
-/// (btDeformableMultiBodyDynamicsWorld) solve in another way, and must have a solver of theirs.
+/// a btMultiBody has all of them solved by sequential impulses; the log says so once. Worlds of deformable
+/// bodies (btDeformableMultiBodyDynamicsWorld) solve in another way, and must have a solver of theirs.
 class MultiBodySubstepSolver : public btMultiBodyConstraintSolver {
  public:
   /// others: solves the groups with a btMultiBody, and has to outlive this; null: this does, as its base

@@ -1,8 +1,6 @@
 #include "shape/support_bounds.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "common/bullet_vectors.hpp"
 
