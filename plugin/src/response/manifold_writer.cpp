@@ -20,9 +20,9 @@ constexpr btScalar kSlipShare = btScalar(0.5);
 /// A slip of more than this share of the threshold at which Bullet drops contacts is given up.
 constexpr btScalar kFarthestSlip = btScalar(0.2);
 
-/// Ratio: curvatures are those of triangles. Where less than this part of two is left, as in threads, nobody
-/// knows how far their centres are apart.
-constexpr btScalar kSureRadius = btScalar(0.3);
+/// Ratio: curvatures are those of triangles. Where less than this part of two is left, as in threads, the
+/// rest is that of their errors.
+constexpr btScalar kSureCurvature = btScalar(0.3);
 
 using PointIndices = std::array<int, kPatchPoints>;
 
@@ -220,31 +220,38 @@ bool leavesItToTop(const ContactPatch& patch, int index, btScalar separation) {
   return false;
 }
 
-/// How much nearer bodies come to each other in the step where one lies in a hollow of the other, as that
-/// bends [m]: d^2 / 2 c, where their centres of curvature are c apart, and one passes the other by d. Not
-/// where they touch only later, further on, nor where c is not known.
+/// How much nearer bodies come to each other in the step than the plane in which they touch says, where one
+/// lies in a hollow of the other [m]: as that bends, and both turn. That is the second order of the gap
+/// between two curves. Where they bend by k and l, slide by v and turn by u and w, its acceleration is that
+/// of the bodies' points and (k l v^2 - 2 v (k w + l u) - (u - w)^2) / (k + l). Not where they touch only
+/// later, further on, nor where k + l is not known, nor where what is round is all but flat for a body of
+/// this radius [m].
 btScalar nearerByBending(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
-                         btScalar time_step) {
+                         btScalar time_step, btScalar size) {
   const bool in_b = point.bend_b.isHollow();
   if (in_b == point.bend_a.isHollow()) return 0;
   const Across axes(point.bend_x, point.normal.cross(point.bend_x));
   const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
-  btScalar nearer = 0;
+  const btVector3 slides = motion.velocityAt(place), turns_a = motion.a().spin.cross(point.normal),
+                  turns_b = motion.b().spin.cross(point.normal);
+  btScalar acceleration = 0;
   for (int i = 0; i < 2; ++i) {
     const btVector3& axis = hill.axis(i);
-    const btScalar bend_a = point.bend_a.turn(axis, axes).dot(axis),
-                   bend_b = point.bend_b.turn(axis, axes).dot(axis);
-    const btScalar hollow = in_b ? bend_b : bend_a;
-    const bool sure = bend_a + bend_b > kSureRadius * (btFabs(bend_a) + btFabs(bend_b));
+    const btScalar k = point.bend_a.turn(axis, axes).dot(axis), l = point.bend_b.turn(axis, axes).dot(axis);
+    const btScalar hollow = in_b ? l : k, round = in_b ? k : l;
+    const bool sure = k + l > kSureCurvature * (btFabs(k) + btFabs(l)) && 2 * size * round > 1;
     if (!hill.hasTop(i) || !(hollow < 0) || !sure) continue;
-    const btScalar apart = btFabs(1 / bend_a + 1 / bend_b);
-    const btVector3 speed = motion.velocityAt(place) - motion.a().spin.cross(point.normal / bend_a) -
-                            motion.b().spin.cross(point.normal / bend_b);
-    const btScalar passes = btMin(btFabs(speed.dot(axis)) * time_step, kSteepSlope * apart) +
-                            hollow * apart * btFabs(point.to_top.dot(axis));
-    if (passes > 0) nearer += passes * passes / (2 * apart);
+    const btScalar v = slides.dot(axis), u = turns_a.dot(axis), w = turns_b.dot(axis);
+    // By this angle the normal turns within the step; they touch here from where it is that of the point.
+    const btScalar angle = btFabs(k * l * v - k * w - l * u) / (k + l) * time_step;
+    const btScalar left = btMin(angle, kSteepSlope) + hollow * btFabs(point.to_top.dot(axis));
+    if (!(left > 0)) continue;
+    const btScalar share = left / angle;
+    acceleration += share * share * ((u - w) * (u - w) + 2 * v * (k * w + l * u) - k * l * v * v) / (k + l);
   }
-  return nearer;
+  if (acceleration == 0) return 0;
+  acceleration += motion.approachByTurningAt(place, point.normal);
+  return acceleration * time_step * time_step / 2;
 }
 
 /// How bodies bend at a point, in the axes in which a SubstepSolver is told so.
@@ -283,7 +290,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     if (solver.substeps)
       point.bends = bendsAcross(patch.points[i]);
     else
-      point.nearer = nearerByBending(patch.points[i], point.on_b, motion, point.law.time_step);
+      point.nearer = nearerByBending(patch.points[i], point.on_b, motion, point.law.time_step, law.size());
     point.aside = patch.points[i].aside;
     point.local_a = start.a.invXform(point.on_b + point.normal * point.depth);
     ++count;
