@@ -4,6 +4,7 @@
 #include <functional>
 #include <utility>
 
+#include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
 #include "test_packings.hpp"
@@ -96,7 +97,15 @@ std::shared_ptr<PackingShape> makeRingTubeShape(double ring, double tube, std::s
 }
 
 std::shared_ptr<PackingShape> makeFineBallShape(double radius, std::size_t n) {
-  return withSurface(*makeBall(radius), n, singleBall(radius).surface);
+  return withSurface(*makeBall(radius), n, ballSurface(radius, 64));
+}
+
+std::shared_ptr<PackingShape> makeMeshBallShape(double radius, std::size_t n) {
+  const Surface surface = ballSurface(radius, 16);
+  Mesh mesh;
+  for (const auto& [x, y, z] : surface.vertices) mesh.vertices.push_back({double(x), double(y), double(z)});
+  mesh.triangles = surface.triangles;
+  return withSurface(*makeSolid(mesh, "ball"), n, surface);
 }
 
 std::shared_ptr<PackingShape> makeFineCylinderShape(double radius, double height, std::size_t n) {

@@ -25,6 +25,9 @@ std::shared_ptr<PackingShape> makeRingTubeShape(double ring, double tube, std::s
 /// With 16,000 triangles.
 std::shared_ptr<PackingShape> makeFineBallShape(double radius, std::size_t n);
 
+/// Packed as what it is, a mesh of 960 triangles: the ball itself is one sphere.
+std::shared_ptr<PackingShape> makeMeshBallShape(double radius, std::size_t n);
+
 /// About z, of this full height, with 192 sides.
 std::shared_ptr<PackingShape> makeFineCylinderShape(double radius, double height, std::size_t n);
 

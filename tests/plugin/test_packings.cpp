@@ -43,32 +43,38 @@ Packing latticeBox(const Vec3d& size, int n) {
   return p;
 }
 
+Surface ballSurface(double radius, std::uint32_t rings) {
+  Surface surface;
+  const std::uint32_t segments = 2 * rings;
+  const auto vertex = [&](std::uint32_t ring, std::uint32_t segment) {
+    return ring == 0 ? 0 : ring == rings ? 1 : 2 + (ring - 1) * segments + segment % segments;
+  };
+  surface.vertices = {{0, 0, static_cast<float>(radius)}, {0, 0, static_cast<float>(-radius)}};
+  for (std::uint32_t i = 1; i < rings; ++i) {
+    for (std::uint32_t j = 0; j < segments; ++j) {
+      const double polar = M_PI * i / rings, azimuth = 2 * M_PI * j / segments;
+      surface.vertices.push_back({static_cast<float>(radius * std::sin(polar) * std::cos(azimuth)),
+                                  static_cast<float>(radius * std::sin(polar) * std::sin(azimuth)),
+                                  static_cast<float>(radius * std::cos(polar))});
+    }
+  }
+  for (std::uint32_t i = 0; i < rings; ++i) {
+    for (std::uint32_t j = 0; j < segments; ++j) {
+      const std::uint32_t a = vertex(i, j), b = vertex(i, j + 1), c = vertex(i + 1, j),
+                          d = vertex(i + 1, j + 1);
+      if (i > 0) surface.triangles.push_back({a, c, b});
+      if (i + 1 < rings) surface.triangles.push_back({b, c, d});
+    }
+  }
+  return surface;
+}
+
 Packing singleBall(double radius) {
   Packing p;
   p.spheres.push_back({0, 0, 0, static_cast<float>(radius)});
   p.solid.volume = 4.0 / 3.0 * M_PI * std::pow(radius, 3);
   for (int i = 0; i < 3; ++i) p.solid.inertia[4 * i] = 0.4 * radius * radius * p.solid.volume;
-  constexpr std::uint32_t kRings = 64, kSegments = 128;
-  const auto vertex = [](std::uint32_t ring, std::uint32_t segment) {
-    return ring == 0 ? 0 : ring == kRings ? 1 : 2 + (ring - 1) * kSegments + segment % kSegments;
-  };
-  p.surface.vertices = {{0, 0, static_cast<float>(radius)}, {0, 0, static_cast<float>(-radius)}};
-  for (std::uint32_t i = 1; i < kRings; ++i) {
-    for (std::uint32_t j = 0; j < kSegments; ++j) {
-      const double polar = M_PI * i / kRings, azimuth = 2 * M_PI * j / kSegments;
-      p.surface.vertices.push_back({static_cast<float>(radius * std::sin(polar) * std::cos(azimuth)),
-                                    static_cast<float>(radius * std::sin(polar) * std::sin(azimuth)),
-                                    static_cast<float>(radius * std::cos(polar))});
-    }
-  }
-  for (std::uint32_t i = 0; i < kRings; ++i) {
-    for (std::uint32_t j = 0; j < kSegments; ++j) {
-      const std::uint32_t a = vertex(i, j), b = vertex(i, j + 1), c = vertex(i + 1, j),
-                          d = vertex(i + 1, j + 1);
-      if (i > 0) p.surface.triangles.push_back({a, c, b});
-      if (i + 1 < kRings) p.surface.triangles.push_back({b, c, d});
-    }
-  }
+  p.surface = ballSurface(radius, 64);
   return p;
 }
 

@@ -11,6 +11,9 @@ namespace innersphere::test {
 /// A box about the origin filled with n x n x n equal spheres, with its surface and exact mass properties.
 Packing latticeBox(const Vec3d& size, int n);
 
+/// The surface of a ball, cut into so many rings of twice as many parts.
+Surface ballSurface(double radius, std::uint32_t rings);
+
 /// One sphere, with a finely cut surface.
 Packing singleBall(double radius);
 

@@ -38,6 +38,7 @@ struct NewPoint {
   btScalar curvature = 0;      ///< mean of both surfaces together [1/m]
   btScalar ahead = 0;          ///< how much further on bodies that rock touch when the step ends [m]
   btScalar nearer = 0;         ///< how much nearer the bodies come in the step as a hollow bends [m]
+  bool is_later = false;       ///< bodies will have bounced from the top of its hill when they come to it
   PointBends bends;
 };
 
@@ -146,8 +147,8 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     setBends(point, from.bends);
   } else {
     // The solver would begin the bounce before they touch, and brake them on their way.
-    if (!meets) point.m_combinedRestitution = 0;
-    if (meets && bounces && (depth < 0 || spring)) {
+    if (!meets || from.is_later) point.m_combinedRestitution = 0;
+    if (meets && bounces && !from.is_later && (depth < 0 || spring)) {
       depth = 0;
       spring = false;
     }
@@ -269,9 +270,30 @@ void takeToStart(const Placed& start, btPersistentManifold& manifold) {
   }
 }
 
+/// Returns when bodies meet first, from the start of the step [s].
+btScalar firstMeeting(const std::vector<ContactPatch>& patches, const btVector3& origin,
+                      const PairMotion& motion) {
+  btScalar first = BT_LARGE_FLOAT;
+  for (const ContactPatch& patch : patches) {
+    for (int i = 0; i < patch.count; ++i) {
+      const ContactPoint& point = patch.points[i];
+      const btScalar approach = motion.approachAt(origin + point.on_b, point.normal);
+      if (approach > 0) first = btMin(first, btMax(-point.depth / approach, btScalar(0)));
+    }
+  }
+  return first;
+}
+
+/// A slope of a hill that meets later than another point, its top.
+bool meetsAfterTop(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
+                   btScalar first, btScalar size) {
+  const btScalar left = -point.depth - first * motion.approachAt(place, point.normal);
+  return btMin(point.below_top, left) > SIMD_EPSILON * size;
+}
+
 /// The points of one patch into the manifold that `result` holds.
 void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Placed& start,
-                const PairMotion& motion, const btVector3& origin, const ContactPatch& patch,
+                const PairMotion& motion, const btVector3& origin, const ContactPatch& patch, btScalar first,
                 const ContactLaw::OfPatch& law, const SolverSettings& solver, btManifoldResult* result) {
   btPersistentManifold& manifold = *result->getPersistentManifold();
   std::array<NewPoint, kPatchPoints> points;
@@ -292,6 +314,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     else
       point.nearer = nearerByBending(patch.points[i], point.on_b, motion, point.law.time_step, law.size());
     point.aside = patch.points[i].aside;
+    point.is_later = meetsAfterTop(patch.points[i], point.on_b, motion, first, law.size());
     point.local_a = start.a.invXform(point.on_b + point.normal * point.depth);
     ++count;
   }
@@ -396,6 +419,7 @@ void ManifoldWriter::write(const btCollisionObject& a, const btCollisionObject& 
   if (patches.empty() && entries_.empty()) return;
   assign(start.a, patches);
   provide(a, b, patches.size());
+  const btScalar first = firstMeeting(patches, origin, motion);
   btPersistentManifold* const before = result->getPersistentManifold();
   for (std::size_t e = 0; e < entries_.size(); ++e) {
     Entry& entry = entries_[e];
@@ -409,7 +433,7 @@ void ManifoldWriter::write(const btCollisionObject& a, const btCollisionObject& 
     entry.manifold->setContactBreakingThreshold(btMax(entry.threshold, separation));
     entry.manifold->setContactProcessingThreshold(law.penalty() ? -BT_LARGE_FLOAT : entry.processing);
     result->setPersistentManifold(entry.manifold);
-    writePatch(a, b, start, motion, origin, patches[p], law.of(patches, p), law.solver(), result);
+    writePatch(a, b, start, motion, origin, patches[p], first, law.of(patches, p), law.solver(), result);
   }
   result->setPersistentManifold(before);
 }

@@ -1,0 +1,67 @@
+// Balls that are packed bounce off each other as spheres do, whatever is foretold beside where they meet.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <tuple>
+
+#include "named_packings.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+constexpr double kRadius = 0.1, kSpeed = 3;
+constexpr int kTries = 8;
+
+class Bounce : public testing::TestWithParam<std::tuple<Response, double>> {
+ protected:
+  static void SetUpTestSuite() { ball = makeMeshBallShape(kRadius, 256); }
+  static void TearDownTestSuite() { ball.reset(); }
+  static std::shared_ptr<PackingShape> ball;
+};
+std::shared_ptr<PackingShape> Bounce::ball;
+
+// Without friction nothing turns a sphere. Points beside the first one, which meet later in the step, have
+// other normals: if the balls bounced from these, too, they would gain from each. In a step the line between
+// two balls turns by an angle of way / 2 r at most, so that what is left of the first one's speed is known
+// but for its square.
+TEST_P(Bounce, TurnsNoBall) {
+  const auto [response, steps] = GetParam();
+  for (int i = 0; i < kTries; ++i) {
+    ContactOptions options;
+    options.response = response;
+    TestWorld world(options);
+    world.world.setGravity(btVector3(0, 0, 0));
+    const double aside = kRadius * i / kTries, away = 2.2 * kRadius + i * kSpeed / steps / kTries;
+    const btQuaternion turned(btVector3(1, 2, btScalar(i)).normalized(), btScalar(i));
+    btRigidBody& a = world.add(ball, 1, btVector3(btScalar(-away), btScalar(aside), 0), turned);
+    btRigidBody& b = world.add(ball, 1, btVector3(0, 0, 0), turned.inverse());
+    for (btRigidBody* body : {&a, &b}) {
+      body->setRestitution(1);
+      body->setFriction(0);
+    }
+    a.setLinearVelocity(btVector3(kSpeed, 0, 0));
+    world.run(0.3, 1 / steps);
+    SCOPED_TRACE(testing::Message() << "aside " << aside);
+    const double sine = aside / (2 * kRadius), angle = kSpeed / steps / (2 * kRadius);
+    EXPECT_NEAR(double(a.getLinearVelocity().x()), kSpeed * sine * sine,
+                kSpeed * (2 * sine * angle + angle * angle));
+    EXPECT_NEAR(world.kineticEnergy(), kSpeed * kSpeed / 2, 1e-3 * kSpeed * kSpeed);
+    for (const btRigidBody* body : {&a, &b})
+      EXPECT_LT(double(body->getAngularVelocity().length()), 0.01 * kSpeed / kRadius);
+  }
+}
+
+std::string nameOfCase(const testing::TestParamInfo<std::tuple<Response, double>>& info) {
+  return nameOf(std::get<Response>(info.param)) + std::to_string(int(std::get<double>(info.param)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Balls, Bounce,
+                         testing::Combine(testing::Values(Response::compliant, Response::rigid),
+                                          testing::Values(60.0, 240.0)),
+                         nameOfCase);
+
+}  // namespace
+}  // namespace innersphere::test
