@@ -156,8 +156,8 @@ void ContactPair::write(const StepSettings& settings, const BodySnapshot& body_a
                   neededSeparation(*this, body_a, body_b, settings.time_step), result);
 }
 
-void ContactPair::report(btManifoldResult* result) const {
-  ManifoldWriter::report(*a.object, *b.object, origin(), found->patches(), result);
+void ContactPair::report(const std::vector<ContactPatch>& patches, btManifoldResult* result) const {
+  ManifoldWriter::report(*a.object, *b.object, origin(), patches, result);
 }
 
 ContactLaw ContactPair::lawOf(const StepSettings& settings) const {

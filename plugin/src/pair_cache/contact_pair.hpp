@@ -64,8 +64,8 @@ struct ContactPair {
   /// Writes the contacts through Bullet's `result`.
   void write(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
              btManifoldResult* result);
-  /// Tells `result` of the contacts, and leaves the manifolds alone.
-  void report(btManifoldResult* result) const;
+  /// Tells `result` of contacts of the pair, and leaves the manifolds alone.
+  void report(const std::vector<ContactPatch>& patches, btManifoldResult* result) const;
 
   /// Returns the law of the pair in a step. A law of the user's own on a body takes the place of ours.
   ContactLaw lawOf(const StepSettings& settings) const;

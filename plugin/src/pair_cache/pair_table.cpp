@@ -1,5 +1,7 @@
 #include "pair_cache/pair_table.hpp"
 
+#include <algorithm>
+
 #include "common/log.hpp"
 #include "common/parallel.hpp"
 #include "innersphere/error.hpp"
@@ -21,6 +23,19 @@ bool isAsTaken(bool plain, const PairSide& side, const BodySnapshot& body,
                const btCollisionObjectWrapper& wrapper) {
   if (plain) return body.isAsTaken(wrapper);
   return side.isFor(wrapper) && side.transform == wrapper.getWorldTransform() && body.isAsTaken();
+}
+
+/// Keeps only points where surfaces are apart. Returns true if there were others.
+bool dropTouching(std::vector<ContactPatch>& patches) {
+  bool any = false;
+  for (ContactPatch& patch : patches) {
+    const auto end = patch.points.begin() + patch.count;
+    const auto kept =
+        std::remove_if(patch.points.begin(), end, [](const ContactPoint& point) { return point.depth >= 0; });
+    any = any || kept != end;
+    patch.count = int(kept - patch.points.begin());
+  }
+  return any;
 }
 
 /// A pair that one thread works on alone, while others may update the table.
@@ -181,13 +196,24 @@ void PairTable::process(ContactPair& pair, const btCollisionObjectWrapper& a,
 void PairTable::report(ContactPair& pair, const btCollisionObjectWrapper& a,
                        const btCollisionObjectWrapper& b, btManifoldResult* result) {
   pair.set(a, b, false);
-  pair.forgetContact();
-  pair.separation = result->m_closestPointDistanceThreshold;
   std::unique_lock<std::mutex> lock(mutex_);
   const StepSettings settings = settingsFor(0);
   const BodySnapshot body_a(a, 0), body_b(b, 0);
   lock.unlock();
-  if (updateOrLog(pair, body_a, body_b, settings)) pair.report(result);
+  const auto search = [&](btScalar separation) {
+    pair.forgetContact();
+    pair.separation = separation;
+    return updateOrLog(pair, body_a, body_b, settings);
+  };
+  const btScalar distance = result->m_closestPointDistanceThreshold;
+  if (!search(distance)) return;
+  // What looks that far around bodies that are deep in each other meets other sides of them.
+  std::vector<ContactPatch> apart = pair.found->patches();
+  if (distance > 0 && dropTouching(apart)) {
+    pair.report(apart, result);
+    if (!search(0)) return;
+  }
+  pair.report(pair.found->patches(), result);
 }
 
 bool PairTable::updateOrLog(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
