@@ -11,6 +11,7 @@
 
 #include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
+#include "innersphere/solids.hpp"
 #include "named_packings.hpp"
 #include "packing/mesh_shapes.hpp"
 #include "test_packings.hpp"
@@ -185,6 +186,34 @@ std::string nameOf(const testing::TestParamInfo<Case>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Leaving, testing::ValuesIn(cases()), nameOf);
+
+// Their sides lie in the same planes: where spheres are enlarged to look around, lines through both meet the
+// sides, too, which are 1 m of a way out.
+TEST(CubesInEachOther, SayTheShortestWayOutHoweverFarTheyLook) {
+  struct Deepest : btCollisionWorld::ContactResultCallback {
+    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+      depth = std::max(depth, -double(point.getDistance()));
+      return 0;
+    }
+    double depth = 0;
+  };
+  PackOptions options;
+  options.spheres = 256;
+  options.overlap_errors = false;
+  const auto cube = makeShape(pack(*makeBox({1, 1, 1}), options));
+  for (const double depth : {0.1, 0.2, 0.3}) {
+    TestWorld world;
+    btRigidBody& lower = world.add(cube, 1, btVector3(0, 0, 0));
+    btRigidBody& upper = world.add(cube, 1, btVector3(0, 0, btScalar(1 - depth)));
+    for (const double distance : {0.0, 0.1, 0.2}) {
+      Deepest found;
+      found.m_closestDistanceThreshold = btScalar(distance);
+      world.world.contactPairTest(&lower, &upper, found);
+      EXPECT_NEAR(found.depth, depth, 1e-3) << "looked " << distance << " m far";
+    }
+  }
+}
 
 }  // namespace
 }  // namespace innersphere::test
