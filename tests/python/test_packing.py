@@ -214,7 +214,7 @@ def test_holes_are_closed_on_request():
     assert packing.warnings
 
 
-@pytest.mark.parametrize("options", [dict(spheres=-1), dict(delta=0.0), dict(density=2.0), dict(gap=np.nan), dict(threads=-1), dict(order='size')])
+@pytest.mark.parametrize("options", [dict(spheres=0), dict(spheres=-1), dict(delta=0.0), dict(density=2.0), dict(gap=np.nan), dict(threads=-1), dict(order='size')])
 def test_bad_options(options):
     with pytest.raises(innersphere.InvalidArgumentError, match=next(iter(options))):
         innersphere.pack((BOX_VERTICES, BOX_FACES), **options)

@@ -38,8 +38,8 @@ def pack(
         rows of vertices, counter-clockwise seen from outside; or an object with such arrays as ``vertices`` and
         ``faces``, like a trimesh.Trimesh. It must bound a volume.
 
-    The first limit that is reached ends the packing; 0 sets none. Without a number of spheres, name another limit: down to
-    1e-4 of the diagonal there are millions, which takes many minutes.
+    The first limit that is reached ends the packing; 0 sets none, and one has to be set. Down to 1e-4 of the diagonal there
+    are millions of spheres, which takes many minutes.
     spheres: number of spheres. 256 are enough for contacts, thousands for volumes.
     min_radius: radius of the smallest sphere [m]; 0: 1e-4 of the diagonal.
     density: fraction of the solid that is filled, 0 to 1.
@@ -67,6 +67,8 @@ def pack(
         name = os.fspath(mesh) if name is None else name
     triangles = triangles_of(mesh, scale)
     spheres = as_count(spheres, "spheres")
+    if spheres == min_radius == density == gap == 0:
+        raise InvalidArgumentError("spheres is 0, so that nothing ends the packing; name spheres, min_radius, density or gap")
     bar = ProgressBar() if progress is True else None
     callback = bar if progress is True else None if progress is False or progress is None else progress
     if callback is not None and not callable(callback):
