@@ -24,6 +24,10 @@ constexpr btScalar kFarthestSlip = btScalar(0.2);
 /// rest is that of their errors.
 constexpr btScalar kSureCurvature = btScalar(0.3);
 
+/// In sizes of the smaller body: what is no further below its top, or behind it, meets with it, and its
+/// normal is no more than a degree off.
+constexpr btScalar kAtTop = btScalar(1e-4);
+
 using PointIndices = std::array<int, kPatchPoints>;
 
 struct NewPoint {
@@ -288,7 +292,7 @@ btScalar firstMeeting(const std::vector<ContactPatch>& patches, const btVector3&
 bool meetsAfterTop(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
                    btScalar first, btScalar size) {
   const btScalar left = -point.depth - first * motion.approachAt(place, point.normal);
-  return btMin(point.below_top, left) > SIMD_EPSILON * size;
+  return btMin(point.below_top, left) > kAtTop * size;
 }
 
 /// The points of one patch into the manifold that `result` holds.
