@@ -207,11 +207,13 @@ void PairTable::report(ContactPair& pair, const btCollisionObjectWrapper& a,
   };
   const btScalar distance = result->m_closestPointDistanceThreshold;
   if (!search(distance)) return;
-  // What looks that far around bodies that are deep in each other meets other sides of them.
-  std::vector<ContactPatch> apart = pair.found->patches();
-  if (distance > 0 && dropTouching(apart)) {
-    pair.report(apart, result);
-    if (!search(0)) return;
+  if (distance > 0) {
+    // What looks that far around bodies that are deep in each other meets other sides of them.
+    std::vector<ContactPatch> apart = pair.found->patches();
+    if (dropTouching(apart)) {
+      pair.report(apart, result);
+      if (!search(0)) return;
+    }
   }
   pair.report(pair.found->patches(), result);
 }

@@ -313,12 +313,13 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     point.on_b = origin + patch.points[i].on_b;
     point.ahead = btMin(law.size(), point.law.time_step *
                                         rockingSpeed(patch.points[i], point.on_b, motion, a, b, law.size()));
-    if (solver.substeps)
+    if (solver.substeps) {
       point.bends = bendsAcross(patch.points[i]);
-    else
+    } else {
       point.nearer = nearerByBending(patch.points[i], point.on_b, motion, point.law.time_step, law.size());
+      point.is_later = meetsAfterTop(patch.points[i], point.on_b, motion, first, law.size());
+    }
     point.aside = patch.points[i].aside;
-    point.is_later = meetsAfterTop(patch.points[i], point.on_b, motion, first, law.size());
     point.local_a = start.a.invXform(point.on_b + point.normal * point.depth);
     ++count;
   }
@@ -423,7 +424,7 @@ void ManifoldWriter::write(const btCollisionObject& a, const btCollisionObject& 
   if (patches.empty() && entries_.empty()) return;
   assign(start.a, patches);
   provide(a, b, patches.size());
-  const btScalar first = firstMeeting(patches, origin, motion);
+  const btScalar first = law.solver().substeps ? btScalar(0) : firstMeeting(patches, origin, motion);
   btPersistentManifold* const before = result->getPersistentManifold();
   for (std::size_t e = 0; e < entries_.size(); ++e) {
     Entry& entry = entries_[e];
