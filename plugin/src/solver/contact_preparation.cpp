@@ -265,21 +265,30 @@ void ContactRows::fillTurning(PointLanes& lanes, int lane, const Source& source)
   lanes.spin[lane] = std::clamp(lanes.spin[lane], -most_spin, most_spin);
 }
 
-/// How much each row moves.
+/// How much each row moves. A body that is held to a plane or a line gives way in one direction only: both
+/// rows across the normal see the same motion, or one sees none. Together they are to stop it once.
 void ContactRows::fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls) {
   const auto along = [&](const Lanes3& way) {
     const Lanes3 turn_a = cross(point.arm_a, way), turn_b = cross(point.arm_b, way);
-    return massOf(dot(way, scaled(a.inverse_mass, way)) + dot(way, scaled(b.inverse_mass, way)) +
-                  dot(turn_a, a.inverseInertiaTimes(turn_a)) + dot(turn_b, b.inverseInertiaTimes(turn_b)));
+    return dot(way, scaled(a.inverse_mass, way)) + dot(way, scaled(b.inverse_mass, way)) +
+           dot(turn_a, a.inverseInertiaTimes(turn_a)) + dot(turn_b, b.inverseInertiaTimes(turn_b));
   };
   const auto about = [&](const Lanes3& axis) {
     return massOf(dot(axis, a.inverseInertiaTimes(axis)) + dot(axis, b.inverseInertiaTimes(axis)));
   };
-  point.mass = along(point.normal);
-  point.mass_1 = along(point.side_1);
-  point.mass_2 = along(point.side_2);
+  const auto isHeld = [](const Lanes3& inverse_mass) {
+    return (inverse_mass.x != inverse_mass.y) | (inverse_mass.y != inverse_mass.z);
+  };
+  const Lanes yields_1 = along(point.side_1), yields_2 = along(point.side_2);
+  const Lanes together = massOf(yields_1 + yields_2);
+  const auto held = isHeld(a.inverse_mass) | isHeld(b.inverse_mass);
+  point.mass = massOf(along(point.normal));
+  point.mass_1 = held ? together : massOf(yields_1);
+  point.mass_2 = held ? together : massOf(yields_2);
   if (!rolls) return;
-  point.mass_rolling = smaller(about(point.side_1), about(point.side_2));
+  const Lanes rolling_1 = about(point.side_1), rolling_2 = about(point.side_2);
+  const Lanes least = smaller(rolling_1, rolling_2);
+  point.mass_rolling = least > Lanes{} ? least : larger(rolling_1, rolling_2);
   point.mass_spinning = about(point.normal);
 }
 

@@ -277,6 +277,54 @@ TEST(SubstepContacts, FactorsAndDampingHold) {
   EXPECT_NEAR(slow.getLinearVelocity().x(), 0.25, 0.001);  // half a second
 }
 
+// As people do who simulate in a plane. One of the rows across the normal has nothing to move then.
+TEST(SubstepContacts, WhatIsHeldToAPlaneIsBraked) {
+  constexpr double kRadius = 0.5, kFriction = 0.5, kSpeed = 3;
+  for (const int axis : {0, 1}) {
+    const auto along = [&](double x, double z) {
+      return axis == 0 ? btVector3(btScalar(x), 0, btScalar(z)) : btVector3(0, btScalar(x), btScalar(z));
+    };
+    const auto hold = [&](btRigidBody& body) {
+      body.setFriction(btScalar(kFriction));
+      body.setLinearFactor(along(1, 1));
+      body.setAngularFactor(axis == 0 ? btVector3(0, 1, 0) : btVector3(1, 0, 0));
+    };
+    SolverWorld world;
+    world.addFloor().setFriction(1);
+    btRigidBody& ball = world.addBall(btScalar(kRadius), 1, along(0, kRadius));
+    hold(ball);
+    ball.setLinearVelocity(along(kSpeed, 0));
+    world.run(1);
+    // It has come to roll, without a change of its angular momentum about the floor.
+    EXPECT_NEAR(ball.getLinearVelocity()[axis], kSpeed / 1.4, 0.002 * kSpeed);
+    EXPECT_NEAR(ball.getAngularVelocity().length(), kSpeed / 1.4 / kRadius, 0.002 * kSpeed / kRadius);
+
+    SolverWorld slope;
+    slope.addSlab().setFriction(1);
+    slope.world.setGravity(along(kGravity * std::sin(0.26), -kGravity * std::cos(0.26)));
+    btRigidBody& box = addCube(slope, 1, kHalf);
+    hold(box);
+    slope.run(2);
+    EXPECT_LT(box.getWorldTransform().getOrigin().distance(along(0, kHalf)), 0.002);
+  }
+}
+
+TEST(SubstepContacts, RollingFrictionStopsWhatTurnsAboutOneAxis) {
+  constexpr double kRadius = 0.5, kLever = 0.1, kSpeed = 3;
+  SolverWorld world;
+  world.addFloor().setFriction(1);
+  btRigidBody& ball = world.addBall(btScalar(kRadius), 1, btVector3(0, 0, btScalar(kRadius)));
+  ball.setFriction(1);
+  ball.setRollingFriction(btScalar(kLever));
+  ball.setAngularFactor(btVector3(0, 1, 0));
+  ball.setLinearVelocity(btVector3(btScalar(kSpeed), 0, 0));
+  ball.setAngularVelocity(btVector3(0, btScalar(kSpeed / kRadius), 0));
+  world.run(1);
+  // The torque lever m g brakes m r + I / r.
+  const double braking = kLever * kGravity / (kRadius * 1.4);
+  EXPECT_NEAR(ball.getLinearVelocity().x(), kSpeed - braking, 0.01 * braking);
+}
+
 TEST(SubstepContacts, BodiesAtRestFallAsleepAndWake) {
   SolverWorld world;
   world.addFloor();
