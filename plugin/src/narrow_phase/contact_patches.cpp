@@ -250,11 +250,11 @@ bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSetti
 }
 
 void wayOutPatch(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
-                 const ContactSpheres& spheres, btScalar spacing, const StepAhead& step,
-                 std::vector<ContactPatch>& patches) {
+                 const ContactSpheres& spheres, const btVector3& before, btScalar spacing,
+                 const StepAhead& step, std::vector<ContactPatch>& patches) {
   Scratch& scratch = scratchOfThread();
   collectIds(patches, scratch.old_ids);
-  findWayOut(a, b, contacts, spheres, scratch.found);
+  findWayOut(a, b, contacts, spheres, patches, before, scratch.found);
   reduceToManifolds(scratch.found, scratch.old_ids, spacing, step, scratch.reduction, patches);
 }
 

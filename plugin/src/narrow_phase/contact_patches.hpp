@@ -32,10 +32,10 @@ bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSetti
                    const StepAhead& step, std::vector<ContactPatch>& patches);
 
 /// Replaces `patches` by one along the shortest way by which A leaves B, see findWayOut(), or by none: for
-/// bodies deep in each other, where single spheres push everywhere.
+/// bodies deep in each other, where spheres push everywhere. `before` [m]: the way of the last search, or 0.
 void wayOutPatch(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
-                 const ContactSpheres& spheres, btScalar spacing, const StepAhead& step,
-                 std::vector<ContactPatch>& patches);
+                 const ContactSpheres& spheres, const btVector3& before, btScalar spacing,
+                 const StepAhead& step, std::vector<ContactPatch>& patches);
 
 /// Replaces `patches` by such whose points are placed by the moments of the overlap, with the mean depth
 /// volume / area and its slope. `spacing` [m]: points closer to each other are one.

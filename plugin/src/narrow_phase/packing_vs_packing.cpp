@@ -1,5 +1,6 @@
 #include "narrow_phase/packing_vs_packing.hpp"
 
+#include "common/contact_tolerances.hpp"
 #include "narrow_phase/contact_patches.hpp"
 
 namespace innersphere {
@@ -8,6 +9,15 @@ namespace {
 
 bool isOfSurfaces(SearchPass pass) {
   return pass == SearchPass::surfaces || pass == SearchPass::nearby;
+}
+
+/// In halves of the thickness: from here on lines through bodies may meet other sides of them.
+constexpr btScalar kDeep = btScalar(0.5);
+
+btScalar depthOf(const ContactPatch& patch) {
+  btScalar deepest = -BT_LARGE_FLOAT;
+  for (int i = 0; i < patch.count; ++i) deepest = btMax(deepest, patch.points[i].depth);
+  return deepest;
 }
 
 /// By how much spheres without volume-true radii are enlarged to fill their solid [m].
@@ -114,6 +124,7 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
   static thread_local std::vector<SphereContact> contacts;
   if (pass == SearchPass::touch) {
     if (result.overlaps[index].pair_count > 0) return SearchPass::deep;
+    way_out_.setZero();
     settings = search_;
     return SearchPass::none;
   }
@@ -141,11 +152,14 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
       step_ = sweep_.ahead();
       return SearchPass::surfaces;
     }
-    if (!contacts.empty() && !near && !sweep_.hasKept()) next = SearchPass::touch;
+    if (!contacts.empty() && !sweep_.hasKept() && (!near || pushesEachWay())) next = SearchPass::touch;
+    if (next == SearchPass::none) way_out_.setZero();
   } else if (pass == SearchPass::deep) {
     const Bodies bodies(*this, *search_);
-    wayOutPatch(bodies.a, bodies.b, contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a),
+    wayOutPatch(bodies.a, bodies.b, contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), way_out_,
                 search_->spacing, step_, memory.patches);
+    way_out_ =
+        memory.patches.empty() ? btVector3(0, 0, 0) : memory.patches[0].normal * depthOf(memory.patches[0]);
   } else {
     volumePatches(contacts, search_->spacing, reference, memory.patches);
     overlap_ = result.overlaps[index];
@@ -177,6 +191,20 @@ btScalar PackingVsPacking::halfThickness() const {
 /// around at many poses instead.
 bool PackingVsPacking::reachesFar() const {
   return !step_.motion.isSwept() && search_->separation > halfThickness();
+}
+
+/// Whether patches of several directions are so deep that lines through the bodies may meet other sides of
+/// them: each may be the way out, and they push against each other.
+bool PackingVsPacking::pushesEachWay() const {
+  if (step_.motion.isSwept()) return false;
+  const btScalar deep = kDeep * halfThickness();
+  const ContactPatch* first = nullptr;
+  for (const ContactPatch& patch : memory.patches) {
+    if (!(depthOf(patch) > deep)) continue;
+    if (first == nullptr) first = &patch;
+    if (patch.normal.dot(first->normal) < kPatchCosine) return true;
+  }
+  return false;
 }
 
 /// Adds samples to those that there are. Of `contacts`, too, the first are A's.

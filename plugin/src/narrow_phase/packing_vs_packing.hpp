@@ -20,7 +20,8 @@ enum class SearchPass : std::uint8_t {
              ///< once for each pose of a pair that is swept
   nearby,    ///< the same with spheres enlarged by no more than half the thickness of the solids, where those
              ///< of `surfaces` are larger: they meet all sides of what is thin, and do not tell the near one
-  touch,     ///< with spheres as they are, where the surfaces showed no overlap: it may be too deep
+  touch,     ///< with spheres as they are, where the surfaces showed no overlap, or push against each other:
+             ///< it may be too deep
   deep,      ///< with spheres enlarged so that they fill their solids, where it is: for the way out
   volumes,   ///< where the volume of overlap is all that is wanted
 };
@@ -54,6 +55,7 @@ class PackingVsPacking : public FoundContact {
   PairQuery makeQuery(SearchPass pass, const ContactSettings& measure, const Placed& now) const;
   btScalar halfThickness() const;
   bool reachesFar() const;
+  bool pushesEachWay() const;
   void selectMoreSamples(const Bodies& bodies, const std::vector<SphereContact>& contacts,
                          std::size_t count_a);
 
@@ -65,6 +67,7 @@ class PackingVsPacking : public FoundContact {
   std::optional<ContactSettings> search_;  ///< settings of a search that is under way
   std::vector<SphereContact> contacts_;    ///< the samples
   std::size_t count_a_ = 0;                ///< of A's spheres, which come first
+  btVector3 way_out_{0, 0, 0};             ///< of bodies deep in each other, in the last search [m]
   Overlap overlap_;                        ///< only where depth is not measured on the surfaces
 };
 

@@ -12,6 +12,7 @@
 #include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
+#include "innersphere/substep_solver.hpp"
 #include "named_packings.hpp"
 #include "packing/mesh_shapes.hpp"
 #include "test_packings.hpp"
@@ -187,30 +188,121 @@ std::string nameOf(const testing::TestParamInfo<Case>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Of, Leaving, testing::ValuesIn(cases()), nameOf);
 
-// Their sides lie in the same planes: where spheres are enlarged to look around, lines through both meet the
-// sides, too, which are 1 m of a way out.
-TEST(CubesInEachOther, SayTheShortestWayOutHoweverFarTheyLook) {
-  struct Deepest : btCollisionWorld::ContactResultCallback {
-    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
-                             const btCollisionObjectWrapper*, int, int) override {
-      depth = std::max(depth, -double(point.getDistance()));
-      return 0;
+/// Two bodies of one shape without gravity.
+class InEachOther {
+ public:
+  explicit InEachOther(const std::shared_ptr<PackingShape>& shape) {
+    world.world.setGravity(btVector3(0, 0, 0));
+    for (btRigidBody** body : {&lower, &upper}) {
+      *body = &world.add(shape, 1, btVector3(0, 0, 0));
+      (*body)->setActivationState(DISABLE_DEACTIVATION);
     }
-    double depth = 0;
-  };
+  }
+  ~InEachOther() { world.world.setConstraintSolver(&world.solver); }
+
+  void setSolver(bool substeps) {
+    world.world.setConstraintSolver(substeps ? static_cast<btConstraintSolver*>(&solver) : &world.solver);
+    PackingCollisionAlgorithm::prepareWorld(world.world);
+  }
+
+  void place(double height, double turned = 0) {
+    for (btRigidBody* body : {lower, upper}) {
+      body->setWorldTransform(btTransform::getIdentity());
+      body->setLinearVelocity(btVector3(0, 0, 0));
+      body->setAngularVelocity(btVector3(0, 0, 0));
+    }
+    const btQuaternion rotation(btVector3(1, 2, 3).normalized(), btScalar(turned));
+    upper->setWorldTransform(btTransform(rotation, btVector3(0, 0, btScalar(height))));
+  }
+
+  double deepest(double distance = 0) {
+    struct Deepest : btCollisionWorld::ContactResultCallback {
+      btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                               const btCollisionObjectWrapper*, int, int) override {
+        depth = std::max(depth, -double(point.getDistance()));
+        return 0;
+      }
+      double depth = 0;
+    } found;
+    found.m_closestDistanceThreshold = btScalar(distance);
+    world.world.contactPairTest(lower, upper, found);
+    return found.depth;
+  }
+
+  /// Runs for a second. Returns how fast they went away from each other at most, and notes how deep they
+  /// were.
+  double leave(double rate) {
+    double fastest = 0;
+    most = 0;
+    for (int i = 0; i < int(rate); ++i) {
+      most = std::max(most, deepest());
+      world.run(1 / rate, 1 / rate);
+      fastest = std::max(fastest, double((upper->getLinearVelocity() - lower->getLinearVelocity()).length()));
+    }
+    return fastest;
+  }
+
+  double most = 0;
+
+ private:
+  SubstepSolver solver;
+  TestWorld world;
+  btRigidBody* lower = nullptr;
+  btRigidBody* upper = nullptr;
+};
+
+std::shared_ptr<PackingShape> cubeOfAMetre() {
   PackOptions options;
   options.spheres = 256;
   options.overlap_errors = false;
-  const auto cube = makeShape(pack(*makeBox({1, 1, 1}), options));
-  for (const double depth : {0.1, 0.2, 0.3}) {
-    TestWorld world;
-    btRigidBody& lower = world.add(cube, 1, btVector3(0, 0, 0));
-    btRigidBody& upper = world.add(cube, 1, btVector3(0, 0, btScalar(1 - depth)));
-    for (const double distance : {0.0, 0.1, 0.2}) {
-      Deepest found;
-      found.m_closestDistanceThreshold = btScalar(distance);
-      world.world.contactPairTest(&lower, &upper, found);
-      EXPECT_NEAR(found.depth, depth, 1e-3) << "looked " << distance << " m far";
+  return makeShape(pack(*makeBox({1, 1, 1}), options));
+}
+
+// Their sides lie in the same planes: lines through both meet the sides, too, which are 1 m of a way out.
+TEST(CubesInEachOther, SayTheShortestWayOutHoweverFarTheyLook) {
+  InEachOther cubes(cubeOfAMetre());
+  for (const double depth : {0.1, 0.2, 0.3, 0.4, 0.45, 0.6}) {
+    cubes.place(1 - depth);
+    for (const double distance : {0.0, 0.1, 0.2})
+      EXPECT_NEAR(cubes.deepest(distance), depth, 1e-3) << "looked " << distance << " m far";
+  }
+}
+
+// Each side is a way out: all of them together hold the cubes, and throw them where they give way.
+TEST(CubesInEachOther, LeaveByOneSide) {
+  InEachOther cubes(cubeOfAMetre());
+  for (const bool substeps : {false, true}) {
+    cubes.setSolver(substeps);
+    for (const double rate : {60.0, 240.0}) {
+      for (const double depth : {0.45, 0.7, 1.0}) {
+        cubes.place(1 - depth);
+        const double fastest = cubes.leave(rate);
+        EXPECT_LT(cubes.deepest(), 0.005) << rate << " steps/s, " << depth << " m";
+        EXPECT_LT(fastest, 1.1 * std::max(0.5, 3 * depth))
+            << rate << " steps/s, " << depth << " m";  // the law
+      }
+    }
+  }
+}
+
+// Teeth and walls that cross push each way: only all of the way out takes them apart. Centres of bodies that
+// turn are a little faster than the law lets what touches be.
+TEST(SolidsInTheSamePlace, Part) {
+  for (const char* name : {"gear", "torus", "lbracket", "bowl"}) {
+    const auto shape = shapeOf(name);
+    InEachOther bodies(shape);
+    for (const bool substeps : {false, true}) {
+      bodies.setSolver(substeps);
+      for (const double rate : {60.0, 240.0}) {
+        for (const double turned : {0.0, 0.5}) {
+          bodies.place(0, turned);
+          const double fastest = bodies.leave(rate);
+          EXPECT_LT(bodies.deepest(), 0.005 * 0.4)
+              << name << (substeps ? ", substeps, " : ", ") << rate << " steps/s, turned by " << turned;
+          EXPECT_LT(fastest, 1.2 * std::max(0.2, 3 * bodies.most))
+              << name << (substeps ? ", substeps, " : ", ") << rate << " steps/s, turned by " << turned;
+        }
+      }
     }
   }
 }
