@@ -86,9 +86,9 @@ double overlapDepth(double volume, const Vec3d& area);
 /// Depth is what the spheres find, not the truth, which a query does not know.
 ///
 /// Copies that share more lie nearly upon the solid. Volume-true spheres, which overlap each other, then find
-/// too much, because they meet themselves. So kOverlapErrorPoses more copies, a little turned and moved,
-/// share 45 to 100 %. Their errors rise with what is found. For bodies of other shapes that share as much of
-/// both they are too large.
+/// too much, because they meet themselves. So 2 kOverlapErrorPoses more copies, a little turned, moved or
+/// both, share 45 to 100 %. Their errors go with what is found. For bodies of other shapes that share as much
+/// of both they are too large.
 ///
 /// Copies of a thin solid are thin: they do not tell how well its spheres fill what is deep in a thick body.
 /// So the solid is also cut by planes, which are as thick as any.
@@ -117,9 +117,11 @@ struct OverlapErrors {
     /// The errors of the solid cut by planes, times the root of two: the other body's are not smaller. Empty
     /// if the surface is not closed.
     std::vector<AtDepth> planes;
-    /// The errors of copies that share more than kDeepOverlap of the solid, since they lie nearly upon it:
-    /// one row, for all depths, with a power that is negative. True volumes are sampled, to 0.3 % of the
-    /// solid. Empty for the spheres' own radii, which do not overlap each other.
+    /// The errors of copies that share more than kDeepOverlap of the solid, since they lie nearly upon it, by
+    /// the volume in place of the depth. Each is from a few poses; bounds are as many times the mean as the
+    /// largest error of any is that of its row. (One row with a power, of the first files, is for all
+    /// volumes.) True volumes are sampled if the surface is not closed or has another volume than the solid,
+    /// to some percent if it is thin. Empty for the spheres' own radii, which do not overlap each other.
     std::vector<AtDepth> deep;
   };
   /// Holds the errors of one prefix.

@@ -22,14 +22,22 @@ constexpr double kMostPower = 0.5;
 
 constexpr auto kPoses = static_cast<double>(kOverlapErrorPoses);
 
+// Errors of copies that lie nearly upon the solid go up and down with the volume, and scatter less at one:
+// few poses tell them, and a run begins at every second one.
+constexpr std::size_t kDeepRun = 5, kDeepStep = 2;
+
 using Run = std::span<const Finding>;
 
-/// Cuts findings into runs of kOverlapErrorPoses by depth, as evenly spread as they are.
-std::vector<Run> runsOf(std::vector<Finding>& findings) {
+void sortByDepth(std::vector<Finding>& findings) {
   std::erase_if(findings, [](const Finding& one) { return !(one.depth > 0); });
   std::sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     return a.depth != b.depth ? a.depth < b.depth : a.error < b.error;
   });
+}
+
+/// Cuts findings into runs of kOverlapErrorPoses by depth, as evenly spread as they are.
+std::vector<Run> runsOf(std::vector<Finding>& findings) {
+  sortByDepth(findings);
   const std::size_t count = findings.size() / kOverlapErrorPoses;
   std::vector<Run> runs;
   for (std::size_t i = 0; i < count; ++i)
@@ -37,17 +45,46 @@ std::vector<Run> runsOf(std::vector<Finding>& findings) {
   return runs;
 }
 
+/// Runs of kDeepRun that overlap. What is equally deep belongs together: much of what lies upon the solid
+/// finds all of it.
+std::vector<Run> deepRunsOf(std::vector<Finding>& findings) {
+  sortByDepth(findings);
+  std::vector<Run> runs;
+  if (findings.size() < 2 * kDeepRun) return runs;
+  const std::size_t rest = findings.size() - kDeepRun, steps = rest / kDeepStep;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    std::size_t begin = i * rest / steps, end = begin + kDeepRun;
+    while (begin > 0 && findings[begin - 1].depth == findings[begin].depth) --begin;
+    while (end < findings.size() && findings[end].depth == findings[end - 1].depth) ++end;
+    runs.push_back(Run(findings).subspan(begin, end - begin));
+  }
+  return runs;
+}
+
+/// The geometric mean of depths or volumes.
+double middleOf(Run run, double Finding::*number) {
+  double sum = 0;
+  for (const Finding& one : run) sum += steady::log2(one.*number);
+  return steady::pow(2, sum / static_cast<double>(run.size()));
+}
+
+double largestErrorOf(Run run) {
+  double largest = 0;
+  for (const Finding& one : run) largest = std::max(largest, one.error);
+  return largest;
+}
+
 /// How the errors of a run go with the logarithms of volumes: sums of squares about the means, errors as
 /// parts of their mean.
 struct Trend {
-  double mean = 0;  // of the errors
+  double poses, mean = 0;  // of the errors
   double volumes = 0, errors = 0, both = 0;
 
-  explicit Trend(Run run) {
+  explicit Trend(Run run) : poses(static_cast<double>(run.size())) {
     double middle = 0;
     for (const Finding& one : run) {
-      mean += one.error / kPoses;
-      middle += logOf(one) / kPoses;
+      mean += one.error / poses;
+      middle += logOf(one) / poses;
     }
     if (!(mean > 0)) return;
     for (const Finding& one : run) {
@@ -63,18 +100,18 @@ struct Trend {
 
 /// The variance of errors as parts of their mean: they scatter about as much at all depths.
 double scatterOf(std::span<const Trend> trends) {
-  double squares = 0, runs = 0;
+  double squares = 0, free = 0;
   for (const Trend& one : trends) {
     squares += one.errors;
-    runs += one.mean > 0;
+    if (one.mean > 0) free += one.poses - 1;
   }
-  return runs > 0 ? squares / (runs * (kPoses - 1)) : 0;
+  return free > 0 ? squares / free : 0;
 }
 
-/// How many times a mean the mean of as many others may be. Both scatter; where this one is small, so would
-/// be a limit that adds to it, so it is one for the logarithm of their ratio.
-double limitOf(double scatter) {
-  return steady::exp(kNormal * std::sqrt(2 * scatter / kPoses));
+/// How many times a mean of this many the mean of kOverlapErrorPoses others may be. Both scatter; where this
+/// one is small, so would be a limit that adds to it, so it is one for the logarithm of their ratio.
+double limitOf(double scatter, std::size_t poses) {
+  return steady::exp(kNormal * std::sqrt(scatter / static_cast<double>(poses) + scatter / kPoses));
 }
 
 /// The power of the volume with which errors fall near a run, less its standard error: volumes may be far
@@ -98,46 +135,39 @@ std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings)
   std::vector<Trend> trends;
   for (const Run& run : runs) trends.emplace_back(run);
   const double scatter = scatterOf(trends);
-  const double limit = limitOf(scatter);
+  const double limit = limitOf(scatter, kOverlapErrorPoses);
 
   std::vector<OverlapErrors::AtDepth> rows;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    double largest = 0, depths = 0, volumes = 0;  // the sums of logarithms
-    for (const Finding& one : runs[i]) {
-      largest = std::max(largest, one.error);
-      depths += steady::log2(one.depth);
-      volumes += steady::log2(one.volume);
-    }
-    const double depth = steady::pow(2, depths / kPoses);
+    const double depth = middleOf(runs[i], &Finding::depth), largest = largestErrorOf(runs[i]);
     // All may be equally deep, as where one sphere is inside another.
     if (rows.empty() || depth > rows.back().depth)
       rows.push_back({depth,
                       {std::min(limit * trends[i].mean, largest), largest},
-                      steady::pow(2, volumes / kPoses),
+                      middleOf(runs[i], &Finding::volume),
                       fallingPower(trends, i, scatter)});
   }
   return rows;
 }
 
-std::vector<OverlapErrors::AtDepth> errorsOfDeep(const std::vector<Finding>& findings) {
-  double volumes = 0;  // the sum of logarithms
-  for (const Finding& one : findings) {
-    if (!(one.volume > 0)) return {};
-    volumes += steady::log2(one.volume);
+std::vector<OverlapErrors::AtDepth> errorsOfDeep(std::vector<Finding> findings) {
+  // Of a query that finds less the others tell.
+  std::erase_if(findings, [](const Finding& one) { return !(one.volume > kDeepOverlap); });
+  const std::vector<Run> runs = deepRunsOf(findings);
+  std::vector<Trend> trends;
+  double largest = 1;  // as many times the mean of its run
+  for (const Run& run : runs) {
+    const double mean = trends.emplace_back(run).mean;
+    if (mean > 0) largest = std::max(largest, largestErrorOf(run) / mean);
   }
-  if (findings.size() != kOverlapErrorPoses) return {};
-  const double volume = steady::pow(2, volumes / kPoses);
-  const Trend trend(findings);
-  const double rise = trend.volumes > 0 ? std::max(trend.both / trend.volumes, 0.0) : 0;
-  std::vector<Finding> level = findings;  // all as if they had that volume
-  double largest = 0;
-  for (Finding& one : level) {
-    one.error *= steady::pow(volume / one.volume, rise);
-    largest = std::max(largest, one.error);
+  const double limit = std::min(limitOf(scatterOf(trends), kDeepRun), largest);
+  std::vector<OverlapErrors::AtDepth> rows;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const double depth = middleOf(runs[i], &Finding::depth), mean = trends[i].mean;
+    if (rows.empty() || depth > rows.back().depth)
+      rows.push_back({depth, {std::min(limit * mean, 1.0), std::min(largest * mean, 1.0)}, depth, 0});
   }
-  const Trend others(level);
-  const double mean = limitOf(scatterOf({&others, 1})) * others.mean;
-  return {{volume, {std::min(mean, largest), largest}, volume, -rise}};
+  return rows;
 }
 
 }  // namespace innersphere

@@ -17,8 +17,8 @@ struct Finding {
 /// no depth is left out.
 std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings);
 
-/// Returns the same for kOverlapErrorPoses copies that lie nearly upon the solid, in one row: depths do not
-/// count, and errors rise with a power of the volume. Nothing if one finds nothing.
-std::vector<OverlapErrors::AtDepth> errorsOfDeep(const std::vector<Finding>& findings);
+/// Returns the same for copies that lie nearly upon the solid, by rising volume instead of depth: see
+/// OverlapErrors::Estimate::deep. Nothing if only a few find more than kDeepOverlap.
+std::vector<OverlapErrors::AtDepth> errorsOfDeep(std::vector<Finding> findings);
 
 }  // namespace innersphere

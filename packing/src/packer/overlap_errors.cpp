@@ -19,6 +19,9 @@ namespace {
 // Enough for 14 depths.
 constexpr std::size_t kTrials = 14 * kOverlapErrorPoses;
 
+// Copies nearly upon the solid: errors of these fall to nothing within 5 % of the volume, or rise.
+constexpr std::size_t kDeepTrials = 2 * kOverlapErrorPoses;
+
 /// What two balls share, by the closed form of the lens.
 double lens(double r1, double r2, double d) {
   const double s = r1 + r2 - d;
@@ -132,8 +135,7 @@ Finding findingOf(const Found& found, double truth, double volume) {
 OverlapErrors findOverlapErrors(const Container& container, const Surface& surface,
                                 const SurfaceSamples& samples, std::span<const Ball> balls,
                                 const std::vector<VolumeTrueRadii>& radii, double volume) {
-  const OverlapTrials made =
-      makeOverlapTrials(container, surface, samples, volume, kTrials, kOverlapErrorPoses);
+  const OverlapTrials made = makeOverlapTrials(container, surface, samples, volume, kTrials, kDeepTrials);
   const std::vector<OverlapTrial>& trials = made.trials;
   const std::vector<PlaneCut>& planes = made.planes;
   if (trials.size() < kOverlapErrorPoses) return {};
@@ -155,7 +157,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
     tbb::parallel_for(std::size_t{0}, deep.size(), [&](std::size_t i) {
       // No more than the solid has, as a query tells.
       const double found = std::min(spheres.volume(made.deep[i].pose) / volume, 1.0);
-      deep[i] = {0, errorOf(found, made.deep[i].truth.fraction), found};
+      deep[i] = {found, errorOf(found, made.deep[i].truth.fraction), found};
     });
     tbb::parallel_for(std::size_t{0}, planes.size(),
                       [&](std::size_t i) { cuts[i] = spheres.below(planes[i]); });
@@ -183,7 +185,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
     };
     errors.prefixes.push_back(
         {prefix.count, estimate(&Prefix::Sums::raw), estimate(&Prefix::Sums::volume_true)});
-    errors.prefixes.back().volume_true.deep = errorsOfDeep(deep);
+    errors.prefixes.back().volume_true.deep = errorsOfDeep(std::move(deep));
   }
   return errors;
 }

@@ -118,8 +118,12 @@ class TrueOverlap {
     return by_triangles ? Voxels::Shared{byTriangles(pose), 0} : many_->shared(pose);
   }
 
-  /// The fraction by few points: to about 0.3 % of the solid, half a percent if it is thin.
-  Voxels::Shared sampledAt(const Pose& pose) const { return few_.shared(pose); }
+  /// The fraction by few points: to 0.3 % of the solid, some percent if it is thin. Of a copy nearly upon it
+  /// up to one percent is missing, as points are looked up in cells that the surface cuts.
+  double sampledAt(const Pose& pose) const { return few_.shared(pose).fraction; }
+
+  /// The fraction by triangles, or `sampled` if these do not tell: many points would take long.
+  double deepAt(const Pose& pose, double sampled) const { return many_ ? sampled : byTriangles(pose); }
 
   struct Found {
     double fraction;
@@ -249,23 +253,24 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
   return {pose, near.share.exact ? Voxels::Shared{share, 0} : overlap.at(pose, share)};
 }
 
-/// The copy lies upon the solid, but for a turn and a shift, both so small that they share about `target`.
+/// The copy lies upon the solid, but for a turn, a shift, or both, so small that they share about `target`.
 OverlapTrial findDeepTrial(const TrueOverlap& overlap, std::size_t number, double target) {
   const Point places = random(number, 1), middle = overlap.point(places[0]);
   const Point axis = direction(random(number, 2)), way = direction(random(number, 0));
   // Turns of one radian and shifts of the cube's side are about as large.
-  double size = 0.1;  // most are smaller
-  OverlapTrial trial;
+  const double angle = number % 3 == 0 ? 0 : places[1], shift = number % 3 == 1 ? 0 : places[2];
+  double size = 0.1, share = 0;  // most are smaller
+  Pose pose;
   for (int i = 0; i < kMostSteps; ++i) {
-    const Eigen::Matrix3d turn = turned(size * places[1], axis).toRotationMatrix();
-    trial.pose = {turn, middle - turn * middle + size * places[2] * way};
-    trial.truth = overlap.sampledAt(trial.pose);
+    const Eigen::Matrix3d turn = turned(size * angle, axis).toRotationMatrix();
+    pose = {turn, middle - turn * middle + size * shift * way};
+    share = overlap.sampledAt(pose);
     // What they do not share grows about as the size.
-    const double times = (1 - trial.truth.fraction) / (1 - target);
+    const double times = (1 - share) / (1 - target);
     if (times < kAbout && (size == 1 || times > 1 / kAbout)) break;
     size = std::min(size / std::max(times, 0.1), 1.0);
   }
-  return trial;
+  return {pose, {overlap.deepAt(pose, share), 0}};
 }
 
 /// A plane through a random point of the solid.

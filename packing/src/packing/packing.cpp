@@ -57,7 +57,7 @@ ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double dept
                             double volume, double of_larger) {
   if (of_larger > kDeepOverlap) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    return estimate.deep.empty() ? ExpectedError{kNan, kNan} : errorAt(estimate.deep, 0, of_larger);
+    return estimate.deep.empty() ? ExpectedError{kNan, kNan} : errorAt(estimate.deep, of_larger, of_larger);
   }
   const ExpectedError copies = errorAt(estimate.copies, depth, volume);
   if (!(thickness > estimate.thickest)) return copies;

@@ -413,6 +413,102 @@ TEST(PackerMeasures, ErrorsFallWithTheVolumeAsTheyWereFoundTo) {
   EXPECT_NEAR(expectedError(estimate, 0.2, 0, 0.32).mean, between / 2, 1e-12);
 }
 
+// Copies nearly upon the solid: a third moved only, a third turned only, a third both. What a box shares with
+// one that is moved only is known.
+TEST(PackerMeasures, CopiesNearlyUponTheSolidShareWhatTheirSurfacesDo) {
+  const Vec3d size{1, 0.5, 0.4};
+  const auto solid = makeSolid(boxMesh({}, size), "box");
+  const Container container(*solid);
+  const double unit = 1 / container.side();
+  const OverlapTrials trials =
+      makeOverlapTrials(container, container.toSurface(solid->surface()),
+                        SurfaceSamples(solid->surface(), container), 0.2 * std::pow(unit, 3), 0, 39);
+  ASSERT_EQ(trials.deep.size(), 39u);
+  int moved = 0, turned = 0;
+  for (const OverlapTrial& trial : trials.deep) {
+    EXPECT_GT(trial.truth.fraction, 0.4);
+    EXPECT_LT(trial.truth.fraction, 1);
+    if (trial.pose.rotation.isIdentity()) {
+      ++moved;
+      double shared = 1;
+      for (int k = 0; k < 3; ++k) shared *= 1 - std::abs(trial.pose.shift[k]) / (unit * size[k]);
+      EXPECT_NEAR(trial.truth.fraction, shared, 1e-6);
+    } else {  // about a point of the solid
+      const Eigen::Vector3d axis = Eigen::AngleAxisd(trial.pose.rotation).axis();
+      turned += std::abs(axis.dot(trial.pose.shift)) < 1e-9;
+    }
+  }
+  EXPECT_EQ(moved, 13);
+  EXPECT_EQ(turned, 13);
+}
+
+/// 40 copies that find 46 to 100 % and have these errors at these volumes.
+template <class ErrorAt>
+OverlapErrors::Estimate foretoldOfDeep(const ErrorAt& error_at) {
+  std::vector<Finding> findings;
+  for (int i = 0; i < 40; ++i) {
+    const double volume = 0.46 + 0.54 * i / 39;
+    findings.push_back({volume, error_at(volume, i), volume});
+  }
+  return {{}, 0, {}, errorsOfDeep(findings)};
+}
+
+// Errors may rise with the volume, or fall to nothing where a thin solid comes upon itself.
+TEST(PackerMeasures, ErrorsOfDeepCopiesGoWithTheVolume) {
+  const auto expectForetold = [](const auto& error_at) {
+    const OverlapErrors::Estimate estimate =
+        foretoldOfDeep([&](double volume, int) { return error_at(volume); });
+    for (double volume = 0.5; volume < 0.98; volume += 0.01) {
+      const ExpectedError expected = expectedError(estimate, 0.3, 0, volume, volume);
+      EXPECT_GT(expected.mean, 0.98 * error_at(volume)) << volume;
+      EXPECT_LT(expected.mean, 1.8 * error_at(volume)) << volume;
+      EXPECT_GT(expected.bound, expected.mean);
+    }
+  };
+  expectForetold([](double volume) { return 0.05 * volume * volume * volume; });
+  expectForetold([](double volume) { return 0.8 * (1.02 - volume); });
+  expectForetold([](double volume) { return 0.05 + 2 * (volume - 0.45) * (1 - volume); });
+}
+
+// The limit of a mean is that of a normal distribution: the means of a run of five and of 19 others scatter.
+TEST(PackerMeasures, ErrorsOfDeepCopiesAreForetoldFromTheirScatter) {
+  for (const double part : {0.1, 0.25}) {
+    const OverlapErrors::Estimate estimate =
+        foretoldOfDeep([part](double, int i) { return 0.04 * (1 + part * (i * 3 % 5 - 2)); });
+    ASSERT_GT(estimate.deep.size(), 10u);
+    const double variance = 10 * part * part / 4,
+                 limit = std::exp(1.645 * std::sqrt(variance * (1.0 / 5 + 1.0 / 19)));
+    for (const OverlapErrors::AtDepth& at : estimate.deep) {
+      EXPECT_NEAR(at.error.mean, 0.04 * std::min(limit, 1 + 2 * part), 1e-9);
+      EXPECT_NEAR(at.error.bound, 0.04 * (1 + 2 * part), 1e-12);
+    }
+  }
+}
+
+// Spheres that meet themselves find no more than there is: all of these count as one. What is found to share
+// less than 45 % is foretold by the other rows.
+TEST(PackerMeasures, DeepCopiesThatFindAllCountTogether) {
+  std::vector<Finding> findings;
+  for (int i = 0; i < 10; ++i) findings.push_back({0.3, 0.9, 0.3});
+  for (int i = 0; i < 20; ++i) findings.push_back({0.5 + 0.02 * i, 0.02, 0.5 + 0.02 * i});
+  for (int i = 0; i < 10; ++i) findings.push_back({1, 0.01 * i, 1});
+  const std::vector<OverlapErrors::AtDepth> rows = errorsOfDeep(findings);
+  ASSERT_GT(rows.size(), 5u);
+  EXPECT_GT(rows.front().depth, 0.5);
+  EXPECT_LT(rows.front().error.mean, 0.04);
+  EXPECT_EQ(rows.back().depth, 1);
+  EXPECT_NEAR(rows.back().error.bound / rows.front().error.bound, 0.045 / 0.02, 1e-9);
+  findings.resize(19);
+  EXPECT_TRUE(errorsOfDeep(findings).empty());
+}
+
+// As of the first files that know them.
+TEST(PackerMeasures, OneRowOfDeepCopiesHoldsForAllVolumes) {
+  const OverlapErrors::Estimate estimate{{}, 0, {}, {{0.7, {0.1, 0.2}, 0.7, -2}}};
+  EXPECT_NEAR(expectedError(estimate, 0.1, 0, 0.9, 0.9).mean, 0.1 * 0.81 / 0.49, 1e-12);
+  EXPECT_NEAR(expectedError(estimate, 0.1, 0, 0.5, 0.5).bound, 0.2 * 0.25 / 0.49, 1e-12);
+}
+
 // What a packing at a program's start leaves out: nothing but the errors, and a file is read back without
 // them.
 TEST(PackerMeasures, OverlapErrorsCanBeLeftOut) {
