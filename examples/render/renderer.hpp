@@ -10,7 +10,7 @@ namespace innersphere::demo {
 struct RenderOptions {
   int width = 1280;  ///< [pixels]
   int height = 720;  ///< [pixels]
-  int samples = 48;  ///< rays through each pixel: more is smoother and slower
+  int samples = 24;  ///< rays through each pixel: more is smoother and as much slower
   View view = View::split;
 };
 

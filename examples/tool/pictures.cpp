@@ -1,5 +1,7 @@
 #include "pictures.hpp"
 
+#include "file_names.hpp"
+#include "innersphere/error.hpp"
 #include "outputs.hpp"
 #include "replay/replay.hpp"
 #include "terminal.hpp"
@@ -17,10 +19,14 @@ void addPictureOptions(Command& command, PictureArguments& arguments) {
   command.count("--width", arguments.render.width, {16, 16384}, "Of the picture [pixels]");
   command.count("--height", arguments.render.height, {16, 16384}, "Of the picture [pixels]");
   command.count("--samples", arguments.render.samples, {1, 65536},
-                "Rays a pixel: more is smoother and slower");
+                "Rays a pixel: twice as many take twice the time and are smoother; 4 are a quick look");
 }
 
 void checkPictures(const PictureArguments& arguments, bool force) {
+  const std::string& png = arguments.png;
+  if (!png.empty() && !isStream(png) && endingOf(png) != ".png") {
+    throw Error(ErrorCode::bad_argument, "a picture is written to .png, not to " + png);
+  }
   checkOutput(arguments.png, force);
   checkOutput(arguments.html, force);
 }

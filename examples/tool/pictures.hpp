@@ -18,7 +18,8 @@ struct PictureArguments {
 /// Adds --png, --html and the size and kind of the picture.
 void addPictureOptions(Command& command, PictureArguments& arguments);
 
-/// Throws Error if an output exists and `force` is not set, or cannot be written.
+/// Throws Error if an output exists and `force` is not set, cannot be written, or the ending of a picture is
+/// not .png.
 void checkPictures(const PictureArguments& arguments, bool force);
 
 /// Writes what was asked for: a picture of the last frame, a page with all of them.

@@ -166,6 +166,62 @@ def test_scale(tmp_path):
             innersphere.pack(mesh, scale=-1)
 
 
+# A corner of a cube, cut off: it has no symmetry that a mirror leaves as it is, and its moments are in closed form.
+CORNER = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float), np.array(
+    [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+)
+
+
+@pytest.mark.parametrize("scale", [(-1, 1, 1), (2, 3, 0.5), (-0.02, 0.01, -0.04), [-1, -1, -1]])
+def test_a_scale_for_each_axis(tmp_path, scale):
+    a = np.array(scale, float)
+    moments = np.abs(a.prod()) * np.outer(a, a) * (np.eye(3) / 120 + 1 / 120 - 1 / 96)
+    for mesh in (CORNER, write_obj(tmp_path / "corner.obj", *CORNER)):
+        packing = innersphere.pack(mesh, spheres=40, scale=scale, overlap_errors=False)
+        assert not any("turned" in warning or "flipped" in warning for warning in packing.warnings)
+        assert packing.volume == pytest.approx(np.abs(a.prod()) / 6)
+        np.testing.assert_allclose(packing.origin + packing.center_of_mass, a / 4)
+        inertia = np.trace(moments) * np.eye(3) - moments
+        np.testing.assert_allclose(packing.inertia, inertia, atol=1e-9 * np.abs(inertia).max())
+        # From the outside, counter-clockwise.
+        corners = (packing.vertices + packing.origin)[packing.faces]
+        assert np.linalg.det(corners).sum() / 6 == pytest.approx(packing.volume, rel=1e-5)
+        assert {tuple(v) for v in packing.vertices + packing.origin} == {tuple(np.float32(v)) for v in CORNER[0] * a}
+        balls = packing.spheres.astype(float)
+        centres = (balls[:, :3] + packing.origin) / a  # of what was a corner of a cube
+        assert (centres * np.abs(a) > balls[:, 3:] * (1 - 1e-5)).all()
+        assert ((1 - centres.sum(1)) / np.linalg.norm(1 / a) > balls[:, 3] * (1 - 1e-5)).all()
+
+
+def test_scales_have_packings_of_their_own(tmp_path):
+    mesh, cache = write_obj(tmp_path / "corner.obj", *CORNER), tmp_path / "cache"
+
+    def spheres(scale):
+        return innersphere.pack(mesh, spheres=5, scale=scale, overlap_errors=False, cache=cache).spheres.tolist()
+
+    scales = [2.0, (2, 2, -2), (-2, 2, 2), (2, 2, 1)]
+    first = [spheres(scale) for scale in scales]
+    assert len(list(cache.iterdir())) == 4 and all(a != b for i, a in enumerate(first) for b in first[:i])
+    assert [spheres(scale) for scale in scales] == first and spheres([2, 2, 2]) == first[0]
+    assert len(list(cache.iterdir())) == 4
+
+
+@pytest.mark.parametrize(
+    "scale, error, message",
+    [
+        ((1, 0, 1), innersphere.InvalidArgumentError, "scale is .*0.0.*; it must be finite and not 0"),
+        ((1, 1, np.nan), innersphere.InvalidArgumentError, "scale is .*finite"),
+        (-1, innersphere.InvalidArgumentError, "scale is -1; it must be positive"),
+        ((1, 1), ValueError, r"scale has the shape \(2,\)"),
+        ("1 1 1", TypeError, "scale"),
+    ],
+)
+def test_bad_scales(tmp_path, scale, error, message):
+    for mesh in (CORNER, write_obj(tmp_path / "corner.obj", *CORNER)):
+        with pytest.raises(error, match=message):
+            innersphere.pack(mesh, spheres=1, scale=scale)
+
+
 def test_limits():
     mesh = (BOX_VERTICES, BOX_FACES)
     options = dict(overlap_errors=False)

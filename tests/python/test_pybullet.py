@@ -173,6 +173,37 @@ def test_links_of_a_urdf_get_packings_of_their_meshes(client, tmp_path):
         sim.mesh_pose(body, 0)
 
 
+@pytest.mark.parametrize("scale", ["-1 1 1", "1 -0.5 2", "-1 -1 -1"])
+def test_mirrored_and_stretched_meshes_are_where_pybullet_has_them(client, tmp_path, scale):
+    outline = [[0, 0], [0.3, 0], [0.3, 0.1], [0.1, 0.1], [0.1, 0.4], [0, 0.4]]
+    write_obj(tmp_path / "bracket.obj", *map(np.array, prism(outline, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], 0.05)))
+    (tmp_path / "bracket.urdf").write_text(
+        URDF.replace("<collision><origin", '<collision concave="yes"><origin', 1)  # PyBullet's hull else
+        .replace("ring.obj", f'bracket.obj" scale="{scale}')
+        .replace('rpy="0 0 0"', 'rpy="0.1 0.2 0.3"')
+    )
+    sim = isp.attach(client)
+    body = p.loadURDF(str(tmp_path / "bracket.urdf"), [1, 2, 3], UPRIGHT, useFixedBase=True, physicsClientId=client)
+    # Rays from all sides, towards where the mesh is.
+    low, high = np.array(p.getAABB(body, physicsClientId=client))
+    rng = np.random.default_rng(1)
+    ways = rng.normal(size=(1000, 3))
+    starts = rng.uniform(low, high, ways.shape) - ways
+
+    def hits():
+        ends = (starts.tolist(), (starts + 2 * ways).tolist())
+        return np.array([ray[2] for ray in p.rayTestBatch(*ends, physicsClientId=client)])
+
+    before = hits()
+    packing = sim.pack_all(body, spheres=100, overlap_errors=False)[-1]
+    assert packing.volume == pytest.approx(0.003 * abs(np.prod([float(word) for word in scale.split()])))  # 0.06 m^2
+    after = hits()
+    hit = before < 1
+    assert hit.sum() > 200
+    np.testing.assert_allclose(after[hit], before[hit], atol=1e-5)
+    assert (after[~hit] == 1).mean() > 0.99  # PyBullet's own misses a few
+
+
 def test_resets_and_removal(client, ring):
     sim = isp.attach(client)
     heights = []

@@ -119,6 +119,23 @@ def test_covering_spheres_leave_no_point_of_the_surface_out(covering):
         assert 0 < out < 1.05 * overhang + 4e-3
 
 
+def test_meshes_are_mirrored_and_stretched(folder, tmp_path):
+    (tmp_path / "arm.urdf").write_text(
+        ROBOT.replace("package://arm/ring.obj", str(folder / "ring.obj"))
+        .replace('xyz="0 0 1"', 'xyz="0 0 1" rpy="0 0 1.5707963267948966"')
+        .replace('scale="0.1 0.1 0.1"', 'scale="-0.1 0.2 0.1"')
+    )
+    # The turn takes x to y, and y to -x; what is outside of a ring stays there when it is mirrored.
+    def stretched(p):
+        return ring(np.stack([-10 * p[..., 1], -5 * p[..., 0], 10 * (p[..., 2] - 1)], -1))
+
+    balls = robots.spheres_of_urdf(tmp_path / "arm.urdf", spheres=60)["ring"].spheres
+    ways = np.random.default_rng(2).normal(size=(60, 300, 3))
+    on = balls[:, None, :3] + balls[:, None, 3:] * ways / np.linalg.norm(ways, axis=2, keepdims=True)
+    assert stretched(on).max() < 0.03  # its mesh is cut
+    assert np.abs(balls[:, 0]).max() > 0.15 > np.abs(balls[:, 1]).max()
+
+
 @pytest.mark.skipif(importlib.util.find_spec("pybullet") is None, reason="needs PyBullet")
 def test_pybullet_reads_the_urdf(folder, inside):
     import pybullet as p
@@ -256,7 +273,7 @@ def test_liggghts_reads_the_particle(box, tmp_path):
         ('<box size="0.4 0.2 0.6"/>', '<capsule radius="1" length="1"/>', innersphere.FormatError, "'base'.*<capsule>"),
         ('<box size="0.4 0.2 0.6"/>', "", innersphere.FormatError, "without a geometry"),
         ('rpy="0.3 -0.4 0.5"', 'rpy="0.3 -0.4 up"', innersphere.FormatError, "rpy"),
-        ('scale="0.1 0.1 0.1"', 'scale="0.1 0.1 0.2"', innersphere.InvalidArgumentError, "'ring'.*scaled"),
+        ('scale="0.1 0.1 0.1"', 'scale="0.1 0.1 0"', innersphere.InvalidArgumentError, "scale is .*not 0"),
         ("package://arm/", "package://leg/", innersphere.FileMissingError, "'leg': FOLDER"),
         ("package://arm/", "", None, ""),
         ("package://arm/ring", "file://nothing", innersphere.FileMissingError, "nothing.obj"),

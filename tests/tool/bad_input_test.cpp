@@ -70,6 +70,15 @@ TEST_F(BadInput, OutputsThatCannotBeWritten) {
   EXPECT_EQ(readFile(path("old.png")), "precious");
 }
 
+TEST_F(BadInput, PicturesOfAnotherEnding) {
+  for (const std::string command : {"view box --spheres 5 ", "scene run stack --spheres 5 --seconds 0.1 "}) {
+    for (const std::string name : {"box.jpg", "box", "png"}) {
+      refuse(command + "--html box.html --png " + name, 2, {name, ".png"});
+    }
+  }
+  EXPECT_TRUE(files().empty());
+}
+
 TEST_F(BadInput, PoseTables) {
   const std::string header = "m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23\n";
   writeFile(path("b.xyzr"), "0 0 0 1\n");

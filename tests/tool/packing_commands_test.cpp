@@ -127,22 +127,22 @@ TEST_F(PackingCommands, ReplacesOnlyWithForce) {
 TEST_F(PackingCommands, ForceWritesThroughALinkAndKeepsPermissions) {
   for (const std::string make :
        {"pack box --spheres 10 --force -o link.json",
-        "view box --spheres 10 --width 16 --height 16 --samples 1 --force --png link.json"}) {
+        "view box --spheres 10 --width 16 --height 16 --samples 1 --force --png link.png"}) {
+    const std::string link = make.substr(make.rfind(' ') + 1), real = "elsewhere/" + link;
     fs::create_directory(path("elsewhere"));
-    writeFile(path("elsewhere/real.json"), "old");
-    fs::permissions(path("elsewhere/real.json"), fs::perms::owner_read | fs::perms::owner_write);
-    fs::create_symlink("elsewhere/real.json", path("middle.json"));
-    fs::create_symlink("middle.json", path("link.json"));
-    refuse(make.substr(0, make.find(" --force")) + make.substr(make.find(" --force") + 8), 5, {"link.json"});
-    EXPECT_EQ(readFile(path("elsewhere/real.json")), "old");
+    writeFile(path(real), "old");
+    fs::permissions(path(real), fs::perms::owner_read | fs::perms::owner_write);
+    fs::create_symlink(real, path("middle"));
+    fs::create_symlink("middle", path(link));
+    refuse(make.substr(0, make.find(" --force")) + make.substr(make.find(" --force") + 8), 5, {link});
+    EXPECT_EQ(readFile(path(real)), "old");
     EXPECT_EQ(run(make).exit_code, 0) << make;
-    EXPECT_EQ(fs::read_symlink(path("link.json")), "middle.json");
-    EXPECT_EQ(fs::read_symlink(path("middle.json")), "elsewhere/real.json");
-    EXPECT_GT(readFile(path("elsewhere/real.json")).size(), 50u);
-    EXPECT_EQ(fs::status(path("elsewhere/real.json")).permissions(),
-              fs::perms::owner_read | fs::perms::owner_write);
-    EXPECT_EQ(files(), (std::set<std::string>{"elsewhere", "link.json", "middle.json"}));
-    for (const char* name : {"elsewhere", "link.json", "middle.json"}) fs::remove_all(path(name));
+    EXPECT_EQ(fs::read_symlink(path(link)), "middle");
+    EXPECT_EQ(fs::read_symlink(path("middle")), real);
+    EXPECT_GT(readFile(path(real)).size(), 50u);
+    EXPECT_EQ(fs::status(path(real)).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+    EXPECT_EQ(files(), (std::set<std::string>{"elsewhere", link, "middle"}));
+    for (const std::string& name : files()) fs::remove_all(path(name));
   }
 }
 

@@ -7,10 +7,11 @@ namespace {
 
 using nlohmann::json;
 
-// Ends a parse that goes deeper than any packing does: the CBOR parser recurses, and a few megabytes of
-// opening brackets would use up the stack.
-class DepthLimit : public nlohmann::json_sax<json> {
+// Says what is wrong, and ends a parse that goes deeper than any packing does: the CBOR parser recurses, and
+// a few megabytes of opening brackets would use up the stack.
+class Judge : public nlohmann::json_sax<json> {
  public:
+  explicit Judge(std::size_t size) : size_(size) {}
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
   bool number_integer(number_integer_t) override { return true; }
@@ -23,8 +24,9 @@ class DepthLimit : public nlohmann::json_sax<json> {
   bool start_array(std::size_t) override { return ++depth_ <= kDeepest; }
   bool end_object() override { return leave(); }
   bool end_array() override { return leave(); }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override {
-    damaged(error.what());
+  bool parse_error(std::size_t byte, const std::string&, const nlohmann::detail::exception& error) override {
+    if (byte > size_) damaged("it ends early, after " + std::to_string(size_) + " bytes");
+    damaged(error);
   }
 
  private:
@@ -33,6 +35,7 @@ class DepthLimit : public nlohmann::json_sax<json> {
     --depth_;
     return true;
   }
+  const std::size_t size_;  // [bytes]
   int depth_ = 0;
 };
 
@@ -42,9 +45,14 @@ void damaged(const std::string& what) {
   throw Error(ErrorCode::bad_format, what + "; the file is damaged");
 }
 
+void damaged(const json::exception& error) {
+  const std::string what = error.what();
+  damaged(what.substr(what.find(' ') + 1));  // after "[json.exception...]"
+}
+
 json parseJson(const std::string& bytes, json::input_format_t format) {
-  DepthLimit limit;
-  if (!json::sax_parse(bytes, &limit, format)) damaged("entries are nested too deeply");
+  Judge judge(bytes.size());
+  if (!json::sax_parse(bytes, &judge, format)) damaged("entries are nested too deeply");
   return format == json::input_format_t::cbor ? json::from_cbor(bytes) : json::parse(bytes);
 }
 

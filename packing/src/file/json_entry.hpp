@@ -14,6 +14,8 @@ namespace innersphere {
 
 /// Throws Error: bad_format, with `what` and that the file is damaged.
 [[noreturn]] void damaged(const std::string& what);
+/// The same, with what a parser says.
+[[noreturn]] void damaged(const nlohmann::json::exception& error);
 
 /// Parses a file. Any bytes are safe: memory is bounded by a small multiple of their number. Throws Error:
 /// bad_format, nlohmann::json::exception.
@@ -124,7 +126,7 @@ auto readJson(const std::string& bytes, nlohmann::json::input_format_t format, c
     const nlohmann::json document = parseJson(bytes, format);
     return read(JsonEntry(document, ""));
   } catch (const nlohmann::json::exception& error) {
-    damaged(error.what());
+    damaged(error);
   }
 }
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _core
 from ._arrays import as_count, as_float64, as_indices
@@ -27,7 +27,7 @@ def pack(
     overlap_errors: bool = True,
     threads: int = 0,
     repair: bool = False,
-    scale: float = 1.0,
+    scale: float | Sequence[float] = 1.0,
     name: str | None = None,
     cache: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[str, float], object] = False,
@@ -52,7 +52,8 @@ def pack(
     overlap_errors: whether to measure how far volumes of overlaps are off, which takes more than half of the time.
     threads: 0 are all cores. The result does not depend on it.
     repair: whether a mesh with holes is packed all the same. They are closed with flat fans, the ends of pipes with rings.
-    scale: factor for all coordinates: 0.001 for millimetres.
+    scale: factor for all coordinates: 0.001 for millimetres; or three, for x, y and z, as the scale of a URDF: [-1, 1, 1]
+        packs the mirror image.
     name: of the solid, for messages and provenance; None: the path, or "mesh".
     cache: folder in which packings are kept, so that the same mesh with the same options is packed once; None: none.
     progress: True shows a bar on the standard error stream. A function gets the stage and the fraction of it that is
@@ -102,8 +103,29 @@ def read(path: str | os.PathLike[str]) -> _core.Packing:
     return _core.read(path)
 
 
-def triangles_of(mesh: Any, scale: float) -> _core.Mesh:
+def triangles_of(mesh: Any, scale: Any) -> _core.Mesh:
     """Makes the triangles of a mesh that is given as pack() takes it."""
+    factors = _factors(scale)
+    largest = float(np.abs(factors).max())
+    triangles = _evenly_scaled(mesh, largest)
+    triangles.stretch((factors / largest).tolist())
+    return triangles
+
+
+def _factors(scale: Any) -> NDArray[np.float64]:
+    """Those of the three axes. One number is of all, and does not mirror; of three, each may."""
+    factors = as_float64(scale, "scale")
+    if factors.shape == ():
+        if not (np.isfinite(factors) and factors > 0):
+            raise InvalidArgumentError(f"scale is {scale}; it must be positive")
+    elif factors.shape != (3,):
+        raise ValueError(f"scale has the shape {factors.shape}; it must be a number or (3,)")
+    elif not (np.isfinite(factors) & (factors != 0)).all():
+        raise InvalidArgumentError(f"scale is {factors.tolist()}; it must be finite and not 0")
+    return np.broadcast_to(factors, 3)
+
+
+def _evenly_scaled(mesh: Any, scale: float) -> _core.Mesh:
     if isinstance(mesh, (str, os.PathLike)):
         return _core.read_mesh(os.fspath(mesh), scale)
     if isinstance(mesh, (tuple, list)):
@@ -117,8 +139,6 @@ def triangles_of(mesh: Any, scale: float) -> _core.Mesh:
             f"mesh is of the type {type(mesh).__name__}; it must be a path, a tuple of vertices and faces, or an "
             "object that has both"
         )
-    if not (math.isfinite(scale) and scale > 0):
-        raise InvalidArgumentError(f"scale is {scale}; it must be positive")
     vertices = np.ascontiguousarray(as_float64(vertices, "vertices") * scale)
     faces = as_indices(faces, "faces")
     for array, what in ((vertices, "vertices"), (faces, "faces")):

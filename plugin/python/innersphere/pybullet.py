@@ -25,7 +25,7 @@ import pybullet as p
 from numpy.typing import NDArray
 
 from . import _core
-from ._errors import Error, InvalidArgumentError
+from ._errors import Error
 from ._pack import pack
 
 __all__ = ["PyBulletError", "Simulation", "attach", "contact_dtype"]
@@ -303,10 +303,10 @@ class Simulation:
         self._run(_core.pybullet.set_shape, body, link, packing, mesh_to_body)
 
     def pack_all(self, body: int, **options: Any) -> dict[int, _core.Packing]:
-        """Gives every link of a body that collides with one mesh a packing of it.
+        """Gives every link of a body that collides with one mesh a packing of it, mirrored and stretched as the link has it.
 
         options: those of innersphere.pack(): spheres, cache, repair, progress. With cache, each mesh is packed only
-            once.
+            once for each of its scales.
 
         Returns the packings by link; links of other shapes stay as they are. Raises what pack() and set_shape() raise.
         It packs all meshes first: on an error nothing has changed.
@@ -319,12 +319,8 @@ class Simulation:
             if len(meshes) != 1 or len(shapes) != 1:
                 continue
             _, _, _, scale, file, position, orientation = meshes[0][:7]
-            if not np.allclose(scale, scale[0]):
-                raise InvalidArgumentError(
-                    f"link {link} of body {body} is scaled by {scale}; packings scale alike in all axes"
-                )
             self._run(_core.pybullet.check_link, body, link)
-            found[link] = pack(file.decode(), scale=float(scale[0]), **options), (position, orientation)
+            found[link] = pack(file.decode(), scale=scale, **options), (position, orientation)
         for link, (packing, frame) in found.items():
             self._run(_core.pybullet.set_shape, body, link, packing, frame)
         return {link: packing for link, (packing, _) in found.items()}

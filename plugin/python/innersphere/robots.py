@@ -58,8 +58,7 @@ def spheres_of_urdf(
     options: those of innersphere.pack(), such as cache and repair.
 
     Returns the spheres of each link that collides, in the frame of the link. Raises FormatError, which names the link, for
-    what is no URDF or has a shape that is none of these; FileMissingError; InvalidArgumentError for meshes whose axes are
-    scaled differently; and what pack() raises.
+    what is no URDF or has a shape that is none of these; FileMissingError; and what pack() raises.
     """
     tree = _parsed(urdf)
     options = {"overlap_errors": False, **options}
@@ -121,11 +120,7 @@ def _element(
 def _packed(shape: ET.Element, where: str, folder: str, packages: Any, cover: bool, options: dict[str, Any]) -> Packing:
     if shape.tag == "mesh":
         scale = _numbers(shape, "scale", 3, "1 1 1", where)
-        if not np.allclose(scale, scale[0]):
-            raise InvalidArgumentError(
-                f"{where} has a mesh that is scaled by {scale}; packings scale alike in all axes"
-            )
-        return pack(_file(shape.get("filename") or "", where, folder, packages), scale=float(scale[0]), **options)
+        return pack(_file(shape.get("filename") or "", where, folder, packages), scale=scale.tolist(), **options)
     if shape.tag == "box":
         half = _numbers(shape, "size", 3, None, where) / 2
         corners = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)]) * 2 - 1

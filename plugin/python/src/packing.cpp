@@ -6,6 +6,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -111,6 +112,15 @@ Mesh readScaledMesh(const std::filesystem::path& path, double scale) {
   MeshOptions options;
   options.scale = scale;
   return readMesh(path.string(), options);
+}
+
+/// Multiplies coordinates by a factor for each axis. Triangles of a mirror image wind the other way round.
+void stretch(Mesh& mesh, const std::array<double, 3>& factors) {
+  for (Vec3d& vertex : mesh.vertices) {
+    for (int k = 0; k < 3; ++k) vertex[k] *= factors[k];
+  }
+  if (factors[0] * factors[1] * factors[2] > 0) return;
+  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
 std::size_t natural(const char* name, std::int64_t value) {
@@ -449,7 +459,7 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
       .def("__getstate__", &state, nb::sig("def __getstate__(self) -> tuple[bytes, int]"))
       .def("__setstate__", &restore, nb::sig("def __setstate__(self, state: tuple[bytes, int]) -> None"));
 
-  nb::class_<Mesh>(module, "Mesh", "Triangles that pack() takes.");
+  nb::class_<Mesh>(module, "Mesh", "Triangles that pack() takes.").def("stretch", &stretch, "factors"_a);
   module.def("read_mesh", &readScaledMesh, "path"_a, "scale"_a);
   module.def(
       "solid", [](const std::string& name) { return surfaceOf(*makeNamedSolid(name)); }, "name"_a,

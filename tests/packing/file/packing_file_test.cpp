@@ -146,6 +146,25 @@ TEST(FilePacking, BytesInMemoryAreThoseOfAFile) {
   EXPECT_THROW(encodePacking(Packing()), Error);
 }
 
+// Wherever that is: in a number, a text, a key.
+TEST(FilePacking, FilesThatEndEarlyAreSaidToDoSo) {
+  const Scratch scratch;
+  const Packing packing = somePacking(3);
+  const std::pair<std::string, Packing (*)(const std::string&)> readers[] = {{toJson(packing), fromJson},
+                                                                             {toCbor(packing), fromCbor}};
+  for (const auto& [bytes, read] : readers) {
+    for (std::size_t size = 0; size <= bytes.find_last_not_of('\n'); ++size) {
+      expectError(ErrorCode::bad_format,
+                  "it ends early, after " + std::to_string(size) + " bytes; the file is damaged",
+                  [&, read = read] { read(bytes.substr(0, size)); });
+    }
+    // More than there should be is another matter.
+    expectError(ErrorCode::bad_format, "parse error at ", [&, read = read] { read(bytes + "}"); });
+  }
+  const std::string path = scratch.write("p.cbor", toCbor(packing).substr(0, 100));
+  expectError(ErrorCode::bad_format, path + ": it ends early", [&] { readPacking(path); });
+}
+
 TEST(FilePacking, EmptySurfaceAndPrefixesAreFine) {
   const Scratch scratch;
   Packing packing = somePacking(3);
@@ -410,8 +429,8 @@ TEST(FilePacking, SaysWhatIsWrong) {
   };
   expectError(ErrorCode::file_not_found, "none.json", [&] { readPacking(scratch.path("none.json")); });
   expectError(ErrorCode::file_not_found, "folder", [&] { readPacking(scratch.folder().string()); });
-  expect("a.json", "", ErrorCode::bad_format, "parse error");
-  expect("a.cbor", "", ErrorCode::bad_format, "parse error");
+  expect("a.json", "", ErrorCode::bad_format, "ends early");
+  expect("a.cbor", "", ErrorCode::bad_format, "ends early");
   expect("b.json", "{}", ErrorCode::bad_format, "not a packing");
   expect("c.json", "[1, 2, 3]", ErrorCode::bad_format, "not a packing");
   expect("d.txt", "1 2 3 4", ErrorCode::bad_format, ".txt");
