@@ -285,8 +285,8 @@ TEST(CubesInEachOther, LeaveByOneSide) {
   }
 }
 
-// Teeth and walls that cross push each way: only all of the way out takes them apart. Centres of bodies that
-// turn are a little faster than the law lets what touches be.
+// Teeth and walls that cross push each way: only all of the way out takes them apart. The law holds for
+// places that touch: centres of bodies that turn may be twice as fast.
 TEST(SolidsInTheSamePlace, Part) {
   for (const char* name : {"gear", "torus", "lbracket", "bowl"}) {
     const auto shape = shapeOf(name);
@@ -299,7 +299,7 @@ TEST(SolidsInTheSamePlace, Part) {
           const double fastest = bodies.leave(rate);
           EXPECT_LT(bodies.deepest(), 0.005 * 0.4)
               << name << (substeps ? ", substeps, " : ", ") << rate << " steps/s, turned by " << turned;
-          EXPECT_LT(fastest, 1.2 * std::max(0.2, 3 * bodies.most))
+          EXPECT_LT(fastest, 2 * std::max(0.2, 3 * bodies.most))
               << name << (substeps ? ", substeps, " : ", ") << rate << " steps/s, turned by " << turned;
         }
       }
