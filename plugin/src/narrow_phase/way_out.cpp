@@ -29,9 +29,7 @@ struct WayOut {
 class SpheresOnTheWay {
  public:
   SpheresOnTheWay(const PlacedPacking& a, const PlacedPacking& b, const btVector3& apart)
-      : a_(ballsOf(a, btVector3(0, 0, 0))),
-        b_(ballsOf(b, apart)),
-        gap_(a.prefix->inset() * a.scale() + b.prefix->inset() * b.scale()) {}
+      : a_(ballsOf(a, btVector3(0, 0, 0))), b_(ballsOf(b, apart)) {}
 
   btScalar length(const btVector3& direction) const {
     static thread_local std::vector<Ball> a, b;
@@ -60,7 +58,7 @@ class SpheresOnTheWay {
     std::sort(met.begin(), met.end());
     btScalar gone = 0;
     for (const auto& [first, last] : met) {
-      if (first > gone + gap_) break;
+      if (first > gone) break;
       gone = btMax(gone, last);
     }
     return gone;
@@ -93,7 +91,6 @@ class SpheresOnTheWay {
   }
 
   std::vector<Ball> a_, b_;
-  btScalar gap_;  ///< between spheres of a solid [m]
 };
 
 class WaysOut {
