@@ -134,6 +134,12 @@ btScalar shareOfA(const OpposedPoints& points, const btVector3& normal) {
   return from_a + from_b > SIMD_EPSILON ? from_b / (from_a + from_b) : btScalar(0.5);
 }
 
+/// Axes across one normal as across another one.
+Across turned(const Across& axes, const btVector3& from, const btVector3& to) {
+  const btQuaternion turn = shortestArcQuat(from, to);
+  return {quatRotate(turn, axes.x), quatRotate(turn, axes.y)};
+}
+
 /// Turns what was probed in one patch into points of contact.
 class PatchContactPoints {
  public:
@@ -258,28 +264,35 @@ class PatchContactPoints {
     point.bends = !points.areFlat();
     point.slope = points.normal_b - points.normal_a;
     point.is_top = sample.is_top;
-    keepInHollow(points, point);
+    const bool in_hollow = keepInHollow(points, point);
     const Across axes(point.point.normal);
-    const SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
+    SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
+    if (in_hollow) {
+      // What is round was probed where its normal is another one.
+      bends.a = surfaces_.bends(points, turned(axes, point.point.normal, points.normal_a)).a;
+      bends.b = surfaces_.bends(points, turned(axes, point.point.normal, points.normal_b)).b;
+    }
     point.point.bend_a = bends.a;
     point.point.bend_b = bends.b;
     point.point.bend_x = axes.x;
     const Hill hill(bends.a, bends.b, point.point.depth, axes);
     point.point.to_top = hill.toTop(point.slope);
     point.point.below_top = point.slope.dot(point.point.to_top) / 2;
+    // The hollow says no more than the plane, however the bodies move on.
+    if (in_hollow) (bends.a.isHollow() ? point.point.bend_a : point.point.bend_b) = Bend();
   }
 
   /// What is round stays within the planes that touch a hollow around it. Other planes say nothing about
   /// where it may go: those that lean against its way brake what slides past them. So a hollow bears along
-  /// its own normal, where what is round reaches furthest that way, if it goes on to there.
-  void keepInHollow(const OpposedPoints& points, WeightedPoint& point) {
-    if (point.is_top || point.slope.isZero()) return;
+  /// its own normal, where what is round reaches furthest that way. False if it does not go on to there.
+  bool keepInHollow(const OpposedPoints& points, WeightedPoint& point) {
+    if (point.is_top || point.slope.isZero()) return false;
     const Across axes_a(points.normal_a), axes_b(points.normal_b);
     const Bend a = surfaces_.bends(points, axes_a).a, b = surfaces_.bends(points, axes_b).b;
     const bool in_b = b.isHollow();
     const btScalar fall =
         a.turn(point.slope, axes_a).dot(point.slope) + b.turn(point.slope, axes_b).dot(point.slope);
-    if (in_b == a.isHollow() || !(fall > 0)) return;
+    if (in_b == a.isHollow() || !(fall > 0)) return false;
     const btVector3& normal = in_b ? points.normal_b : points.normal_a;
     // No shorter radius than that of the strongest bend: what is round reaches no less far.
     const Hill round(in_b ? a : b, Bend(), 0, in_b ? axes_a : axes_b);
@@ -291,11 +304,13 @@ class PatchContactPoints {
     const bool goes_on = surfaces_.nearestWall(!in_b, in_b ? on_a : on_b, btFabs(depth) + bulge, wall) &&
                          wall.distance < bulge - depth &&
                          wall.normal.dot(normal) * (in_b ? -1 : 1) > points.normal_a.dot(points.normal_b);
-    if (!goes_on) return;
+    if (!goes_on) return false;
     point.point.normal = normal;
     point.point.depth = point.point.depth < 0 ? btMin(depth, btScalar(0)) : over;
-    point.point.on_b = on_a - normal * point.point.depth;
+    // There, so that the push leads through its centre.
+    point.point.on_b = in_b ? on_a - normal * point.point.depth : on_b;
     point.moved = point.point.on_b - points.on_b;
+    return true;
   }
 
   const EdgeProbe& probe_;

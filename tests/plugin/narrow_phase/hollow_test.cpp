@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
+#include "innersphere/substep_solver.hpp"
 #include "named_packings.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
@@ -178,6 +181,62 @@ TEST(Bowl, LetsABallSwingWithoutLossOrSpin) {
     }
   }
 }
+
+/// A ball at the bottom of a straight half pipe that turns about the level axis across it, at rest or not.
+class HalfPipes : public testing::TestWithParam<std::tuple<bool, bool, double>> {
+ protected:
+  static constexpr double kSpeed = 3, kTime = 1;  // [m/s], [s]
+  static void SetUpTestSuite() { shape = packed(pipe(false)); }
+  static void TearDownTestSuite() { shape.reset(); }
+
+  /// What is left of the spin, and of the speed along the pipe.
+  std::array<double, 2> left(double friction, double speed) const {
+    const auto [substeps, is_packed, ratio] = GetParam();
+    const double radius = ratio * kHollow;
+    TestWorld world;
+    SubstepSolver solver;
+    if (substeps) world.world.setConstraintSolver(&solver);
+    PackingCollisionAlgorithm::prepareWorld(world.world);
+    const std::shared_ptr<btCollisionShape> ball =
+        is_packed ? std::shared_ptr<btCollisionShape>(makeFineBallShape(radius, 256))
+                  : std::make_shared<btSphereShape>(btScalar(radius));
+    btRigidBody& a = world.add(shape, 0, btVector3(0, 0, 0));
+    a.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
+    btRigidBody& b =
+        world.add(ball, 1, btVector3(0, btScalar(-speed * kTime / 2), btScalar(radius - kHollow)));
+    for (btRigidBody* body : {&a, &b}) body->setFriction(btScalar(friction));
+    b.setActivationState(DISABLE_DEACTIVATION);
+    b.setLinearVelocity(btVector3(0, btScalar(speed), 0));
+    b.setAngularVelocity(btVector3(btScalar(-kSpeed / radius), 0, 0));
+    world.run(kTime, 1.0 / 30);
+    world.world.setConstraintSolver(&world.solver);
+    return {-double(b.getAngularVelocity().x()) * radius / kSpeed,
+            double(b.getLinearVelocity().y()) / kSpeed};
+  }
+  static std::shared_ptr<PackingShape> shape;
+};
+std::shared_ptr<PackingShape> HalfPipes::shape;
+
+// Pushes through its centre do not turn what is round.
+TEST_P(HalfPipes, LeaveAFrictionlessBallItsSpin) {
+  EXPECT_NEAR(left(0, 0)[0], 1, 0.005);
+}
+
+TEST_P(HalfPipes, LetABallRollAlong) {
+  const auto [spin, speed] = left(0.5, kSpeed);
+  EXPECT_NEAR(speed, 1, 0.02);
+  EXPECT_NEAR(spin, 1, 0.02);
+}
+
+std::string nameOfRoller(const testing::TestParamInfo<std::tuple<bool, bool, double>>& info) {
+  const auto [substeps, is_packed, ratio] = info.param;
+  return std::string(substeps ? "Substeps" : "Bullet") + (is_packed ? "Packed" : "Sphere") +
+         std::to_string(int(std::lround(100 * ratio)));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, HalfPipes,
+                         testing::Combine(testing::Bool(), testing::Bool(), testing::Values(0.35, 0.7)),
+                         nameOfRoller);
 
 }  // namespace
 }  // namespace innersphere::test
