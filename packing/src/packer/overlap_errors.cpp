@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/steady_math.hpp"
-#include "packer/ball_trees.hpp"
+#include "packer/ball_tree.hpp"
 #include "packer/errors_by_depth.hpp"
 #include "packer/overlap_trials.hpp"
 
@@ -60,7 +60,7 @@ struct Found {
 class Prefix {
  public:
   Prefix(std::span<const Ball> balls, const VolumeTrueRadii& radii, double side)
-      : balls_(balls), volume_true_(withRadii(balls, radii, side)), trees_(volume_true_) {}
+      : balls_(balls), volume_true_(withRadii(balls, radii, side)), tree_(volume_true_) {}
 
   struct Sums {
     Found raw, volume_true;
@@ -68,7 +68,7 @@ class Prefix {
 
   Sums overlap(const Pose& pose) const {
     Sums sums;
-    trees_.forMeeting(pose, [&](std::uint32_t i, std::uint32_t j, const Point& way, double d) {
+    tree_.forMeeting(pose, [&](std::uint32_t i, std::uint32_t j, const Point& way, double d) {
       sums.volume_true.add(volume_true_[i].radius, volume_true_[j].radius, way, d);
       sums.raw.add(balls_[i].radius, balls_[j].radius, way, d);
     });
@@ -78,7 +78,7 @@ class Prefix {
   /// The volume with volume-true radii.
   double volume(const Pose& pose) const {
     double sum = 0;
-    trees_.forMeeting(pose, [&](std::uint32_t i, std::uint32_t j, const Point&, double d) {
+    tree_.forMeeting(pose, [&](std::uint32_t i, std::uint32_t j, const Point&, double d) {
       sum += lens(volume_true_[i].radius, volume_true_[j].radius, d);
     });
     return sum;
@@ -106,7 +106,7 @@ class Prefix {
 
   std::span<const Ball> balls_;
   std::vector<Ball> volume_true_;
-  BallTrees trees_;  // of these
+  BallTree tree_;  // of these
 };
 
 /// The mean of the largest kOverlapErrorPoses numbers: one pose of a few lenses, spheres inside spheres, says

@@ -10,7 +10,7 @@
 
 #include "analytic_solids.hpp"
 #include "mesh/triangle.hpp"
-#include "packer/ball_trees.hpp"
+#include "packer/ball_tree.hpp"
 #include "packer/cell_search.hpp"
 #include "packer/cells.hpp"
 #include "packer/container.hpp"
@@ -23,7 +23,7 @@ namespace innersphere::test {
 namespace {
 
 // Balls of all sizes, some of them in one place, and a moved copy of them: against all pairs.
-TEST(BallTrees, FindAllPairsThatMeet) {
+TEST(BallTree, FindAllPairsThatMeet) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
   const auto point = [&] { return Point(unit(random), unit(random), unit(random)); };
@@ -33,7 +33,7 @@ TEST(BallTrees, FindAllPairsThatMeet) {
       const Point centre = i % 7 == 6 ? balls.back().centre : point();
       balls.push_back({centre, 0.2 * std::pow(unit(random), 4)});
     }
-    const BallTrees trees(balls);
+    const BallTree tree(balls);
     for (int round = 0; round < 20; ++round) {
       Pose pose;
       pose.rotation = Eigen::AngleAxisd(3 * unit(random), (point() - Point::Constant(0.5)).normalized())
@@ -46,7 +46,7 @@ TEST(BallTrees, FindAllPairsThatMeet) {
           if (apart < balls[i].radius + balls[j].radius) expected.emplace(i, j);
         }
       }
-      trees.forMeeting(pose, [&](std::size_t i, std::size_t j, const Point& way, double distance) {
+      tree.forMeeting(pose, [&](std::size_t i, std::size_t j, const Point& way, double distance) {
         EXPECT_TRUE(found.emplace(i, j).second) << i << " and " << j << " twice";
         EXPECT_NEAR((pose.apply(balls[i].centre) - balls[j].centre - way).norm(), 0, 1e-12);
         EXPECT_NEAR(way.norm(), distance, 1e-12);
