@@ -10,7 +10,6 @@
 #include "narrow_phase/deepest_points.hpp"
 #include "narrow_phase/manifold_reduction.hpp"
 #include "narrow_phase/patch_moments.hpp"
-#include "narrow_phase/way_out.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -249,12 +248,11 @@ bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSetti
   return refine(samples, probe, settings, step, patches);
 }
 
-void wayOutPatch(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
-                 const ContactSpheres& spheres, const btVector3& before, btScalar spacing,
+void wayOutPatch(const OverlappingPackings& packings, const btVector3& before, btScalar spacing,
                  const StepAhead& step, std::vector<ContactPatch>& patches) {
   Scratch& scratch = scratchOfThread();
   collectIds(patches, scratch.old_ids);
-  findWayOut(a, b, contacts, spheres, patches, before, scratch.found);
+  findWayOut(packings, patches, before, scratch.found);
   reduceToManifolds(scratch.found, scratch.old_ids, spacing, step, scratch.reduction, patches);
 }
 

@@ -10,6 +10,7 @@
 #include "narrow_phase/packing_probe.hpp"
 #include "narrow_phase/sample_selection.hpp"
 #include "narrow_phase/shape_probe.hpp"
+#include "narrow_phase/way_out.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -33,8 +34,7 @@ bool refinePatches(Samples& samples, const ShapeProbe& probe, const ContactSetti
 
 /// Replaces `patches` by one along the shortest way by which A leaves B, see findWayOut(), or by none: for
 /// bodies deep in each other, where spheres push everywhere. `before` [m]: the way of the last search, or 0.
-void wayOutPatch(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
-                 const ContactSpheres& spheres, const btVector3& before, btScalar spacing,
+void wayOutPatch(const OverlappingPackings& packings, const btVector3& before, btScalar spacing,
                  const StepAhead& step, std::vector<ContactPatch>& patches);
 
 /// Replaces `patches` by such whose points are placed by the moments of the overlap, with the mean depth

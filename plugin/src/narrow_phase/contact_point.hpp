@@ -51,6 +51,13 @@ struct ContactPatch {
   bool by_volume = false;  ///< depths are volume over area: they do not say how far the bodies have to go
   int count = 0;
   std::array<ContactPoint, kPatchPoints> points;
+
+  /// Of the deepest point [m]; minus BT_LARGE_FLOAT without points.
+  btScalar depth() const {
+    btScalar deepest = -BT_LARGE_FLOAT;
+    for (int i = 0; i < count; ++i) deepest = btMax(deepest, points[i].depth);
+    return deepest;
+  }
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

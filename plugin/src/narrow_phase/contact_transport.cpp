@@ -81,9 +81,7 @@ void ContactTransport::noteDepths(const Placed& now, btScalar found) {
   measured_at_ = now;
   measured_ = patches;
   gap_ = found;
-  for (const ContactPatch& patch : patches) {
-    for (int i = 0; i < patch.count; ++i) gap_ = btMin(gap_, -patch.points[i].depth);
-  }
+  for (const ContactPatch& patch : patches) gap_ = btMin(gap_, -patch.depth());
 }
 
 void ContactTransport::carryTo(const Placed& now, const PackingShape& a, btScalar spacing) {

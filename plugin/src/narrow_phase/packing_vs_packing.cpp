@@ -14,12 +14,6 @@ bool isOfSurfaces(SearchPass pass) {
 /// In halves of the thickness: from here on lines through bodies may meet other sides of them.
 constexpr btScalar kDeep = btScalar(0.5);
 
-btScalar depthOf(const ContactPatch& patch) {
-  btScalar deepest = -BT_LARGE_FLOAT;
-  for (int i = 0; i < patch.count; ++i) deepest = btMax(deepest, patch.points[i].depth);
-  return deepest;
-}
-
 /// By how much spheres without volume-true radii are enlarged to fill their solid [m].
 btScalar gapsOf(const PackingShape& shape, const Prefix& prefix) {
   return prefix.volume_true == nullptr ? prefix.inset() * shape.getLocalScaling().x() : btScalar(0);
@@ -156,10 +150,10 @@ SearchPass PackingVsPacking::take(SearchPass pass, const QueryResult& result, st
     if (next == SearchPass::none) way_out_.setZero();
   } else if (pass == SearchPass::deep) {
     const Bodies bodies(*this, *search_);
-    wayOutPatch(bodies.a, bodies.b, contacts, PackingProbe(bodies.a, bodies.b, contacts, count_a), way_out_,
-                search_->spacing, step_, memory.patches);
+    const PackingProbe spheres(bodies.a, bodies.b, contacts, count_a);
+    wayOutPatch({bodies.a, bodies.b, contacts, spheres}, way_out_, search_->spacing, step_, memory.patches);
     way_out_ =
-        memory.patches.empty() ? btVector3(0, 0, 0) : memory.patches[0].normal * depthOf(memory.patches[0]);
+        memory.patches.empty() ? btVector3(0, 0, 0) : memory.patches[0].normal * memory.patches[0].depth();
   } else {
     volumePatches(contacts, search_->spacing, reference, memory.patches);
     overlap_ = result.overlaps[index];
@@ -200,7 +194,7 @@ bool PackingVsPacking::pushesEachWay() const {
   const btScalar deep = kDeep * halfThickness();
   const ContactPatch* first = nullptr;
   for (const ContactPatch& patch : memory.patches) {
-    if (!(depthOf(patch) > deep)) continue;
+    if (!(patch.depth() > deep)) continue;
     if (first == nullptr) first = &patch;
     if (patch.normal.dot(first->normal) < kPatchCosine) return true;
   }

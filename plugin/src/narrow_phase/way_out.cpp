@@ -29,7 +29,9 @@ struct WayOut {
 class SpheresOnTheWay {
  public:
   SpheresOnTheWay(const PlacedPacking& a, const PlacedPacking& b, const btVector3& apart)
-      : a_(ballsOf(a, btVector3(0, 0, 0))), b_(ballsOf(b, apart)) {}
+      : a_(ballsOf(a, btVector3(0, 0, 0))), b_(ballsOf(b, apart)) {
+    for (const Ball& ball : b_) largest_of_b_ = btMax(largest_of_b_, ball.radius);
+  }
 
   btScalar length(const btVector3& direction) const {
     static thread_local std::vector<Ball> a, b;
@@ -40,10 +42,8 @@ class SpheresOnTheWay {
     met.clear();
     const auto isLeft = [](const Ball& p, const Ball& q) { return p.centre.x() < q.centre.x(); };
     std::sort(b.begin(), b.end(), isLeft);
-    btScalar largest = 0;
-    for (const Ball& q : b) largest = btMax(largest, q.radius);
     for (const Ball& p : a) {
-      const btScalar reach = p.radius + largest;
+      const btScalar reach = p.radius + largest_of_b_;
       const auto first = std::lower_bound(b.begin(), b.end(), p.centre.x() - reach,
                                           [](const Ball& q, btScalar x) { return q.centre.x() < x; });
       for (auto q = first; q != b.end() && q->centre.x() < p.centre.x() + reach; ++q) {
@@ -91,18 +91,18 @@ class SpheresOnTheWay {
   }
 
   std::vector<Ball> a_, b_;
+  btScalar largest_of_b_ = 0;
 };
 
 class WaysOut {
  public:
-  WaysOut(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
-          const ContactSpheres& spheres)
-      : a_(a),
-        b_(b),
-        contacts_(contacts),
-        spheres_(spheres),
-        apart_(b.origin() - a.origin()),
-        on_the_way_(a, b, apart_) {}
+  explicit WaysOut(const OverlappingPackings& packings)
+      : a_(packings.a),
+        b_(packings.b),
+        contacts_(packings.contacts),
+        spheres_(packings.spheres),
+        apart_(b_.origin() - a_.origin()),
+        on_the_way_(a_, b_, apart_) {}
 
   void tryAll(const std::vector<ContactPatch>& patches, const btVector3& before) {
     tryAlong(before);
@@ -193,15 +193,14 @@ void shareOutArea(const std::vector<SphereContact>& contacts, btScalar depth,
 
 }  // namespace
 
-void findWayOut(const PlacedPacking& a, const PlacedPacking& b, const std::vector<SphereContact>& contacts,
-                const ContactSpheres& spheres, const std::vector<ContactPatch>& patches,
+void findWayOut(const OverlappingPackings& packings, const std::vector<ContactPatch>& patches,
                 const btVector3& before, std::vector<WeightedPoint>& found) {
   found.clear();
-  WaysOut ways(a, b, contacts, spheres);
+  WaysOut ways(packings);
   ways.tryAll(patches, before);
   if (!(ways.shortest().length > 0) || ways.shortest().points.empty()) return;
   found = ways.shortest().points;
-  shareOutArea(contacts, ways.shortest().length, found);
+  shareOutArea(packings.contacts, ways.shortest().length, found);
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

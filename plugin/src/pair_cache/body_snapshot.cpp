@@ -22,7 +22,7 @@ BodySnapshot::BodySnapshot(const btCollisionObjectWrapper& wrapper, btScalar tim
 
 void BodySnapshot::take(btScalar time_step) {
   way_.store(0, std::memory_order_relaxed);
-  neighbours_ = neighbours_now_.exchange(0, std::memory_order_relaxed);
+  neighbours_.store(0, std::memory_order_relaxed);
   if (shape_ != object_->getCollisionShape()) {
     ++changes_;
     shape_ = object_->getCollisionShape();

@@ -61,10 +61,10 @@ class BodySnapshot {
   }
   /// Returns the most that was noted since the snapshot was taken [m].
   btScalar way() const { return way_.load(std::memory_order_relaxed); }
-  /// Notes, by any thread, that the body touches another one.
-  void noteNeighbour() { neighbours_now_.fetch_add(1, std::memory_order_relaxed); }
-  /// Returns how many it touched in the last update.
-  int neighbours() const { return neighbours_; }
+  /// Notes, by any thread, that the body touched another one in the last step.
+  void noteNeighbour() { neighbours_.fetch_add(1, std::memory_order_relaxed); }
+  /// Returns how many were noted since the snapshot was taken.
+  int neighbours() const { return neighbours_.load(std::memory_order_relaxed); }
 
   std::size_t users = 0;       ///< pairs
   std::size_t list_index = 0;  ///< see PairList
@@ -85,8 +85,7 @@ class BodySnapshot {
   bool active_ = true;
   bool changed_ = false;  ///< found by compare()
   std::uint32_t changes_ = 0;
-  int neighbours_ = 0;
-  std::atomic<int> neighbours_now_ = 0;
+  std::atomic<int> neighbours_ = 0;
   std::atomic<btScalar> way_ = 0;
 };
 

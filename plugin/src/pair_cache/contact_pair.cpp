@@ -24,9 +24,7 @@ bool hasLawOfItsOwn(const btCollisionObject& object) {
 
 btScalar deepest(const std::vector<ContactPatch>& patches) {
   btScalar depth = -BT_LARGE_FLOAT;
-  for (const ContactPatch& patch : patches) {
-    for (int i = 0; i < patch.count; ++i) depth = btMax(depth, patch.points[i].depth);
-  }
+  for (const ContactPatch& patch : patches) depth = btMax(depth, patch.depth());
   return depth;
 }
 
@@ -58,8 +56,16 @@ PairMotion motionOf(const BodySnapshot& a, const BodySnapshot& b, btScalar time_
 }
 
 /// A link of a chain hands what it bears on from one neighbour to the other.
-bool isLink(const BodySnapshot& body) {
-  return body.object()->isStaticOrKinematicObject() || body.neighbours() <= 2;
+bool handsOn(const BodySnapshot& body) {
+  return !body.object()->isStaticOrKinematicObject() && body.neighbours() == 2;
+}
+
+/// A chain ends at a body that is held, or in a link with one neighbour.
+bool areOfChain(const BodySnapshot& a, const BodySnapshot& b) {
+  const auto isLink = [](const BodySnapshot& body) {
+    return body.object()->isStaticOrKinematicObject() || body.neighbours() <= 2;
+  };
+  return isLink(a) && isLink(b) && (handsOn(a) || handsOn(b));
 }
 
 template <typename Visit>
@@ -147,10 +153,6 @@ void ContactPair::publish(const StepSettings& settings, const BodySnapshot& body
 void ContactPair::write(const StepSettings& settings, const BodySnapshot& body_a, const BodySnapshot& body_b,
                         btManifoldResult* result) {
   depth = deepest(found->patches());
-  if (depth > 0) {
-    this->body_a->noteNeighbour();
-    this->body_b->noteNeighbour();
-  }
   manifolds.write(*a.object, *b.object, {body_a.start(), body_b.start()},
                   motionOf(body_a, body_b, settings.time_step), origin(), found->patches(), lawOf(settings),
                   neededSeparation(*this, body_a, body_b, settings.time_step), result);
@@ -167,7 +169,7 @@ ContactLaw ContactPair::lawOf(const StepSettings& settings) const {
   if (chosen.response == Response::penalty && !Penalty::applies(*a.object, *b.object))
     chosen.response = Response::compliant;
   return ContactLaw(chosen, reducedMass(*a.object, *b.object), settings.time_step, smallerSize(a, b),
-                    settings.solver, isLink(*body_a) && isLink(*body_b));
+                    settings.solver, areOfChain(*body_a, *body_b));
 }
 
 bool ContactPair::hasPoints() const {

@@ -98,6 +98,7 @@ class PairTable {
   // The stages of an update of all pairs; the table is locked.
   void begin(btScalar time_step);
   void noteWays();
+  void countNeighbours();
   Job decide(ContactPair& pair) const;
   void collectJobs();
   void work();

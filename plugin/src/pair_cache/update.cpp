@@ -71,6 +71,7 @@ void PairTable::begin(btScalar time_step) {
   settings_ = settingsFor(time_step);
   body_list_.forEachInParallel([&](BodySnapshot& body) { body.take(settings_.time_step); });
   noteWays();
+  countNeighbours();
   jobs_.assign(pairs_.size(), Job());
   pairs_.forEachInParallel([&](ContactPair& pair) { jobs_[pair.list_index] = decide(pair); });
   collectJobs();
@@ -83,6 +84,16 @@ void PairTable::noteWays() {
   if (!settings_.solver.substeps) return;
   pairs_.forEachInParallel([&](ContactPair& pair) {
     if (pair.asked && !pair.busy) noteWay(pair, *pair.body_a, *pair.body_b, settings_.time_step);
+  });
+}
+
+/// For the law of chains, which SubstepSolver does without.
+void PairTable::countNeighbours() {
+  if (settings_.solver.substeps) return;
+  pairs_.forEachInParallel([](const ContactPair& pair) {
+    if (!(pair.depth > 0)) return;
+    pair.body_a->noteNeighbour();
+    pair.body_b->noteNeighbour();
   });
 }
 

@@ -39,11 +39,11 @@ struct PointLaw {
 ///                       in a chain: K = 31 m / dt^2 (1 + d / (0.005 s));
 ///   damping along n     C = options.damping 2 sqrt(K m), four times that by default.
 /// Each patch takes the share A / T of both and divides it among its points. A chain is where both bodies
-/// touch two others at most, and each other in one round place. The default law drives bodies
-/// that are inside each other apart no faster than half the size of the smaller one, or three times the depth
-/// that was measured on their surfaces, in a second; where they touch in several directions, so fast along
-/// the deepest patch only. So does Response::rigid as far as the solver would give them a speed; what is
-/// deeper than the threshold of split impulses it moves apart at once.
+/// touch two others at most, at least one of them two, and each other in one round place. The default law
+/// drives bodies that are inside each other apart no faster than half the size of the smaller one, or three
+/// times the depth that was measured on their surfaces, in a second; where they touch in several directions,
+/// so fast along the deepest patch only. So does Response::rigid as far as the solver would give them a
+/// speed; what is deeper than the threshold of split impulses it moves apart at once.
 ///
 /// A SubstepSolver is told the measured depth, without a spring but for one that is given: it has its own.
 ///
@@ -55,7 +55,7 @@ struct PointLaw {
 class ContactLaw {
  public:
   /// Makes the law of a pair. `reduced_mass` is in kg, and 0 counts as 1; `time_step` is in s, and 0 counts
-  /// as 1/60; `size` [m] is that of the smaller body; `of_links` says that both touch two bodies at most.
+  /// as 1/60; `size` [m] is that of the smaller body; `of_links` says that both are of a chain.
   ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step, btScalar size,
              const SolverSettings& solver = {}, bool of_links = false);
 

@@ -57,7 +57,8 @@ TEST_P(WayOutOf, CubesIsTheShortest) {
   const PlacedPacking placed_a(*a, at_a, Estimator::raw, 0),
       placed_b(*b, btTransform::getIdentity(), Estimator::raw, 0);
   std::vector<WeightedPoint> found;
-  findWayOut(placed_a, placed_b, contactsOf(placed_a), Numbers(), {}, btVector3(0, 0, 0), found);
+  const std::vector<SphereContact> contacts = contactsOf(placed_a);
+  findWayOut({placed_a, placed_b, contacts, Numbers()}, {}, btVector3(0, 0, 0), found);
   ASSERT_FALSE(found.empty());
   double area = 0;
   for (const WeightedPoint& p : found) {

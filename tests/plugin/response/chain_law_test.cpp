@@ -56,18 +56,22 @@ TEST(ChainLaw, ResistsTiltingUnderTheWeightOfSeveralLinks) {
     world.world.setGravity(btVector3(0, 0, 0));
     const auto ball = makeFineBallShape(kRadius, 200);
     const auto apart = btScalar(kRadius * (2 - c.depth));
-    world.add(ball, 0, btVector3(0, 0, 0));
+    const btRigidBody& below = world.add(ball, 0, btVector3(0, 0, 0));
     btRigidBody& middle = world.add(ball, 1, btVector3(0, 0, apart));
-    for (int i = 0; i < 2; ++i) {  // the first one tells how many touch
-      middle.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, apart)));
+    world.add(ball, 0, btVector3(0, 0, apart + btScalar(2 * kRadius - 0.0005)));
+    for (int i = 0; i < 2; ++i) {             // the first one tells how many touch
+      const auto moved = btScalar(1e-6 * i);  // what lies where it did begins no step
+      middle.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, apart + moved)));
       middle.setLinearVelocity(btVector3(0, 0, 0));
       middle.setAngularVelocity(c.spin);
       world.run(kStep, kStep);
     }
-    ASSERT_EQ(world.dispatcher.getNumManifolds(), 1);
-    const btPersistentManifold& manifold = *world.dispatcher.getManifoldByIndexInternal(0);
-    ASSERT_EQ(manifold.getNumContacts(), 1);
-    EXPECT_NEAR(double(manifold.getContactPoint(0).m_combinedRollingFriction), kRadius * c.lever,
+    ASSERT_EQ(world.dispatcher.getNumManifolds(), 2);
+    const btPersistentManifold* manifold = world.dispatcher.getManifoldByIndexInternal(0);
+    if (manifold->getBody0() != &below && manifold->getBody1() != &below)
+      manifold = world.dispatcher.getManifoldByIndexInternal(1);
+    ASSERT_EQ(manifold->getNumContacts(), 1);
+    EXPECT_NEAR(double(manifold->getContactPoint(0).m_combinedRollingFriction), kRadius * c.lever,
                 0.01 * kRadius * c.lever);
   }
 }
