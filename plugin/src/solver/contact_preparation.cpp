@@ -249,13 +249,14 @@ void ContactRows::fillForces(PointLanes& lanes, int lane, const btManifoldPoint&
 
 /// What its manifold bore against rolling and spinning, shared out as its points bear.
 void ContactRows::fillTurning(PointLanes& lanes, int lane, const Source& source) const {
-  const Turning& borne = turnings_[static_cast<std::size_t>(source.manifold->m_index1a)];
-  if (borne.manifold != source.manifold || !isFinite(borne.on_first) || !(lanes.impulse[lane] > 0)) return;
+  const auto place = static_cast<std::size_t>(source.manifold->m_index1a);
+  const btVector3& borne = turnings_[place];
+  if (known_[place] != source.manifold || !isFinite(borne) || !(lanes.impulse[lane] > 0)) return;
   btScalar all = 0;
   for (int i = 0; i < source.manifold->getNumContacts(); ++i)
     all += std::max(btScalar(0), source.manifold->getContactPoint(i).m_prevRHS);
   const btScalar share = source.point->m_prevRHS / all;
-  const btVector3 turning = borne.on_first * (source.flipped ? -share : share);
+  const btVector3 turning = borne * (source.flipped ? -share : share);
   lanes.roll_1[lane] = turning.dot(lanes.side_1.get(lane));
   lanes.roll_2[lane] = turning.dot(lanes.side_2.get(lane));
   lanes.spin[lane] = turning.dot(lanes.normal.get(lane));

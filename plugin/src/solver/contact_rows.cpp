@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "common/bullet_vectors.hpp"
 #include "solver/crew.hpp"
@@ -41,6 +40,7 @@ void ContactRows::find(int begin, int end, btPersistentManifold** manifolds, con
     Entry entry{};
     entry.manifold = &manifold;
     entry.number = i;
+    entry.place = manifold.m_index1a;
     entry.a = bodies.placeOf(*manifold.getBody0());
     entry.b = bodies.placeOf(*manifold.getBody1());
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
@@ -84,22 +84,21 @@ void ContactRows::collect(SolverBodies& bodies) {
     if (pushes(entry)) entries_[count++] = entry;
     ++i;
   }
+  // By their numbers they are in order already.
+  const int all = static_cast<int>(count);
+  const std::vector<int>& by_b = order_of_b_.sort(all, static_cast<int>(bodies.states().size()), [&](int i) {
+    return entries_[static_cast<std::size_t>(i)].b;
+  });
+  const auto entryOf = [&](int i) -> const Entry& {
+    return entries_[static_cast<std::size_t>(by_b[static_cast<std::size_t>(i)])];
+  };
   sorted_.clear();
-  for (const int i : order_.sort(static_cast<int>(count), movable_,
-                                 [&](int k) { return entries_[static_cast<std::size_t>(k)].a; }))
-    sorted_.push_back(entries_[static_cast<std::size_t>(i)]);
-  for (auto begin = sorted_.begin(); begin != sorted_.end();) {
-    auto end = begin;
-    while (end != sorted_.end() && end->a == begin->a) ++end;
-    std::sort(begin, end, [](const Entry& l, const Entry& r) {
-      return std::tie(l.b, l.number) < std::tie(r.b, r.number);
-    });
-    begin = end;
-  }
+  for (const int i : order_.sort(all, movable_, [&](int k) { return entryOf(k).a; }))
+    sorted_.push_back(entryOf(i));
   sources_.clear();
   pairs_.clear();
   for (const Entry& entry : sorted_) {
-    makeRoomFor(*entry.manifold);
+    makeRoomFor(entry);
     if (pairs_.empty() || pairs_.back().a != entry.a || pairs_.back().b != entry.b)
       pairs_.push_back({entry.a, entry.b, static_cast<int>(sources_.size()), 0});
     for (int k = 0; k < MANIFOLD_CACHE_SIZE; ++k) {
@@ -111,10 +110,15 @@ void ContactRows::collect(SolverBodies& bodies) {
 }
 
 /// A manifold that has come to the place of another has not borne anything.
-void ContactRows::makeRoomFor(const btPersistentManifold& manifold) {
-  const auto place = static_cast<std::size_t>(manifold.m_index1a);
-  if (turnings_.size() <= place) turnings_.resize(place + 1);
-  if (turnings_[place].manifold != &manifold) turnings_[place] = {&manifold, btVector3(0, 0, 0)};
+void ContactRows::makeRoomFor(const Entry& entry) {
+  const auto place = static_cast<std::size_t>(entry.place);
+  if (known_.size() <= place) {
+    known_.resize(place + 1);
+    turnings_.resize(place + 1);
+  }
+  if (known_[place] == entry.manifold) return;
+  known_[place] = entry.manifold;
+  turnings_[place].setZero();
 }
 
 void ContactRows::clearBlocks() {
@@ -374,14 +378,14 @@ void ContactRows::remember(const TouchingPair& pair, int lane, const PointLanes*
   for (int i = 0; i < pair.count; ++i) {
     const PointLanes& from = points[i];
     const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];
-    Turning& borne = turnings_[static_cast<std::size_t>(source.manifold->m_index1a)];
-    if (borne.manifold != source.manifold) continue;
-    if (source.manifold != before) borne.on_first.setZero();
+    const auto place = static_cast<std::size_t>(source.manifold->m_index1a);
+    if (known_[place] != source.manifold) continue;
+    if (source.manifold != before) turnings_[place].setZero();
     before = source.manifold;
     const btVector3 turning = from.side_1.get(lane) * from.roll_1[lane] +
                               from.side_2.get(lane) * from.roll_2[lane] +
                               from.normal.get(lane) * from.spin[lane];
-    borne.on_first += turning * (source.flipped ? btScalar(-1) : btScalar(1));
+    turnings_[place] += turning * (source.flipped ? btScalar(-1) : btScalar(1));
   }
 }
 

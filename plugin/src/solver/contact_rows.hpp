@@ -75,7 +75,7 @@ class ContactRows {
   /// Tells the points what they have borne, and remembers what they have no place for.
   void writeBack(int block);
   /// Forgets that.
-  void forget() { turnings_.clear(); }
+  void forget() { known_.clear(); }
 
   /// Returns the number of points that were left out because they are not finite.
   int broken() const { return broken_; }
@@ -85,11 +85,6 @@ class ContactRows {
     btManifoldPoint* point;
     btPersistentManifold* manifold;
     bool flipped;  ///< the manifold has the bodies the other way round
-  };
-  /// What all points of a manifold have borne against rolling and spinning in the last substep of a step.
-  struct Turning {
-    const btPersistentManifold* manifold = nullptr;
-    btVector3 on_first{0, 0, 0};  ///< on its first body [N m s]
   };
   /// A point of each pair of a block.
   struct PointLanes {
@@ -130,6 +125,7 @@ class ContactRows {
   struct Entry {
     btPersistentManifold* manifold;  ///< null: there are none up to `number`
     int number;                      ///< among those that Bullet gave
+    int place;                       ///< in its dispatcher
     int a, b;
     unsigned points;  ///< those that push: a bit for each
     int broken;       ///< the number of those that are not finite
@@ -146,7 +142,7 @@ class ContactRows {
                          const SolverBodies& bodies);
   static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls);
   void fillTurning(PointLanes& lanes, int lane, const Source& source) const;
-  void makeRoomFor(const btPersistentManifold& manifold);
+  void makeRoomFor(const Entry& entry);
   void remember(const TouchingPair& pair, int lane, const PointLanes* points);
   void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                     const SolverBodies& bodies) const;
@@ -163,9 +159,13 @@ class ContactRows {
 
   std::vector<Entry> entries_;  ///< room for each manifold, then one for each that pushes
   std::vector<Entry> sorted_;
-  CountingSort order_;
+  CountingSort order_of_b_, order_;
   std::vector<Source> sources_;
-  std::vector<Turning> turnings_;  ///< by the place of a manifold in its dispatcher
+  // By the place of a manifold in its dispatcher: which it is, and what all its points have borne on its
+  // first body against rolling and spinning in the last substep of a step [N m s]. All threads write the
+  // latter.
+  std::vector<const btPersistentManifold*> known_;
+  std::vector<btVector3> turnings_;
   std::vector<TouchingPair> pairs_;
   std::vector<Block> blocks_;
   std::vector<PointLanes> points_;  ///< some of them of an earlier, larger step
