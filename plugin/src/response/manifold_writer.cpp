@@ -341,7 +341,8 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     if (place >= 0) {
       btManifoldPoint& cached = manifold.getContactPoint(place);
       if (known && !solver.substeps)
-        point.slip = slipOf(cached, start, point.normal, largest_slip, farthest_slip);
+        point.slip = slipOf(cached, start, motion, point.on_b, point.normal, point.law.time_step,
+                            largest_slip, farthest_slip);
       cached.m_localPointA = local_a;
       letGo(a, b, cached);
     }

@@ -20,8 +20,9 @@ btScalar mostFriction(const btPersistentManifold& manifold);
 /// bristle that bends until it slides, it is no longer than `largest` [m]: a longer one would ask for more
 /// than friction bears, in all directions that the solver's pyramid has, whose corners bear more than the
 /// cone does. It is 0 beyond `farthest` [m].
-btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const btVector3& normal,
-                 btScalar largest, btScalar farthest);
+btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const PairMotion& motion,
+                 const btVector3& place, const btVector3& normal, btScalar time_step, btScalar largest,
+                 btScalar farthest);
 
 /// Returns the share of friction at the points of a patch, in (0, 1], that takes as much energy as friction
 /// all over it does. Points lie at the rim, where bodies that turn on each other slide faster than within,
