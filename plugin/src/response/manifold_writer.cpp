@@ -133,7 +133,8 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   }
   // Bullet reads the one only where there is the other.
   if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
-    point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curvature);
+    point.m_combinedSpinningFriction =
+        point.m_combinedFriction * spinningLever(from.depth, from.curvature, motion.spin(), from.normal);
   if (law.penalty) {
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;

@@ -70,8 +70,11 @@ btScalar slidingShare(const PairMotion& motion, const ContactPatch& patch,
   return radius < rim && spin != 0 ? btSqrt(work(radius) / work(rim)) : btScalar(1);
 }
 
-btScalar spinningLever(btScalar depth, btScalar curvature) {
-  return depth > 0 && curvature > 0 ? 3 * SIMD_PI / 16 * btSqrt(depth / curvature) : btScalar(0);
+btScalar spinningLever(btScalar depth, btScalar curvature, const btVector3& spin, const btVector3& normal) {
+  if (!(depth > 0 && curvature > 0)) return 0;
+  const btScalar radius = btSqrt(depth / curvature);
+  const btScalar spins = btFabs(spin.dot(normal)) * radius, rolls = spin.cross(normal).length() / curvature;
+  return 3 * SIMD_PI / 16 * radius * (spins < rolls ? spins / rolls : btScalar(1));
 }
 
 btScalar rockingSpeed(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
