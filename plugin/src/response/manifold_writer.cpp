@@ -133,7 +133,8 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   }
   // Bullet reads the one only where there is the other.
   if (law.rolling > 0 && point.m_combinedSpinningFriction == 0)
-    point.m_combinedSpinningFriction = point.m_combinedFriction * spinningLever(from.depth, from.curvature);
+    point.m_combinedSpinningFriction =
+        point.m_combinedFriction * spinningLever(from.depth, from.curvature, motion.spin(), from.normal);
   if (law.penalty) {
     point.m_combinedContactStiffness1 = law.stiffness;
     point.m_combinedContactDamping1 = law.damping;
@@ -341,7 +342,8 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     if (place >= 0) {
       btManifoldPoint& cached = manifold.getContactPoint(place);
       if (known && !solver.substeps)
-        point.slip = slipOf(cached, start, point.normal, largest_slip, farthest_slip);
+        point.slip = slipOf(cached, start, motion, point.on_b, point.normal, point.law.time_step,
+                            largest_slip, farthest_slip);
       cached.m_localPointA = local_a;
       letGo(a, b, cached);
     }

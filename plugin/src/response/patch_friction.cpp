@@ -30,10 +30,13 @@ btScalar mostFriction(const btPersistentManifold& manifold) {
   return friction;
 }
 
-btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const btVector3& normal,
-                 btScalar largest, btScalar farthest) {
+btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const PairMotion& motion,
+                 const btVector3& place, const btVector3& normal, btScalar time_step, btScalar largest,
+                 btScalar farthest) {
   if (!(cached.m_combinedFriction * cached.m_appliedImpulse > 0)) return btVector3(0, 0, 0);
-  const btVector3 apart = start.a * cached.m_localPointA - start.b * cached.m_localPointB;
+  const btVector3 was_a = start.a * cached.m_localPointA, was_b = start.b * cached.m_localPointB;
+  const btVector3 turned = motion.a().spin.cross(place - was_a) - motion.b().spin.cross(place - was_b);
+  const btVector3 apart = was_a - was_b + turned * (time_step / 2);
   const btVector3 slip = apart - normal * normal.dot(apart);
   const btScalar length = slip.length();
   if (length > farthest) return btVector3(0, 0, 0);
@@ -67,8 +70,11 @@ btScalar slidingShare(const PairMotion& motion, const ContactPatch& patch,
   return radius < rim && spin != 0 ? btSqrt(work(radius) / work(rim)) : btScalar(1);
 }
 
-btScalar spinningLever(btScalar depth, btScalar curvature) {
-  return depth > 0 && curvature > 0 ? 3 * SIMD_PI / 16 * btSqrt(depth / curvature) : btScalar(0);
+btScalar spinningLever(btScalar depth, btScalar curvature, const btVector3& spin, const btVector3& normal) {
+  if (!(depth > 0 && curvature > 0)) return 0;
+  const btScalar radius = btSqrt(depth / curvature);
+  const btScalar spins = btFabs(spin.dot(normal)) * radius, rolls = spin.cross(normal).length() / curvature;
+  return 3 * SIMD_PI / 16 * radius * (spins < rolls ? spins / rolls : btScalar(1));
 }
 
 btScalar rockingSpeed(const ContactPoint& point, const btVector3& place, const PairMotion& motion,

@@ -15,13 +15,17 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 btScalar mostFriction(const btPersistentManifold& manifold);
 
 /// Returns how far A has slipped on B at this point, along the surface [m]. The cached point carries it from
-/// step to step, as the distance of its two places on the bodies, which were at `start`: Bullet's friction
-/// knows no more than speeds, and what ten iterations leave of them adds up to bodies that creep. As a
-/// bristle that bends until it slides, it is no longer than `largest` [m]: a longer one would ask for more
-/// than friction bears, in all directions that the solver's pyramid has, whose corners bear more than the
-/// cone does. It is 0 beyond `farthest` [m].
-btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const btVector3& normal,
-                 btScalar largest, btScalar farthest);
+/// step to step, as the distance of its two places on the bodies, which are at `start`: Bullet's friction
+/// knows no more than speeds, and what ten iterations leave of them adds up to bodies that creep. Bodies that
+/// roll touch at `place` now: the slip is the mean of how far the places where they touched, and those where
+/// they do, went apart in a step of `time_step` [s] in which they turned as they do in `motion`. By those
+/// where they touched alone, what rolls in a groove slips towards its axis, and friction would press it into
+/// the groove. As a bristle that bends until it slides, it is no longer than `largest` [m]: a longer one
+/// would ask for more than friction bears, in all directions that the solver's pyramid has, whose corners
+/// bear more than the cone does. It is 0 beyond `farthest` [m].
+btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const PairMotion& motion,
+                 const btVector3& place, const btVector3& normal, btScalar time_step, btScalar largest,
+                 btScalar farthest);
 
 /// Returns the share of friction at the points of a patch, in (0, 1], that takes as much energy as friction
 /// all over it does. Points lie at the rim, where bodies that turn on each other slide faster than within,
@@ -33,10 +37,15 @@ btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const btVec
 btScalar slidingShare(const PairMotion& motion, const ContactPatch& patch,
                       const btPersistentManifold& manifold);
 
-/// Returns the mean distance of the pressure of a round contact from its middle [m], at a depth [m] where the
-/// curvatures of both surfaces add up to `curvature` [1/m]: 3 pi / 16 of the radius sqrt(depth / curvature)
-/// of Hertz's contact. It is 0 where they are flat, or apart.
-btScalar spinningLever(btScalar depth, btScalar curvature);
+/// Returns the lever of the friction that brakes a round contact which spins [m], at a depth [m] where the
+/// curvatures of both surfaces add up to `curvature` [1/m] and the bodies turn against each other by `spin`
+/// [rad/s]. In place it is the mean distance of the pressure from the middle: 3 pi / 16 of the radius
+/// a = sqrt(depth / curvature) of Hertz's contact. Bodies that roll on as well, by v = |spin x n| / curvature
+/// [m/s], leave behind what they rub: of the lever the share w a / v is left, the angle by which they spin
+/// about the normal on the way over the contact, up to a radian. Depth is what the solver needs, not that of
+/// a material: with all of the lever, a ball in a groove would be braked as if it were soft. It is 0 where
+/// surfaces are flat, or apart.
+btScalar spinningLever(btScalar depth, btScalar curvature, const btVector3& spin, const btVector3& normal);
 
 /// Returns how fast the line of the push between bodies that rock on each other gets past their centres
 /// [m/s]. Where they tilt by t along an axis in which they bend by A and B, they touch t / (A + B) further

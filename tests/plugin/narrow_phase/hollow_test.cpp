@@ -40,9 +40,9 @@ Mesh bowl() {
   return turnedMesh(profile, 128);
 }
 
-/// A quarter of a ring about z, or straight along y.
-Mesh pipe(bool bent) {
-  const auto outline = section(M_PI, 96);
+/// This section, half of whose corners are on the outside, as a quarter of a ring about z, or straight along
+/// y.
+Mesh pipe(const std::vector<std::array<double, 2>>& outline, bool bent) {
   const auto around = std::uint32_t(outline.size());
   const std::uint32_t along = bent ? 64 : 1;
   Mesh mesh;
@@ -69,6 +69,15 @@ Mesh pipe(bool bent) {
     mesh.triangles.push_back({end + k, end + back, end + back - 1});
   }
   return mesh;
+}
+
+Mesh halfPipe(bool bent) {
+  return pipe(section(M_PI, 96), bent);
+}
+
+/// Its walls lean by 45 degrees.
+Mesh groove() {
+  return pipe({{-1.3, 1}, {0, -0.3}, {1.3, 1}, {1, 1}, {0, 0}, {-1, 1}}, false);
 }
 
 std::shared_ptr<PackingShape> packed(const Mesh& mesh) {
@@ -126,7 +135,7 @@ std::vector<Place> placesIn(const std::string& hollow) {
 TEST_P(Hollows, TouchABallAtOnePlace) {
   constexpr double kDepth = 0.0005 * kHollow, kDegree = M_PI / 180;
   const std::string hollow = GetParam();
-  const auto shape = packed(hollow == "bowl" ? bowl() : pipe(hollow == "bent"));
+  const auto shape = packed(hollow == "bowl" ? bowl() : halfPipe(hollow == "bent"));
   TestWorld world;
   btRigidBody& a = world.add(shape, 0, btVector3(0, 0, 0));
   a.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
@@ -186,7 +195,7 @@ TEST(Bowl, LetsABallSwingWithoutLossOrSpin) {
 class HalfPipes : public testing::TestWithParam<std::tuple<bool, bool, double>> {
  protected:
   static constexpr double kSpeed = 3, kTime = 1;  // [m/s], [s]
-  static void SetUpTestSuite() { shape = packed(pipe(false)); }
+  static void SetUpTestSuite() { shape = packed(halfPipe(false)); }
   static void TearDownTestSuite() { shape.reset(); }
 
   /// What is left of the spin, and of the speed along the pipe.
@@ -244,6 +253,50 @@ std::string nameOfRoller(const testing::TestParamInfo<std::tuple<bool, bool, dou
 INSTANTIATE_TEST_SUITE_P(All, HalfPipes,
                          testing::Combine(testing::Bool(), testing::Bool(), testing::Values(0.35, 0.7)),
                          nameOfRoller);
+
+/// With friction, in steps of that many a second.
+class Grooves : public testing::TestWithParam<std::tuple<bool, bool, int, double>> {
+ protected:
+  static void SetUpTestSuite() { shape = packed(groove()); }
+  static void TearDownTestSuite() { shape.reset(); }
+  static std::shared_ptr<PackingShape> shape;
+};
+std::shared_ptr<PackingShape> Grooves::shape;
+
+// It rolls on two circles of its radius / sqrt 2, and spins on both walls.
+TEST_P(Grooves, LetABallRollDown) {
+  const auto [substeps, is_packed, rate, friction] = GetParam();
+  constexpr double kRadius = 0.1, kSlope = 0.087, kSeconds = 2;
+  const btVector3 gravity(0, btScalar(9.81 * std::sin(kSlope)), btScalar(-9.81 * std::cos(kSlope)));
+  TestWorld world;
+  SubstepSolver solver;
+  if (substeps) world.world.setConstraintSolver(&solver);
+  world.world.setGravity(gravity);
+  PackingCollisionAlgorithm::prepareWorld(world.world);
+  const std::shared_ptr<btCollisionShape> ball =
+      is_packed ? std::shared_ptr<btCollisionShape>(makeFineBallShape(kRadius, 256))
+                : std::make_shared<btSphereShape>(btScalar(kRadius));
+  btRigidBody& a = world.add(shape, 0, btVector3(0, 0, 0));
+  a.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
+  btRigidBody& b = world.add(ball, 1, btVector3(0, -1, btScalar(kRadius * M_SQRT2)));
+  for (btRigidBody* body : {&a, &b}) body->setFriction(btScalar(std::sqrt(friction)));
+  b.setActivationState(DISABLE_DEACTIVATION);
+  world.run(kSeconds, 1.0 / rate);
+  world.world.setConstraintSolver(&world.solver);
+  const double speed = 9.81 * std::sin(kSlope) / (1 + 2 * 0.4) * kSeconds;
+  EXPECT_NEAR(double(b.getLinearVelocity().y()) / speed, 1, 0.01);
+}
+
+std::string nameOfDescent(const testing::TestParamInfo<std::tuple<bool, bool, int, double>>& info) {
+  const auto [substeps, is_packed, rate, friction] = info.param;
+  return std::string(substeps ? "Substeps" : "Bullet") + (is_packed ? "Packed" : "Sphere") +
+         std::to_string(rate) + "Friction" + std::to_string(int(std::lround(100 * friction)));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Grooves,
+                         testing::Combine(testing::Bool(), testing::Bool(), testing::Values(60, 240),
+                                          testing::Values(0.1, 0.5, 0.8, 1.0)),
+                         nameOfDescent);
 
 }  // namespace
 }  // namespace innersphere::test
