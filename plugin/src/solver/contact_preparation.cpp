@@ -92,7 +92,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       fillForces(point, lane, *source.point, pair, bodies);
       fillTurning(point, lane, source);
       block.bounces = block.bounces || point.restitution[lane] > 0;
-      block.bends = block.bends || point.fall_1[lane] != 0 || point.fall_2[lane] != 0;
+      block.bends = block.bends || !point.axis_1.get(lane).isZero() || !point.axis_2.get(lane).isZero();
       block.rolls = block.rolls || point.rolling[lane] > 0 || point.spinning[lane] > 0;
     }
   }
@@ -177,9 +177,9 @@ btVector3 ContactRows::wayAhead(const PointLanes& lanes, int lane, const Touchin
 }
 
 /// How the place goes along with them: to where normals agree, in the axes in which there is a top of the
-/// hill of the depth. In others it stays on the bodies: at a corner, on a face, where surfaces fit each
-/// other, and where they are so flat together that it would roll off their ends. Sizes of 0 are of what does
-/// not turn.
+/// hill of the depth. Where surfaces are so flat together that it would roll off their ends, or fit each
+/// other, it stays: in the world if both bend, as that of a bore on its pin, else on the bodies, as at a
+/// corner or on a face. Sizes of 0 are of what does not turn.
 void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, const TouchingPair& pair,
                             const SolverBodies& bodies) {
   const btVector3 normal = lanes.normal.get(lane);
@@ -200,12 +200,25 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
     return seen;
   };
   Bend a = seenAhead(source.flipped ? bends.b : bends.a), b = seenAhead(source.flipped ? bends.a : bends.b);
-  const Hill hill(a, b, -source.point->getDistance(), ahead);
+  Hill hill(a, b, -source.point->getDistance(), ahead);
   const btScalar size_a = bodies.size(pair.a), size_b = bodies.size(pair.b);
   const btScalar size = size_b > 0 ? std::min(size_a, size_b) : size_a;
+  const auto rolls = [&](int i) { return hill.hasTop(i) && hill.fall(i) * size > 1; };
+  // What is left of curvatures that cancel has axes of rounding: each surface has better ones.
+  const bool any = rolls(0) || rolls(1);
+  if (!any) hill = Hill({-a.xx, -a.xy, -a.yy}, b, 0, ahead);
   btVector3 axis[2];
-  for (int i = 0; i < 2; ++i)
-    axis[i] = hill.hasTop(i) && hill.fall(i) * size > 1 ? hill.axis(i) : btVector3(0, 0, 0);
+  btScalar fall[2] = {0, 0}, still[2] = {0, 0};
+  for (int i = 0; i < 2; ++i) {
+    axis[i] = hill.axis(i);
+    const btScalar bend_a = a.turn(axis[i], ahead).dot(axis[i]), bend_b = b.turn(axis[i], ahead).dot(axis[i]);
+    if (any && rolls(i))
+      fall[i] = 1 / hill.fall(i);
+    else if (std::min(btFabs(bend_a), btFabs(bend_b)) * size > 1)
+      still[i] = 1 / bend_b;
+    else
+      axis[i].setZero();
+  }
   a = a.along(axis[0], axis[1], ahead);
   b = b.along(axis[0], axis[1], ahead);
   const Across goes(axis[0], axis[1]);
@@ -216,8 +229,10 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
   const btScalar radius_a = radius(a, size_a), radius_b = radius(b, size_b > 0 ? size_b : BT_LARGE_FLOAT);
   lanes.axis_1.set(lane, axis[0]);
   lanes.axis_2.set(lane, axis[1]);
-  lanes.fall_1[lane] = axis[0].isZero() ? btScalar(0) : 1 / hill.fall(0);
-  lanes.fall_2[lane] = axis[1].isZero() ? btScalar(0) : 1 / hill.fall(1);
+  lanes.fall_1[lane] = fall[0];
+  lanes.fall_2[lane] = fall[1];
+  lanes.still_1[lane] = still[0];
+  lanes.still_2[lane] = still[1];
   lanes.a_11[lane] = a.xx;
   lanes.a_12[lane] = a.xy;
   lanes.a_22[lane] = a.yy;

@@ -162,6 +162,9 @@ int ContactRows::partOf(int first, int count, int part, int parts) const {
 ///   u A u / 2 + t_a u - c x / 2.
 /// That is of second order. What turns is taken about the centres of the strongest curvatures: for spheres
 /// and cylinders nothing is neglected.
+/// Where next to nothing is left of A + B, x could be anything. There the normal keeps its direction,
+/// x = -t_b / B: the row is a plane between the centres of curvature. A bore that turns on its pin by t, and
+/// keeps the place, would be lifted by r t^2 / 2 in each step.
 void ContactRows::roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way,
                        Lanes3& to_a, Lanes3& to_b) {
   const Lanes half = inAll(btScalar(0.5));
@@ -172,11 +175,16 @@ void ContactRows::roll(PointLanes& point, const LaneBodies& a, const LaneBodies&
   const Lanes u_1 = dot(way, axis_1) - ta_1 * ra - tb_1 * rb, u_2 = dot(way, axis_2) - ta_2 * ra - tb_2 * rb;
   const Lanes au_1 = point.a_11 * u_1 + point.a_12 * u_2, au_2 = point.a_12 * u_1 + point.a_22 * u_2;
   const Lanes c_1 = au_1 + ta_1 - tb_1, c_2 = au_2 + ta_2 - tb_2;
-  const Lanes x_1 = c_1 * point.fall_1, x_2 = c_2 * point.fall_2;
+  const Lanes still_1 = tb_1 * point.still_1, still_2 = tb_2 * point.still_2;
+  const Lanes x_1 = c_1 * point.fall_1 - still_1, x_2 = c_2 * point.fall_2 - still_2;
   const Lanes n_1 = point.b_11 * x_1 + point.b_12 * x_2 + tb_1,
               n_2 = point.b_12 * x_1 + point.b_22 * x_2 + tb_2;
+  // By how much A's normal differs there.
+  const Lanes off_1 = au_1 + ta_1 - point.a_11 * x_1 - point.a_12 * x_2 - n_1,
+              off_2 = au_2 + ta_2 - point.a_12 * x_1 - point.a_22 * x_2 - n_2;
   point.gap += half * ((ta_1 * ta_1 + ta_2 * ta_2) * ra + (tb_1 * tb_1 + tb_2 * tb_2) * rb +
-                       (au_1 + ta_1 + ta_1) * u_1 + (au_2 + ta_2 + ta_2) * u_2 - c_1 * x_1 - c_2 * x_2);
+                       (au_1 + ta_1 + ta_1) * u_1 + (au_2 + ta_2 + ta_2) * u_2 - c_1 * x_1 - c_2 * x_2 +
+                       off_1 * still_1 + off_2 * still_2);
   const Lanes3 turned = point.normal_0 + axis_1 * n_1 + axis_2 * n_2;
   const Lanes length = root(dot(turned, turned));
   point.normal = turned * (length > Lanes{} ? inAll(1) / length : Lanes{});

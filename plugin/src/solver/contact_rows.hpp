@@ -93,12 +93,13 @@ class ContactRows {
   };
   /// A point of each pair of a block.
   struct PointLanes {
-    Lanes3 normal_0, pivot_a, pivot_b;         ///< when the step begins; pivots are centres of curvature
-    Lanes gap_0;                               ///< [m]
-    Lanes radius_a, radius_b;                  ///< from there to the place [m]
-    Lanes3 axis_1, axis_2;                     ///< of the hill of the depth; 0: the place stays on the bodies
-    Lanes fall_1, fall_2;                      ///< inverse of how fast its slope falls [m]
-    Lanes a_11, a_12, a_22, b_11, b_12, b_22;  ///< how the bodies bend in these axes [1/m]
+    Lanes3 normal_0, pivot_a, pivot_b;  ///< when the step begins; pivots are centres of curvature
+    Lanes gap_0;                        ///< [m]
+    Lanes radius_a, radius_b;           ///< from there to the place [m]
+    Lanes3 axis_1, axis_2;              ///< of the hill of the depth; 0: the place stays on the bodies
+    Lanes fall_1, fall_2;               ///< inverse of how fast its slope falls; 0: there is no top [m]
+    Lanes still_1, still_2;             ///< radius of b where the place stays in the world, or 0 [m]
+    Lanes a_11, a_12, a_22, b_11, b_12, b_22;     ///< how the bodies bend in these axes [1/m]
     Lanes3 normal, side_1, side_2, arm_a, arm_b;  ///< now
     Lanes gap;
     Lanes mass, mass_1, mass_2;           ///< what each row moves [kg]
