@@ -17,6 +17,8 @@ namespace {
 constexpr btScalar kFastestPush = btScalar(0.5), kLeavingRate = 3;
 /// Angle, 2 degrees: triangles tell no better than that in which directions a surface bends most and least.
 constexpr btScalar kAligned = btScalar(0.035);
+/// [rad]: a direction that is closer to one in which a body is held may be that one, for rounding.
+constexpr btScalar kAcross = btScalar(1e-5);
 
 /// Bullet's anisotropic friction: how far each axis of a body counts.
 btVector3 scaledByAnisotropy(const btCollisionObject& body, const btVector3& way) {
@@ -76,6 +78,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
   Block& block = blocks_[static_cast<std::size_t>(index)];
   block.bounces = block.rolls = block.bends = block.bouncing = false;
   block.share = block.calm = Lanes{};
+  Lanes inverse_mass[2] = {};
   for (int i = 0; i < block.count; ++i) points_[static_cast<std::size_t>(block.begin + i)] = PointLanes{};
   for (int lane = 0; lane < kLanes; ++lane) {
     block.a[lane] = block.b[lane] = bodies.movable();
@@ -84,6 +87,8 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
     block.a[lane] = pair.a;
     block.b[lane] = pair.b;
     block.calm[lane] = depth_ * smallerSize(pair, bodies) / (substep_ * substeps_);
+    inverse_mass[0][lane] = bodies.inverseMass(pair.a);
+    inverse_mass[1][lane] = bodies.inverseMass(pair.b);
     block.share[lane] = bodies.isMovable(pair.b) ? btScalar(0.5) : btScalar(0);
     for (int i = 0; i < pair.count; ++i) {
       PointLanes& point = points_[static_cast<std::size_t>(block.begin + i)];
@@ -99,7 +104,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
   if (block.bounces) bounces_ = true;
   const LaneBodies a(block.a, bodies.states()), b(block.b, bodies.states());
   for (int i = block.begin; i < block.begin + block.count; ++i)
-    fillMasses(points_[static_cast<std::size_t>(i)], a, b, block.rolls);
+    fillMasses(points_[static_cast<std::size_t>(i)], a, b, inverse_mass, block.rolls);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.pair[lane] < 0) continue;
     const TouchingPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
@@ -281,9 +286,15 @@ void ContactRows::fillTurning(PointLanes& lanes, int lane, const Source& source)
   lanes.spin[lane] = std::clamp(lanes.spin[lane], -most_spin, most_spin);
 }
 
-/// How much each row moves. A body that is held to a plane or a line gives way in one direction only: both
-/// rows across the normal see the same motion, or one sees none. Together they are to stop it once.
-void ContactRows::fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls) {
+/// How much each row moves. A body that a linear factor holds may yield aslant alone: next to nothing, on a
+/// short lever, or by rounding. What makes up for that throws it, now, or along a normal that has turned by
+/// the next step. So a row moves no more than a body would that is not held, further passes add what it
+/// lacks, and of what it has borne it keeps what was not borne by what holds the body; by rounding alone
+/// nothing is moved. Across the normal friction bounds that. There a body that is held to a plane or a line
+/// gives way in one direction only: both rows see the same motion, or one sees none. Together they are to
+/// stop it once.
+void ContactRows::fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b,
+                             const Lanes (&inverse_mass)[2], bool rolls) {
   const auto along = [&](const Lanes3& way) {
     const Lanes3 turn_a = cross(point.arm_a, way), turn_b = cross(point.arm_b, way);
     return dot(way, scaled(a.inverse_mass, way)) + dot(way, scaled(b.inverse_mass, way)) +
@@ -292,13 +303,27 @@ void ContactRows::fillMasses(PointLanes& point, const LaneBodies& a, const LaneB
   const auto about = [&](const Lanes3& axis) {
     return massOf(dot(axis, a.inverseInertiaTimes(axis)) + dot(axis, b.inverseInertiaTimes(axis)));
   };
-  const auto isHeld = [](const Lanes3& inverse_mass) {
-    return (inverse_mass.x != inverse_mass.y) | (inverse_mass.y != inverse_mass.z);
+  // How much a body would yield along the normal if nothing held it, or more than anything if it cannot.
+  const auto freely = [&](const LaneBodies& body, Lanes free, const Lanes3& arm) {
+    const Lanes3& normal = point.normal;
+    const Lanes3 turn = cross(arm, normal);
+    const Lanes turns = dot(turn, body.inverseInertiaTimes(turn));
+    const Lanes yields = dot(normal, scaled(body.inverse_mass, normal)) + turns,
+                all = dot(normal, scaled({free, free, free}, normal)) + turns;
+    return yields > all * inAll(kAcross * kAcross) ? all : inAll(BT_LARGE_FLOAT);
   };
+  const auto isHeld = [](const LaneBodies& body, Lanes free) {
+    return (body.inverse_mass.x != free) | (body.inverse_mass.y != free) | (body.inverse_mass.z != free);
+  };
+  const Lanes one_free =
+      smaller(freely(a, inverse_mass[0], point.arm_a), freely(b, inverse_mass[1], point.arm_b));
+  const Lanes yields = along(point.normal);
+  point.mass = one_free < inAll(BT_LARGE_FLOAT) ? massOf(larger(yields, one_free)) : Lanes{};
+  point.kept = yields < one_free ? yields / one_free : inAll(1);
+  point.impulse = point.mass > Lanes{} ? point.impulse : Lanes{};
   const Lanes yields_1 = along(point.side_1), yields_2 = along(point.side_2);
   const Lanes together = massOf(yields_1 + yields_2);
-  const auto held = isHeld(a.inverse_mass) | isHeld(b.inverse_mass);
-  point.mass = massOf(along(point.normal));
+  const auto held = isHeld(a, inverse_mass[0]) | isHeld(b, inverse_mass[1]);
   point.mass_1 = held ? together : massOf(yields_1);
   point.mass_2 = held ? together : massOf(yields_2);
   if (!rolls) return;

@@ -408,7 +408,7 @@ void ContactRows::writeBack(int index) {
       const Source& source = sources_[static_cast<std::size_t>(pair.begin + i)];
       btManifoldPoint& point = *source.point;
       point.m_appliedImpulse = from.sum[lane];
-      point.m_prevRHS = from.impulse[lane] * substeps_;
+      point.m_prevRHS = from.impulse[lane] * from.kept[lane] * substeps_;
       point.m_appliedImpulseLateral1 = from.sum_1[lane];
       point.m_appliedImpulseLateral2 = from.sum_2[lane];
       if ((point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0) continue;

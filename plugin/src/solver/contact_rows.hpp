@@ -98,6 +98,7 @@ class ContactRows {
     Lanes3 normal, side_1, side_2, arm_a, arm_b;  ///< now
     Lanes gap;
     Lanes mass, mass_1, mass_2;           ///< what each row moves [kg]
+    Lanes kept;                           ///< share of what is borne with which the next step begins
     Lanes rate, soft_mass, soft_impulse;  ///< of the spring that drives bodies apart
     Lanes spring;                         ///< 1: it is the user's, and acts in all passes
     Lanes fastest;                        ///< that bodies are driven apart [m/s]
@@ -141,7 +142,8 @@ class ContactRows {
                         const SolverBodies& bodies);
   static void fillForces(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                          const SolverBodies& bodies);
-  static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b, bool rolls);
+  static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b,
+                         const Lanes (&inverse_mass)[2], bool rolls);
   void fillTurning(PointLanes& lanes, int lane, const Source& source) const;
   void makeRoomFor(const Entry& entry);
   void remember(const TouchingPair& pair, int lane, const PointLanes* points);

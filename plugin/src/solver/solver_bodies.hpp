@@ -77,6 +77,10 @@ class SolverBodies {
   /// Returns null for the fixed world.
   const btRigidBody* rigid(int index) const { return bodies_[static_cast<std::size_t>(index)].rigid; }
   btScalar mass(int index) const { return bodies_[static_cast<std::size_t>(index)].mass; }
+  /// Returns 0 for what cannot be moved, and takes no account of its linear factor [1/kg].
+  btScalar inverseMass(int index) const {
+    return isMovable(index) ? rigid(index)->getInvMass() : btScalar(0);
+  }
   btScalar size(int index) const { return bodies_[static_cast<std::size_t>(index)].size; }
   /// Returns where the body was at the start of the step.
   const btVector3& origin(int index) const { return bodies_[static_cast<std::size_t>(index)].origin; }

@@ -309,6 +309,51 @@ TEST(SubstepContacts, WhatIsHeldToAPlaneIsBraked) {
   }
 }
 
+// A wall at 1 m/s pushes balls that can move up only. A wall that leans by 45 degrees lifts one as fast, and
+// one that leans by what may be rounding goes through it.
+TEST(SubstepContacts, WhatIsHeldAcrossAPushIsNotThrown) {
+  constexpr double kStep = 1.0 / 60;
+  for (const double lean : {M_PI / 4, 1e-6, 0.0}) {
+    SolverWorld world;
+    world.world.setGravity(btVector3(0, 0, 0));
+    btRigidBody& ball = world.addBall(btScalar(0.1), 1, btVector3(0, 0, 0));
+    ball.setFriction(0);
+    ball.setLinearFactor(btVector3(0, 0, 1));
+    ball.setAngularFactor(0);
+    btRigidBody& wall = world.addBox(btVector3(btScalar(0.2), 2, 2), 0, btVector3(-1, 0, 0));
+    wall.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    const btQuaternion leaning(btVector3(0, 1, 0), btScalar(-lean));
+    const btScalar from = btScalar(-0.3 / std::cos(lean) - 0.1);
+    double fastest = 0;
+    for (int i = 0; i <= 20; ++i) {
+      wall.setWorldTransform(btTransform(leaning, btVector3(from + btScalar(i * kStep), 0, 0)));
+      world.step(btScalar(kStep));
+      fastest = std::max(fastest, std::fabs(double(ball.getLinearVelocity().z())));
+    }
+    EXPECT_NEAR(fastest, lean > 0.1 ? 1 : 0, lean > 0.1 ? 0.01 : 1e-5) << lean;
+  }
+}
+
+// One that leans by a thousandth would have to lift its ball 1,000 times as fast. It goes through it, too.
+TEST(SubstepContacts, WhatYieldsAslantIsNotThrown) {
+  constexpr double kStep = 1.0 / 60, kSpeed = 0.2;
+  SolverWorld world;
+  btRigidBody& ball = world.addBall(btScalar(0.1), 1, btVector3(0, 0, 0));
+  ball.setFriction(0);
+  ball.setLinearFactor(btVector3(0, 0, 1));
+  ball.setAngularFactor(0);
+  btRigidBody& wall = world.addBox(btVector3(1, 4, 4), 0, btVector3(-2, 0, 0));
+  wall.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  double fastest = 0;
+  for (int i = 0; i < 20; ++i) {
+    wall.setWorldTransform(btTransform(btQuaternion(btVector3(0, 1, 0), btScalar(-0.001)),
+                                       btVector3(btScalar(i * kSpeed * kStep - 1.1), 0, 0)));
+    world.step(btScalar(kStep));
+    fastest = std::max(fastest, double(ball.getLinearVelocity().z()));
+  }
+  EXPECT_LT(fastest, 10 * kSpeed);
+}
+
 TEST(SubstepContacts, RollingFrictionStopsWhatTurnsAboutOneAxis) {
   constexpr double kRadius = 0.5, kLever = 0.1, kSpeed = 3;
   SolverWorld world;
