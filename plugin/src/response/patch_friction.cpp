@@ -36,10 +36,10 @@ btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const PairM
   if (!(cached.m_combinedFriction * cached.m_appliedImpulse > 0)) return btVector3(0, 0, 0);
   const btVector3 was_a = start.a * cached.m_localPointA, was_b = start.b * cached.m_localPointB;
   const btVector3 turned = motion.a().spin.cross(place - was_a) - motion.b().spin.cross(place - was_b);
-  const btVector3 apart = was_a - was_b + turned * (time_step / 2);
-  const btVector3 slip = apart - normal * normal.dot(apart);
+  const auto across = [&](const btVector3& way) { return way - normal * normal.dot(way); };
+  const btVector3 apart = across(was_a - was_b), slip = apart + across(turned) * (time_step / 2);
   const btScalar length = slip.length();
-  if (length > farthest) return btVector3(0, 0, 0);
+  if (length > farthest || apart.length() > farthest) return btVector3(0, 0, 0);
   return length > largest ? slip * (largest / length) : slip;
 }
 

