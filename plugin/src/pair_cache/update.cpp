@@ -91,7 +91,7 @@ void PairTable::noteWays() {
 void PairTable::countNeighbours() {
   if (settings_.solver.substeps) return;
   pairs_.forEachInParallel([](const ContactPair& pair) {
-    if (!(pair.depth > 0)) return;
+    if (pair.busy || !(pair.depth > 0)) return;
     pair.body_a->noteNeighbour();
     pair.body_b->noteNeighbour();
   });
