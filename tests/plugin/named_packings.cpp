@@ -10,12 +10,23 @@
 #include "test_packings.hpp"
 
 namespace innersphere::test {
+namespace {
 
-std::shared_ptr<PackingShape> makeNamedShape(const std::string& name, std::size_t n, double bounding_radius) {
+Packing packed(const Solid& solid, std::size_t n) {
   PackOptions options;
   options.spheres = n;
   options.overlap_errors = false;
-  auto shape = makeShape(pack(*makeNamedSolid(name), options));
+  return pack(solid, options);
+}
+
+}  // namespace
+
+std::shared_ptr<PackingShape> makePackedShape(const Solid& solid, std::size_t n) {
+  return makeShape(packed(solid, n));
+}
+
+std::shared_ptr<PackingShape> makeNamedShape(const std::string& name, std::size_t n, double bounding_radius) {
+  auto shape = makePackedShape(*makeNamedSolid(name), n);
   btVector3 centre;
   btScalar radius;
   shape->getBoundingSphere(centre, radius);
@@ -25,10 +36,7 @@ std::shared_ptr<PackingShape> makeNamedShape(const std::string& name, std::size_
 }
 
 std::shared_ptr<PackingShape> makeTorusShape(double ring, double tube, std::size_t n) {
-  PackOptions options;
-  options.spheres = n;
-  options.overlap_errors = false;
-  return makeShape(pack(*makeTorus(ring, tube), options));
+  return makePackedShape(*makeTorus(ring, tube), n);
 }
 
 namespace {
@@ -70,10 +78,7 @@ Surface cylinderSurface(double radius, double height) {
 }
 
 std::shared_ptr<PackingShape> withSurface(const Solid& solid, std::size_t n, Surface surface) {
-  PackOptions options;
-  options.spheres = n;
-  options.overlap_errors = false;
-  Packing packing = pack(solid, options);
+  Packing packing = packed(solid, n);
   packing.surface = std::move(surface);
   return makeShape(std::move(packing));
 }

@@ -1,12 +1,16 @@
-// The project's own solids, packed.
+// Solids, packed: any, and the project's own.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "innersphere/packing_shape.hpp"
+#include "innersphere/solid.hpp"
 
 namespace innersphere::test {
+
+/// Any solid, packed with n spheres.
+std::shared_ptr<PackingShape> makePackedShape(const Solid& solid, std::size_t n);
 
 /// A named solid of the project, packed with n spheres and scaled so that its bounding sphere has the radius
 /// [m].

@@ -73,11 +73,9 @@ btScalar inverseMass(const btCollisionObject& object) {
 btScalar leavingAlong(const btVector3& normal, const std::vector<ContactPatch>& patches) {
   btScalar deepest = 0, speed = 0;
   for (const ContactPatch& patch : patches) {
-    for (int i = 0; i < patch.count && !patch.by_volume; ++i) {
-      if (!(patch.points[i].depth > deepest)) continue;
-      deepest = patch.points[i].depth;
-      speed = kLeaving * deepest * btMax(btScalar(0), patch.normal.dot(normal));
-    }
+    if (patch.by_volume || !(patch.depth() > deepest)) continue;
+    deepest = patch.depth();
+    speed = kLeaving * deepest * btMax(btScalar(0), patch.normal.dot(normal));
   }
   return speed;
 }

@@ -9,10 +9,8 @@
 #include <vector>
 
 #include "innersphere/mesh.hpp"
-#include "innersphere/packer.hpp"
 #include "innersphere/substep_solver.hpp"
 #include "named_packings.hpp"
-#include "test_packings.hpp"
 #include "test_world.hpp"
 #include "turned_meshes.hpp"
 
@@ -81,10 +79,12 @@ Mesh groove() {
 }
 
 std::shared_ptr<PackingShape> packed(const Mesh& mesh) {
-  PackOptions options;
-  options.spheres = 1000;
-  options.overlap_errors = false;
-  return makeShape(pack(*makeSolid(mesh, "hollow"), options));
+  return makePackedShape(*makeSolid(mesh, "hollow"), 1000);
+}
+
+std::shared_ptr<btCollisionShape> ball(bool is_packed, double radius) {
+  if (is_packed) return makeFineBallShape(radius, 256);
+  return std::make_shared<btSphereShape>(btScalar(radius));
 }
 
 /// Of a ball, b.
@@ -166,14 +166,12 @@ TEST(Bowl, LetsABallSwingWithoutLossOrSpin) {
   for (const double ratio : {0.3, 0.6, 0.9}) {
     for (const bool is_packed : {false, true}) {
       const double radius = ratio * kHollow, far = kHollow - radius;
-      const std::shared_ptr<btCollisionShape> ball =
-          is_packed ? std::shared_ptr<btCollisionShape>(makeFineBallShape(radius, 256))
-                    : std::make_shared<btSphereShape>(btScalar(radius));
       TestWorld world;
       btRigidBody& a = world.add(shape, 0, btVector3(0, 0, 0));
       a.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
-      btRigidBody& b = world.add(
-          ball, 1, btVector3(btScalar(far * std::sin(kStart)), 0, btScalar(-far * std::cos(kStart))));
+      btRigidBody& b =
+          world.add(ball(is_packed, radius), 1,
+                    btVector3(btScalar(far * std::sin(kStart)), 0, btScalar(-far * std::cos(kStart))));
       b.setFriction(0);
       b.setActivationState(DISABLE_DEACTIVATION);
       const double height = far * (1 - std::cos(kStart));
@@ -206,13 +204,11 @@ class HalfPipes : public testing::TestWithParam<std::tuple<bool, bool, double>> 
     SubstepSolver solver;
     if (substeps) world.world.setConstraintSolver(&solver);
     PackingCollisionAlgorithm::prepareWorld(world.world);
-    const std::shared_ptr<btCollisionShape> ball =
-        is_packed ? std::shared_ptr<btCollisionShape>(makeFineBallShape(radius, 256))
-                  : std::make_shared<btSphereShape>(btScalar(radius));
     btRigidBody& a = world.add(shape, 0, btVector3(0, 0, 0));
     a.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
     btRigidBody& b =
-        world.add(ball, 1, btVector3(0, btScalar(-speed * kTime / 2), btScalar(radius - kHollow + height)));
+        world.add(ball(is_packed, radius), 1,
+                  btVector3(0, btScalar(-speed * kTime / 2), btScalar(radius - kHollow + height)));
     for (btRigidBody* body : {&a, &b}) body->setFriction(btScalar(friction));
     b.setActivationState(DISABLE_DEACTIVATION);
     b.setLinearVelocity(btVector3(0, btScalar(speed), 0));
@@ -274,12 +270,10 @@ TEST_P(Grooves, LetABallRollDown) {
   if (substeps) world.world.setConstraintSolver(&solver);
   world.world.setGravity(gravity);
   PackingCollisionAlgorithm::prepareWorld(world.world);
-  const std::shared_ptr<btCollisionShape> ball =
-      is_packed ? std::shared_ptr<btCollisionShape>(makeFineBallShape(kRadius, 256))
-                : std::make_shared<btSphereShape>(btScalar(kRadius));
   btRigidBody& a = world.add(shape, 0, btVector3(0, 0, 0));
   a.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
-  btRigidBody& b = world.add(ball, 1, btVector3(0, -1, btScalar(kRadius * M_SQRT2 - kDepth)));
+  btRigidBody& b =
+      world.add(ball(is_packed, kRadius), 1, btVector3(0, -1, btScalar(kRadius * M_SQRT2 - kDepth)));
   for (btRigidBody* body : {&a, &b}) body->setFriction(btScalar(std::sqrt(friction)));
   b.setActivationState(DISABLE_DEACTIVATION);
   world.run(kSeconds, 1.0 / rate);

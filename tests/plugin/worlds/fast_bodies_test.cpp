@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <cmath>
 
-#include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
 #include "named_packings.hpp"
 #include "test_packings.hpp"
@@ -38,12 +37,7 @@ std::shared_ptr<btCollisionShape> makeWall(const std::string& name) {
     return std::make_shared<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(kThickness / 2));
   if (name == "mesh") return meshWall();
   if (name == "packing") {
-    static const std::shared_ptr<PackingShape> wall = [] {
-      PackOptions options;
-      options.spheres = 4000;
-      options.overlap_errors = false;
-      return makeShape(pack(*makeBox({3, 3, kThickness}), options));
-    }();
+    static const std::shared_ptr<PackingShape> wall = makePackedShape(*makeBox({3, 3, kThickness}), 4000);
     return wall;
   }
   return std::make_shared<btBoxShape>(btVector3(4, 4, btScalar(kThickness / 2)));

@@ -6,9 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "innersphere/mesh.hpp"
-#include "innersphere/packer.hpp"
 #include "innersphere/substep_solver.hpp"
-#include "test_packings.hpp"
+#include "named_packings.hpp"
 #include "test_world.hpp"
 
 namespace innersphere::test {
@@ -48,10 +47,7 @@ class Hinge : public testing::TestWithParam<double> {};
 
 TEST_P(Hinge, SwingsAndKeepsItsEnergy) {
   const double bore = kPin + GetParam();
-  PackOptions options;
-  options.spheres = 256;
-  options.overlap_errors = false;
-  const auto disc = makeShape(pack(*makeSolid(boredDisc(bore), "disc"), options));
+  const auto disc = makePackedShape(*makeSolid(boredDisc(bore), "disc"), 256);
   TestWorld world;
   SubstepSolver solver;
   world.world.setConstraintSolver(&solver);

@@ -10,12 +10,10 @@
 #include <gtest/gtest.h>
 
 #include "innersphere/mesh.hpp"
-#include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
 #include "innersphere/substep_solver.hpp"
 #include "named_packings.hpp"
 #include "packing/mesh_shapes.hpp"
-#include "test_packings.hpp"
 #include "test_world.hpp"
 #include "turned_meshes.hpp"
 
@@ -39,10 +37,7 @@ std::shared_ptr<PackingShape> shapeOf(const std::string& name) {
   std::shared_ptr<PackingShape>& shape = shapes[name];
   if (shape) return shape;
   if (name == "horn") {
-    PackOptions options;
-    options.spheres = 256;
-    options.overlap_errors = false;
-    shape = makeShape(pack(*makeSolid(hornMesh(), name), options));
+    shape = makePackedShape(*makeSolid(hornMesh(), name), 256);
   } else if (name == "finer_bowl") {
     shape = makeNamedShape("bowl", 270, 0.2);
   } else {
@@ -252,10 +247,7 @@ class InEachOther {
 };
 
 std::shared_ptr<PackingShape> cubeOfAMetre() {
-  PackOptions options;
-  options.spheres = 256;
-  options.overlap_errors = false;
-  return makeShape(pack(*makeBox({1, 1, 1}), options));
+  return makePackedShape(*makeBox({1, 1, 1}), 256);
 }
 
 // Their sides lie in the same planes: lines through both meet the sides, too, which are 1 m of a way out.

@@ -7,9 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "innersphere/mesh.hpp"
-#include "innersphere/packer.hpp"
 #include "innersphere/substep_solver.hpp"
-#include "test_packings.hpp"
+#include "named_packings.hpp"
 #include "test_world.hpp"
 #include "turned_meshes.hpp"
 
@@ -40,12 +39,7 @@ Mesh pin(double clearance) {
 std::shared_ptr<PackingShape> packed(const Mesh& mesh, const std::string& name) {
   static std::map<std::string, std::shared_ptr<PackingShape>> shapes;
   std::shared_ptr<PackingShape>& shape = shapes[name];
-  if (!shape) {
-    PackOptions options;
-    options.spheres = 256;
-    options.overlap_errors = false;
-    shape = makeShape(pack(*makeSolid(mesh, name), options));
-  }
+  if (!shape) shape = makePackedShape(*makeSolid(mesh, name), 256);
   return shape;
 }
 

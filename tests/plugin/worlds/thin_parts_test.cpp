@@ -10,8 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "innersphere/mesh.hpp"
-#include "innersphere/packer.hpp"
-#include "test_packings.hpp"
+#include "named_packings.hpp"
 #include "test_world.hpp"
 #include "turned_meshes.hpp"
 
@@ -23,12 +22,9 @@ std::shared_ptr<PackingShape> shapeOf(const std::string& solid) {
   static std::map<std::string, std::shared_ptr<PackingShape>> shapes;
   std::shared_ptr<PackingShape>& shape = shapes[solid];
   if (!shape) {
-    PackOptions options;
-    options.spheres = 256;
-    options.overlap_errors = false;
     const std::unique_ptr<Solid> packed =
         solid == "cow" ? makeCow() : makeSolid(solid == "cup" ? cupMesh() : hornMesh(), solid);
-    shape = makeShape(pack(*packed, options));
+    shape = makePackedShape(*packed, 256);
   }
   return shape;
 }

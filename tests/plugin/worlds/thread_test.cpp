@@ -5,9 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
-#include "test_packings.hpp"
+#include "named_packings.hpp"
 #include "test_world.hpp"
 
 namespace innersphere::test {
@@ -33,10 +32,7 @@ struct Found : btCollisionWorld::ContactResultCallback {
 };
 
 std::shared_ptr<PackingShape> named(const char* name) {
-  PackOptions options;
-  options.spheres = 1000;
-  options.overlap_errors = false;
-  return makeShape(pack(*makeNamedSolid(name), options));
+  return makePackedShape(*makeNamedSolid(name), 1000);
 }
 
 /// What the meshes overlap by beyond the helicoids, at most: points on the vertices, edges and faces of
