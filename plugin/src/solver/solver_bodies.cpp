@@ -51,6 +51,7 @@ btScalar inverseOrZero(btScalar x) {
 void SolverBodies::begin(int count, btScalar time_step) {
   time_step_ = time_step;
   broken_ = false;
+  broken_driven_ = nullptr;
   found_.resize(static_cast<std::size_t>(count));
 }
 
@@ -112,6 +113,12 @@ void SolverBodies::fill(Body& body, BodyState& state) {
   updateInertia(body, state);
 }
 
+const btRigidBody* SolverBodies::broken() const {
+  if (!broken_) return nullptr;
+  const auto body = std::find_if(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.broken; });
+  return body != bodies_.end() ? body->rigid : broken_driven_;
+}
+
 int SolverBodies::placeOf(const btCollisionObject& object) const {
   const int id = object.getCompanionId();
   if (id < 0 || id >= movable_ || bodies_[static_cast<std::size_t>(id)].rigid != &object) return kOther;
@@ -126,6 +133,7 @@ int SolverBodies::indexOf(const btCollisionObject& object) {
     return movable_;
   if (!hasNumbers(*rigid)) {
     broken_ = true;
+    broken_driven_ = rigid;
     return kBroken;
   }
   if (bodies_.back().rigid == rigid) return static_cast<int>(bodies_.size()) - 1;
@@ -244,7 +252,7 @@ btVector3 SolverBodies::startOf(int index, const btVector3& point) const {
 
 void SolverBodies::finish(int begin, int end) {
   for (std::size_t i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-    const Body& body = bodies_[i];
+    Body& body = bodies_[i];
     BodyState& state = states_[i];
     body.rigid->setCompanionId(-1);
     if (body.broken) {
@@ -256,6 +264,7 @@ void SolverBodies::finish(int begin, int end) {
     if (!isFinite(poseOf(body, state)) || !std::isfinite(state.velocity.length2()) ||
         !std::isfinite(state.spin.length2())) {
       state = BodyState();
+      body.broken = true;
       broken_ = true;
     }
     // Bullet goes on from here by the velocities, over the whole step.

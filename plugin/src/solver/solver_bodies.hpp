@@ -102,9 +102,9 @@ class SolverBodies {
   void finish(int begin, int end);
   /// Puts what moves by itself where it was found.
   void release();
-  /// Returns true if bodies came with infinite or undefined velocities, forces or places, or have got lost:
-  /// they are stopped, and nothing touches the former.
-  bool broken() const { return broken_; }
+  /// Returns the first body that came with infinite or undefined velocities, forces or places, or has got
+  /// lost; null if there is none. Such bodies are stopped, and nothing touches the former.
+  const btRigidBody* broken() const;
   static constexpr int kBroken = -1, kOther = -2;
 
  private:
@@ -136,6 +136,7 @@ class SolverBodies {
   std::vector<btRigidBody*> found_;  ///< for each object; null: it cannot be moved
   int movable_ = 0;
   std::atomic<bool> broken_{false};
+  const btRigidBody* broken_driven_ = nullptr;  ///< what moves by itself, and has no place among the bodies
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <string>
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
@@ -188,11 +189,17 @@ int SubstepSolver::Impl::arrange(btTypedConstraint** constraints, int count,
 }
 
 void SubstepSolver::Impl::report() {
-  if (reported_ || !(bodies_.broken() || contacts_.broken() > 0 || constraints_.broken() > 0)) return;
+  if (reported_) return;
+  const btRigidBody* body = bodies_.broken();
+  if (body == nullptr && contacts_.broken() == 0 && constraints_.broken() == 0) return;
   reported_ = true;
-  log("SubstepSolver leaves out bodies, contacts and rows of constraints that have infinite or undefined "
-      "velocities, forces, places or properties: such bodies are stopped, and nothing touches them. This is "
-      "said once.");
+  std::string message =
+      "SubstepSolver leaves out bodies, contacts and rows of constraints that have infinite or undefined "
+      "velocities, forces, places or properties: such bodies are stopped, and nothing touches them. ";
+  if (body != nullptr)
+    message += "The first such body has getWorldArrayIndex() " + std::to_string(body->getWorldArrayIndex()) +
+               " and getUserIndex() " + std::to_string(body->getUserIndex()) + ". ";
+  log(message + "This is said once.");
 }
 
 SubstepSolver::SubstepSolver(const SubstepOptions& options) : impl_(std::make_unique<Impl>()) {
