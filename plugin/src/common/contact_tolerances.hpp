@@ -129,6 +129,15 @@ constexpr std::size_t kEvenlySpaced = 6;
 /// probe.
 constexpr btScalar kLessDeep = 2;
 
+// --- Passing ---------------------------------------------------------------------------------------------
+
+/// In sizes of the smaller body: what would be met by less than this beside an edge is passed.
+constexpr btScalar kGrazing = btScalar(1e-3);
+/// Cosine, 60 degrees: a nearest way out of a face that is closer to its normal is not beside its edge.
+constexpr btScalar kBesideCosine = btScalar(0.5);
+/// In steps: contacts are carried along into the next one.
+constexpr btScalar kPassingSteps = 2;
+
 // --- Manifold reduction ----------------------------------------------------------------------------------
 
 /// Ratio: a point of the step before is kept until another one spans this much more.

@@ -9,6 +9,7 @@
 #include "narrow_phase/contact_samples.hpp"
 #include "narrow_phase/deepest_points.hpp"
 #include "narrow_phase/manifold_reduction.hpp"
+#include "narrow_phase/passing.hpp"
 #include "narrow_phase/patch_moments.hpp"
 
 namespace innersphere {
@@ -199,11 +200,13 @@ bool refine(Samples& samples, const Probe& probe, const ContactSettings& setting
   for (std::size_t p = 0; p < samples.patches.size(); ++p)
     findContactPoints(probe, p, settings.separation, scratch.tops, samples, scratch.sampling, found);
   if (first_time) dropUnprobed(samples);
+  const bool near = std::any_of(found.begin(), found.end(),
+                                [&](const WeightedPoint& p) { return p.point.depth > -settings.spacing; });
+  dropPassing(probe, step, found);
   keepLeastWaysOut(settings.spacing, scratch.reduction, found);
   keepTops(settings.separation, step, found);
   reduceToManifolds(found, scratch.old_ids, settings.spacing, step, scratch.reduction, patches);
-  return std::any_of(found.begin(), found.end(),
-                     [&](const WeightedPoint& p) { return p.point.depth > -settings.spacing; });
+  return near;
 }
 
 void appendVolumePatch(const PatchMoments& moments, btScalar spacing, std::vector<ContactPatch>& patches) {

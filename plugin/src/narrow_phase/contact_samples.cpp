@@ -226,6 +226,7 @@ class PatchContactPoints {
     point.point.depth = depth;
     point.point.id = id;
     point.point.turn_a = shareOfA(points, normal);
+    point.across = points.on_a - points.on_b - normal * depth;
     point.kind = kind;
     return true;
   }
@@ -310,6 +311,7 @@ class PatchContactPoints {
     // There, so that the push leads through its centre.
     point.point.on_b = in_b ? on_a - normal * point.point.depth : on_b;
     point.moved = point.point.on_b - points.on_b;
+    point.across.setZero();
     return true;
   }
 

@@ -31,6 +31,7 @@ struct WeightedPoint {
   bool bends = false;         ///< between curved surfaces
   btVector3 slope{0, 0, 0};   ///< B's normal less A's
   btVector3 moved{0, 0, 0};   ///< the point on B, from where that was measured
+  btVector3 across{0, 0, 0};  ///< how far A's point is beside B's, across the normal
 };
 
 /// Keeps room to work in from one patch to the next.

@@ -108,6 +108,10 @@ bool PackingProbe::nearest(std::size_t index, btVector3& direction, OpposedPoint
   return true;
 }
 
+btScalar PackingProbe::meets(bool of_a, const btVector3& from, const btVector3& way) const {
+  return of_a ? meetSolid(a_, from, way) : meetSolid(b_, from - apart(), way);
+}
+
 SurfaceProbe::Bends PackingProbe::bends(const OpposedPoints& points, const Across& axes) const {
   return {bendAt(a_, points.triangle_a, axes), bendAt(b_, points.triangle_b, axes)};
 }

@@ -8,6 +8,7 @@
 #include "narrow_phase/sample_selection.hpp"
 #include "narrow_phase/shapes/shape_surface.hpp"
 #include "narrow_phase/surface_probe.hpp"
+#include "narrow_phase/surface_rays.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -41,9 +42,13 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   bool nearest(std::size_t index, btVector3& direction, OpposedPoints& points) const override;
   bool nearestWall(bool of_a, const btVector3& place, btScalar max_distance,
                    SurfaceQueries::Nearest& nearest) const override {
-    if (!of_a || !a_.nearest(place, max_distance + a_.margin, nearest)) return false;
+    if (!of_a) return nearestOfB(place, max_distance, nearest);
+    if (!a_.nearest(place, max_distance + a_.margin, nearest)) return false;
     nearest.distance -= a_.margin;
     return true;
+  }
+  btScalar meets(bool of_a, const btVector3& from, const btVector3& way) const override {
+    return of_a ? meetSolid(a_, from, way) : other_.meets(a_, world_, from, way);
   }
   Bends bends(const OpposedPoints& points, const Across& axes) const override;
   void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
@@ -67,6 +72,13 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   }
 
  private:
+  /// Finds the same of B where that knows the nearest point of any place.
+  bool nearestOfB(const btVector3& place, btScalar max_distance, SurfaceQueries::Nearest& nearest) const {
+    NearSphere seen;
+    if (!other_.nearestTo(a_, world_, place, seen) || seen.distance > max_distance) return false;
+    nearest = {seen.distance, seen.normal, OpposedPoints::kNone, false};
+    return true;
+  }
   /// Finds what a sphere at `from` would see, beside where one of ours is. Returns false if that is not
   /// known.
   bool nearestBeside(const NearSphere& near_sphere, const btVector3& from, const btVector3& shift,

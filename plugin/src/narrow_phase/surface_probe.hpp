@@ -89,6 +89,9 @@ class SurfaceProbe {
   /// Finds the nearest point of A's surface, or of B's. Returns false if it is further from `place` than
   /// `max_distance` [m], or not known, as by default.
   virtual bool nearestWall(bool, const btVector3&, btScalar, SurfaceQueries::Nearest&) const { return false; }
+  /// Finds where a point that goes along `way` [m] comes from outside to A's surface, or to B's: the part of
+  /// the way, 0 to 1; 2 if it does not; -1 if that is not known.
+  virtual btScalar meets(bool of_a, const btVector3& from, const btVector3& way) const = 0;
   struct Bends {
     Bend a, b;
   };

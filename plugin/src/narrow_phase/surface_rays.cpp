@@ -87,6 +87,17 @@ bool enterSolid(const PlacedPacking& body, const btVector3& from, const btVector
   return true;
 }
 
+btScalar meetSolid(const PlacedPacking& body, const btVector3& from, const btVector3& way) {
+  const btScalar length = way.length();
+  if (!(length > 0)) return 2;
+  const Ray ray(body, from, way / length, length);
+  SurfaceQueries::Hit hit;
+  const bool enters =
+      body.shape().surfaceQueries().cast(ray.from, ray.direction, ray.length, -ray.direction, hit) &&
+      hit.face.dot(ray.direction) < 0;
+  return enters ? hit.distance / ray.length : btScalar(2);
+}
+
 bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar depth,
                btScalar size, SurfacePoint& point) {
   const btScalar sunk = kSunk * size, inside = btMax(sunk, depth) + body.margin;

@@ -32,6 +32,10 @@ bool leaveSolid(const PlacedPacking& body, const btVector3& from, const btVector
 bool enterSolid(const PlacedPacking& body, const btVector3& from, const btVector3& direction, btScalar length,
                 std::size_t known, const btVector3& opposed, SurfacePoint& point);
 
+/// Finds where a point that goes along `way` [m] comes from outside to the solid, without its margin: the
+/// part of the way, 0 to 1; 2 if it does not.
+btScalar meetSolid(const PlacedPacking& body, const btVector3& from, const btVector3& way);
+
 /// Finds the face with about this normal that a place `at` is on. Returns false if there is none, or if the
 /// solid does not reach from there down to `depth` [m]. `size` [m] is that of the spheres there.
 bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar depth,

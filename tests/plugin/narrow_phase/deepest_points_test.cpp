@@ -34,6 +34,7 @@ const Relief kFlat = [](double, double) { return Height{0, 0, 0, 0}; };
 /// A lies below B: lines go up from each of the starts.
 class Reliefs : public SurfaceProbe {
  public:
+  btScalar meets(bool, const btVector3&, const btVector3&) const override { return -1; }
   /// `b`: seen from above, so that B is convex where it is.
   Reliefs(Relief a, Relief b, std::vector<btVector3> starts, std::vector<btScalar> reaches = {})
       : a_(std::move(a)), b_(std::move(b)), starts_(std::move(starts)), reaches_(std::move(reaches)) {

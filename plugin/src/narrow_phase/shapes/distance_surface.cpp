@@ -6,6 +6,14 @@
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// In lengths of the way: what is as near as this is met.
+constexpr btScalar kMetAt = btScalar(1e-4);
+/// Each of them squares the error, once it is small.
+constexpr int kMeetingSteps = 16;
+
+}  // namespace
 
 void DistanceSurface::findNearSpheres(const PlacedPacking& body, const btTransform& world,
                                       std::vector<NearSphere>& near_spheres) {
@@ -75,6 +83,26 @@ bool DistanceSurface::nearestTo(const PlacedPacking& body, const btTransform& wo
   near_sphere.straight = world.getBasis() * found.straight;
   near_sphere.aside.setZero();
   return true;
+}
+
+/// By Newton's method: along a line the distance from a convex shape is a convex function, so that a step
+/// from outside does not pass the first root.
+btScalar DistanceSurface::meets(const PlacedPacking& body, const btTransform& world, const btVector3& from,
+                                const btVector3& way) {
+  if (!isConvex()) return -1;
+  const btVector3 start = world.invXform(body.origin() + from), along = way * world.getBasis();
+  const btScalar near = kMetAt * along.length();
+  btScalar part = 0;
+  for (int i = 0; i < kMeetingSteps; ++i) {
+    Nearest found;
+    if (!nearest(start + along * part, found)) return -1;
+    if (found.distance < near) return part;
+    const btScalar nearer = -found.normal.dot(along);
+    if (!(nearer > 0)) return 2;
+    part += found.distance / nearer;
+    if (part > 1) return 2;
+  }
+  return -1;
 }
 
 bool DistanceSurface::facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) {

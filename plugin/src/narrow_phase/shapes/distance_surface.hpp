@@ -20,6 +20,8 @@ class DistanceSurface : public ShapeSurface {
                   btScalar& distance) final;
   bool nearestTo(const PlacedPacking& body, const btTransform& world, const btVector3& place,
                  NearSphere& near_sphere) final;
+  btScalar meets(const PlacedPacking& body, const btTransform& world, const btVector3& from,
+                 const btVector3& way) final;
   bool facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) final;
 
  protected:
@@ -37,6 +39,8 @@ class DistanceSurface : public ShapeSurface {
   virtual bool nearest(const btVector3& p, Nearest& nearest) const = 0;
   /// Returns at most the distance of p, and cheaper; only its comparison with a radius matters.
   virtual btScalar lowerBound(const btVector3& p) const;
+  /// Returns true if it is known to be convex.
+  virtual bool isConvex() const { return true; }
   /// Returns the shape as a polyhedron, or null if it is none.
   virtual const btPolyhedralConvexShape* polyhedron() const { return nullptr; }
   /// Returns true if the bounding box of a shape is what it was at the last call. What moves less than the

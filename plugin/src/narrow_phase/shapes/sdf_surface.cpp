@@ -11,6 +11,7 @@ class SdfSurface : public DistanceSurface {
   explicit SdfSurface(const btSdfCollisionShape& sdf) : sdf_(sdf) {}
 
  private:
+  bool isConvex() const override { return false; }
   bool nearest(const btVector3& p, Nearest& nearest) const override {
     // queryPoint is const in all but its declaration.
     if (!const_cast<btSdfCollisionShape&>(sdf_).queryPoint(p, nearest.distance, nearest.normal)) return false;

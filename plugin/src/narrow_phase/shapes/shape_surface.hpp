@@ -71,6 +71,13 @@ class ShapeSurface {
     return false;
   }
 
+  /// Finds where a point, `from` relative to body.origin(), that goes along `way` [m] comes from outside to
+  /// the surface: the part of the way, 0 to 1; 2 if it does not; -1 if that is not known, as by default.
+  virtual btScalar meets(const PlacedPacking&, const btTransform&, const btVector3& /*from*/,
+                         const btVector3& /*way*/) {
+    return -1;
+  }
+
   /// Gives its flat faces, those near the spheres found last at least, relative to body.origin(). Returns
   /// false if it has none.
   virtual bool facets(const PlacedPacking&, const btTransform&, SharpEdges&) { return false; }

@@ -150,17 +150,17 @@ class TriangleSurface : public ShapeSurface {
 
   bool depthOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
                const btVector3& out, btScalar most, btScalar& depth) override {
-    const btVector3 from = world.invXform(body.origin() + place), way = out * world.getBasis() * most;
-    FirstTriangle first(from, from + way);
-    btVector3 min = from, max = from;
-    min.setMin(from + way);
-    max.setMax(from + way);
-    {
-      const std::unique_lock<std::mutex> lock = turnToRead();
-      mesh_.processAllTriangles(&first, min, max);
-    }
+    const btVector3 way = out * world.getBasis() * most;
+    const FirstTriangle first = firstOn(world.invXform(body.origin() + place), way);
     depth = first.m_hitFraction * most;
     return first.normal.dot(way) * btScalar(side_) > 0;
+  }
+
+  btScalar meets(const PlacedPacking& body, const btTransform& world, const btVector3& from,
+                 const btVector3& way) override {
+    const btVector3 along = way * world.getBasis();
+    const FirstTriangle first = firstOn(world.invXform(body.origin() + from), along);
+    return first.normal.dot(along) * btScalar(side_) < 0 ? first.m_hitFraction : btScalar(2);
   }
 
   bool facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) override {
@@ -178,6 +178,17 @@ class TriangleSurface : public ShapeSurface {
     std::unique_lock<std::mutex> lock(mutex, std::defer_lock);
     if (!sharable_) lock.lock();
     return lock;
+  }
+
+  /// Of the mesh, as places are.
+  FirstTriangle firstOn(const btVector3& from, const btVector3& way) const {
+    FirstTriangle first(from, from + way);
+    btVector3 min = from, max = from;
+    min.setMin(from + way);
+    max.setMax(from + way);
+    const std::unique_lock<std::mutex> lock = turnToRead();
+    mesh_.processAllTriangles(&first, min, max);
+    return first;
   }
 
   void collect(const PlacedPacking& body, const btTransform& world,

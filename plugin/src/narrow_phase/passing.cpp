@@ -1,0 +1,54 @@
+#include "narrow_phase/passing.hpp"
+
+#include <algorithm>
+
+#include "common/contact_tolerances.hpp"
+
+namespace innersphere {
+inline namespace INNERSPHERE_BULLET_PRECISION {
+namespace {
+
+/// Whether a point that goes along `way` meets A, or B, and does not only glide along beside an edge of it,
+/// no deeper than `graze`.
+bool meets(const SurfaceProbe& probe, bool of_a, const btVector3& from, const btVector3& way,
+           btScalar graze) {
+  const btScalar part = probe.meets(of_a, from, way);
+  if (part > 1) return false;
+  if (part < 0) return true;
+  const btVector3 direction = way.normalized();
+  SurfaceQueries::Nearest wall;
+  const auto isShallow = [&](const btVector3& place) {
+    return probe.nearestWall(of_a, place, way.length(), wall) && wall.distance > -graze;
+  };
+  const bool glides = isShallow(from + way * part + direction * (2 * graze)) &&
+                      btFabs(wall.normal.dot(direction)) < kBesideCosine && isShallow(from + way);
+  return !glides;
+}
+
+bool passes(const SurfaceProbe& probe, const StepAhead& step, const WeightedPoint& found) {
+  const ContactPoint& point = found.point;
+  const btScalar graze = kGrazing * step.size;
+  if (!(point.depth < graze) || found.kind == WeightedPoint::Kind::crossing) return false;
+  const btVector3 velocity = step.motion.velocityAt(point.on_b);
+  const btScalar approach = velocity.dot(point.normal), ahead = kPassingSteps * step.time_step;
+  const bool touches = point.depth >= 0;
+  if (!(approach * ahead > (touches ? graze : -point.depth))) return false;
+  // Ways begin outside.
+  const btScalar back = touches ? (point.depth + graze) / approach : btScalar(0);
+  const btVector3 before = velocity * -back, way = velocity * (back + ahead);
+  const btVector3 on_a = point.on_b + point.normal * point.depth + found.across;
+  return !meets(probe, false, on_a + before, way, graze) &&
+         !meets(probe, true, point.on_b - before, -way, graze);
+}
+
+}  // namespace
+
+void dropPassing(const SurfaceProbe& probe, const StepAhead& step, std::vector<WeightedPoint>& found) {
+  if (step.motion.isSwept()) return;
+  found.erase(std::remove_if(found.begin(), found.end(),
+                             [&](const WeightedPoint& point) { return passes(probe, step, point); }),
+              found.end());
+}
+
+}  // namespace INNERSPHERE_BULLET_PRECISION
+}  // namespace innersphere

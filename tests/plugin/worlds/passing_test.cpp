@@ -1,0 +1,114 @@
+// Bodies that pass each other do not touch, however near: what goes past a ledge falls freely, and what
+// slides from one tile of a floor to the next is not held up by its side.
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "innersphere/solids.hpp"
+#include "innersphere/substep_solver.hpp"
+#include "named_packings.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+constexpr btScalar kTile = 1, kCube = btScalar(0.6);  // [m] edges
+constexpr btScalar kGravity = btScalar(9.81);
+
+std::shared_ptr<btCollisionShape> cube(bool packing, btScalar edge) {
+  const btVector3 half(edge / 2, edge / 2, edge / 2);
+  if (!packing) return std::make_shared<btBoxShape>(half);
+  return makePackedShape(*makeBox({double(edge), double(edge), double(edge)}), 256);
+}
+
+struct Case {
+  bool substeps, ground, body;  // which are packings
+  double rate, beside;          // [m]
+};
+
+std::string nameOf(const testing::TestParamInfo<Case>& info) {
+  const Case& c = info.param;
+  return std::string(c.substeps ? "Substeps" : "Bullet") + (c.body ? "Packing" : "Box") + "On" +
+         (c.ground ? "Packing" : "Box") + std::to_string(int(c.rate)) + "By" +
+         std::to_string(int(std::lround(1e4 * c.beside)));
+}
+
+struct World : TestWorld {
+  explicit World(bool substeps) {
+    if (substeps) world.setConstraintSolver(&substep_solver);
+    PackingCollisionAlgorithm::prepareWorld(world);
+  }
+  ~World() { world.setConstraintSolver(&solver); }
+  SubstepSolver substep_solver;
+};
+
+class Passing : public testing::TestWithParam<Case> {};
+
+TEST_P(Passing, ACubeFallsFreelyBesideALedge) {
+  const Case& c = GetParam();
+  World world(c.substeps);
+  world.add(cube(c.ground, kTile), 0, btVector3(0, 0, -kTile / 2));
+  const btScalar beside = (kTile + kCube) / 2 + btScalar(c.beside);
+  btRigidBody& body = world.add(cube(c.body, kCube), 1, btVector3(beside, btScalar(0.13), kCube / 2 + 1));
+  const double seconds = 0.6;
+  world.run(seconds, 1 / c.rate);
+  ASSERT_LT(body.getWorldTransform().getOrigin().z(), 0);
+  EXPECT_NEAR(body.getLinearVelocity().z(), -kGravity * seconds, 0.001);
+  EXPECT_LT(body.getAngularVelocity().length(), 0.001);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().x(), beside, 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Ledge, Passing,
+    testing::Values(Case{true, false, true, 60, 0.0005}, Case{false, false, true, 60, 0.02},
+                    Case{true, false, true, 240, 0.004}, Case{false, false, true, 240, 0.0005},
+                    Case{true, true, false, 60, 0.004}, Case{false, true, false, 120, 0.002},
+                    Case{true, true, true, 60, 0.01}, Case{false, true, true, 240, 0.002}),
+    nameOf);
+
+class Tiles : public testing::TestWithParam<Case> {};
+
+TEST_P(Tiles, HoldNothingUp) {
+  const Case& c = GetParam();
+  World world(c.substeps);
+  const btScalar lower = btScalar(c.beside);
+  world.add(cube(c.ground, kTile), 0, btVector3(0, 0, -kTile / 2)).setFriction(0);
+  world.add(cube(c.ground, kTile), 0, btVector3(kTile, 0, -kTile / 2 - lower)).setFriction(0);
+  btRigidBody& body = world.add(cube(c.body, kCube), 1, btVector3(0, btScalar(0.13), kCube / 2));
+  body.setFriction(0);
+  body.setActivationState(DISABLE_DEACTIVATION);
+  world.run(0.3, 1 / c.rate);
+  const btScalar speed = 4;
+  body.setLinearVelocity(btVector3(speed, 0, 0));
+  world.run(1.1 * kTile / speed, 1 / c.rate);
+  EXPECT_NEAR(body.getLinearVelocity().x(), speed, 0.01 * speed);
+  EXPECT_LT(body.getWorldTransform().getOrigin().z(), kCube / 2 + btScalar(0.001));
+}
+
+INSTANTIATE_TEST_SUITE_P(Floor, Tiles,
+                         testing::Values(Case{true, false, true, 60, 0}, Case{false, false, true, 60, 0.002},
+                                         Case{true, false, true, 240, 0.002},
+                                         Case{false, false, true, 240, 0}, Case{true, true, false, 60, 0.002},
+                                         Case{false, true, true, 120, 0}, Case{true, true, true, 240, 0},
+                                         Case{false, true, true, 60, 0.01}),
+                         nameOf);
+
+/// What bounces off a ledge still does: as far on it as a body's depth at rest, it is held.
+TEST(Passing, ACubeIsHeldByTheEdgeOfALedge) {
+  for (const bool substeps : {false, true}) {
+    for (const double rate : {60.0, 240.0}) {
+      World world(substeps);
+      world.add(cube(false, kTile), 0, btVector3(0, 0, -kTile / 2));
+      const btScalar over = btScalar(0.01);
+      btRigidBody& body =
+          world.add(cube(true, kCube), 1, btVector3((kTile + kCube) / 2 - over, 0, kCube / 2 + 1));
+      world.run(0.6, 1 / rate);
+      EXPECT_GT(body.getAngularVelocity().y(), 1) << substeps << rate;  // it tips off
+    }
+  }
+}
+
+}  // namespace
+}  // namespace innersphere::test
