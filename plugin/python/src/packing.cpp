@@ -57,8 +57,17 @@ class PythonProgress {
     }
   }
 
-  void rethrow() const {
-    if (raised_) std::rethrow_exception(raised_);
+  /// Does long work without the GIL: `work` gets this for its progress. Throws what Python raised, and what
+  /// `work` throws.
+  template <typename Work>
+  auto run(const Work& work) {
+    try {
+      const nb::gil_scoped_release release;
+      return work(std::ref(*this));
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::cancelled && raised_) std::rethrow_exception(raised_);
+      throw;
+    }
   }
 
  private:
@@ -147,15 +156,9 @@ SharedPacking packWith(const Mesh& mesh, const std::string& name, std::int64_t s
   options.cache_folder = cache.string();
   std::vector<std::string> notices;
   options.notice = [&](const std::string& message) { notices.push_back(message); };
-  PythonProgress python(std::move(progress));
-  SharedPacking result;
-  try {
-    const nb::gil_scoped_release release;
-    result = share(packMesh(mesh, name, options, std::ref(python)));
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::cancelled) python.rethrow();
-    throw;
-  }
+  SharedPacking result = PythonProgress(std::move(progress)).run([&](const Progress& told) {
+    return share(packMesh(mesh, name, options, told));
+  });
   for (const std::string& notice : notices) {
     if (PyErr_WarnEx(PyExc_RuntimeWarning, notice.c_str(), 1) != 0) throw nb::python_error();
   }
@@ -193,26 +196,20 @@ nb::tuple spheresOf(const Covering& covering) {
 }
 
 nb::tuple coverPacking(const SharedPacking& self, double resolution) {
-  Covering covering;
-  {
-    const nb::gil_scoped_release release;
-    CoverOptions options;
-    options.resolution = resolution;
-    covering = coverSurface(spheresAndSurface(self), options);
-  }
-  return spheresOf(covering);
+  CoverOptions options;
+  options.resolution = resolution;
+  return spheresOf(PythonProgress(nb::none()).run([&](const Progress& told) {
+    return coverSurface(spheresAndSurface(self), options, told);
+  }));
 }
 
 nb::tuple clumpOfPacking(const SharedPacking& self, double outside_weight) {
-  Covering clump;
-  {
-    const nb::gil_scoped_release release;
-    ClumpOptions options;
-    options.spheres = self.count;
-    options.outside_weight = outside_weight;
-    clump = clumpSurface(spheresAndSurface(self), options);
-  }
-  return spheresOf(clump);
+  ClumpOptions options;
+  options.spheres = self.count;
+  options.outside_weight = outside_weight;
+  return spheresOf(PythonProgress(nb::none()).run([&](const Progress& told) {
+    return clumpSurface(spheresAndSurface(self), options, told);
+  }));
 }
 
 SharedPacking readShared(const std::filesystem::path& path) {
