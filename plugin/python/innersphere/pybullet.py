@@ -192,12 +192,14 @@ class Simulation:
             if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
                 raise TypeError(f"{name} is {value!r}; it must be an integer")
         _check_connected(self.client)
-        bodies = [
-            p.getBodyUniqueId(i, physicsClientId=self.client)
-            for i in range(p.getNumBodies(physicsClientId=self.client))
-        ]
-        if body not in bodies:
-            raise PyBulletError(f"there is no body {body} in client {self.client}; there are {bodies}")
+        try:
+            p.getBodyInfo(body, physicsClientId=self.client)
+        except (p.error, OverflowError):
+            bodies = [
+                p.getBodyUniqueId(i, physicsClientId=self.client)
+                for i in range(p.getNumBodies(physicsClientId=self.client))
+            ]
+            raise PyBulletError(f"there is no body {body} in client {self.client}; there are {bodies}") from None
         links = p.getNumJoints(body, physicsClientId=self.client)
         if not -1 <= link < links:
             raise PyBulletError(f"body {body} has no link {link}; its links are -1 (the base) to {links - 1}")
@@ -298,9 +300,16 @@ class Simulation:
             raise TypeError(f"packing is a {type(packing).__name__}; it must be an innersphere.Packing")
         position, orientation = _pose(position, orientation, "the packing")
         self._check_link(body, link)
-        inertial = p.getDynamicsInfo(body, link, physicsClientId=self.client)[3:5]
+        if self._is_rigid(body):  # getDynamicsInfo() leaves out where its centre of mass is
+            inertial = self._run(_core.pybullet.inertial_frame, body)
+        else:
+            inertial = p.getDynamicsInfo(body, link, physicsClientId=self.client)[3:5]
         mesh_to_body = p.multiplyTransforms(*p.invertTransform(*inertial), position, orientation)
         self._run(_core.pybullet.set_shape, body, link, packing, mesh_to_body)
+
+    def _is_rigid(self, body: int) -> bool:
+        """Whether a body is in maximal coordinates."""
+        return bool(p.getDynamicsInfo(body, -1, physicsClientId=self.client)[10] == 1)  # btMultiBody: 2
 
     def pack_all(self, body: int, **options: Any) -> dict[int, _core.Packing]:
         """Gives every link of a body that collides with one mesh a packing of it, mirrored and stretched as the link has it.
