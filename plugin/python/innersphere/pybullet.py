@@ -14,6 +14,7 @@ of PyBullet is used as before: only the contacts of bodies with a packing are in
 
 from __future__ import annotations
 
+import hashlib
 import importlib.metadata
 import math
 import os
@@ -36,6 +37,10 @@ contact_dtype = np.dtype(
     + [(name, np.float64, 3) for name in ("centroid", "area", "force", "torque")]
 )
 """The type of what Simulation.overlaps() returns."""
+
+# Vertices and indices of surfaces that were drawn. createVisualShape() never lets go of its lists: for the same surface it
+# gets the same ones, so that a program that makes bodies over and over does not grow.
+_lists: dict[bytes, tuple[list[list[float]], list[int]]] = {}
 
 _AT_ORIGIN = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
@@ -139,6 +144,8 @@ class Simulation:
         self.client = client
         self._plugin: int | None = plugin
         self._maximal_coordinates = maximal_coordinates
+        self._visuals: dict[bytes, int] = {}  # of surfaces
+        self._visuals_of = 0  # the number of the world that they are in
 
     def _run(self, prepare: Any, *arguments: Any) -> Any:
         """Has PyBullet's server do a job in its own thread, and returns what came of it."""
@@ -269,14 +276,19 @@ class Simulation:
         most_vertices = 100_000  # that PyBullet takes at once
         if len(packing.faces) == 0 or len(packing.vertices) > most_vertices or packing.faces.size > most_vertices:
             return -1
-        return int(
-            p.createVisualShape(
-                p.GEOM_MESH,
-                vertices=(packing.vertices + packing.origin).tolist(),
-                indices=packing.faces.ravel().tolist(),
-                physicsClientId=self.client,
+        vertices = packing.vertices + packing.origin
+        surface = hashlib.blake2b(vertices.tobytes() + packing.faces.tobytes(), digest_size=16).digest()
+        # A reset takes all shapes away.
+        world = self._run(_core.pybullet.world_number)
+        if self._visuals_of != world:
+            self._visuals, self._visuals_of = {}, world
+        if surface not in self._visuals:
+            if surface not in _lists:
+                _lists[surface] = vertices.tolist(), packing.faces.ravel().tolist()
+            self._visuals[surface] = p.createVisualShape(
+                p.GEOM_MESH, vertices=_lists[surface][0], indices=_lists[surface][1], physicsClientId=self.client
             )
-        )
+        return self._visuals[surface]
 
     def set_shape(
         self,
