@@ -16,8 +16,10 @@ from __future__ import annotations
 
 import hashlib
 import importlib.metadata
+import inspect
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from typing import Any, Literal
 
@@ -329,22 +331,63 @@ class Simulation:
         options: those of innersphere.pack(): spheres, cache, repair, progress. With cache, each mesh is packed only
             once for each of its scales.
 
-        Returns the packings by link; links of other shapes stay as they are. Raises what pack() and set_shape() raise.
-        It packs all meshes first: on an error nothing has changed.
+        Returns the packings by link; links of other shapes stay as they are. A warning names the links with meshes that
+        stay so, and why: they have several shapes, as where fixed joints were merged, have a packing already, or a mesh
+        of which PyBullet keeps no file, as of createCollisionShape(); and it says if no link has a mesh at all. Raises
+        what pack() and set_shape() raise, and PyBulletError for a body in maximal coordinates, of which PyBullet does
+        not tell the shapes. It packs all meshes first: on an error nothing has changed.
         """
+        unknown = sorted(set(options) - (set(inspect.signature(pack).parameters) - {"mesh", "scale"}))
+        if unknown:
+            raise TypeError(f"pack_all() has no option {unknown[0]!r}; options are those of innersphere.pack() but scale")
         self._check_link(body, -1)
+        if self._is_rigid(body):
+            raise PyBulletError(
+                f"body {body} is in maximal coordinates, of which PyBullet tells no shapes: give it a packing by "
+                "set_shape(), or load it without useMaximalCoordinates"
+            )
+        self._run(_core.pybullet.world_number)  # so that it is attached
         found: dict[int, tuple[_core.Packing, Any]] = {}
+        left = []
         for link in range(-1, p.getNumJoints(body, physicsClientId=self.client)):
-            shapes = p.getCollisionShapeData(body, link, physicsClientId=self.client)
-            meshes = [shape for shape in shapes if shape[2] == p.GEOM_MESH]
-            if len(meshes) != 1 or len(shapes) != 1:
+            shape, why = self._mesh_of(body, link)
+            if why:
+                left.append(f"link {link} ({self._name_of(body, link)}) {why}")
+            if shape is None:
                 continue
-            _, _, _, scale, file, position, orientation = meshes[0][:7]
+            _, _, _, scale, file, position, orientation = shape[:7]
             self._run(_core.pybullet.check_link, body, link)
             found[link] = pack(file.decode(), scale=scale, **options), (position, orientation)
         for link, (packing, frame) in found.items():
             self._run(_core.pybullet.set_shape, body, link, packing, frame)
+        if left:
+            warnings.warn(f"pack_all() leaves of body {body} as they are: {'; '.join(left)}", stacklevel=2)
+        elif not found:
+            warnings.warn(f"pack_all() changes nothing: no link of body {body} collides with a mesh", stacklevel=2)
         return {link: packing for link, (packing, _) in found.items()}
+
+    def _mesh_of(self, body: int, link: int) -> tuple[Any, str]:
+        """What a link collides with if that is one mesh of a file; else why it is not, or nothing if there is no mesh."""
+        try:
+            self._run(_core.pybullet.mesh_pose, body, link)
+        except PyBulletError:
+            pass
+        else:
+            return None, "has a packing already"
+        shapes = p.getCollisionShapeData(body, link, physicsClientId=self.client)
+        meshes = [shape for shape in shapes if shape[2] == p.GEOM_MESH]
+        if not meshes:
+            return None, ""
+        if len(shapes) > 1:
+            return None, f"has {len(shapes)} shapes, {len(meshes)} of them meshes: join them in one file"
+        if meshes[0][4] == b"unknown_file":
+            return None, "has a mesh without the name of its file: give it a packing by set_shape()"
+        return meshes[0], ""
+
+    def _name_of(self, body: int, link: int) -> str:
+        if link < 0:
+            return str(p.getBodyInfo(body, physicsClientId=self.client)[0].decode(errors="replace"))
+        return str(p.getJointInfo(body, link, physicsClientId=self.client)[12].decode(errors="replace"))
 
     def mesh_pose(self, body: int, link: int = -1) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Returns where the mesh of a link's packing is: position [m] and quaternion x y z w.
