@@ -37,6 +37,30 @@ def test_boxes_and_an_octagon():
     np.testing.assert_allclose(innersphere.exact_overlap(centred, centred, None, both)["volume"], 2 * np.sqrt(2) - 2)
 
 
+def joined(*meshes):
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
+    return np.concatenate([m[0] for m in meshes]), np.concatenate([m[1] + s for m, s in zip(meshes, starts)])
+
+
+def test_what_shells_share_counts_once():
+    pytest.importorskip("manifold3d")
+    around = 9 * CUBE[0] - 4, CUBE[1]
+    halves = joined(CUBE, (CUBE[0] + [0.5, 0, 0], CUBE[1]))  # flush
+    cavity = 0.5 * CUBE[0] + 0.25, CUBE[1][:, ::-1]
+    two_hollow = joined(CUBE, cavity, (CUBE[0] + [0.4, 0, 0], CUBE[1]), (cavity[0] + [0.4, 0, 0], cavity[1]))
+    for mesh, volume in (
+        (halves, 1.5),
+        (joined(CUBE, (CUBE[0] + [1, 0, 0], CUBE[1])), 2),
+        (joined(CUBE, (0.5 * CUBE[0] + 0.75, CUBE[1])), 1.125 - 0.25**3),
+        (joined(CUBE, cavity), 0.875),
+        (two_hollow, 1.4 - (0.15 + 0.1 + 0.15) * 0.5**2),  # walls fill cavities, cavities that meet stay
+    ):
+        assert innersphere.exact_overlap(around, mesh)["volume"] == pytest.approx(volume)
+    packing = innersphere.pack(halves, spheres=50, overlap_errors=False)
+    assert innersphere.exact_overlap(around, packing)["volume"] == pytest.approx(1.5)
+    assert any("shells share" in warning for warning in packing.warnings)
+
+
 def test_packings_and_solids(box):
     pytest.importorskip("manifold3d")
     pose = ([0.5, 0.5, 0.5], [0, 0, 0, 1])

@@ -25,13 +25,14 @@ def poses_of(seed):
     return (places[0] + [0.1, 0, 0], q[0]), (places[1] + [0.5, 0.9, 0.7], q[1])
 
 
+@pytest.mark.parametrize("estimator", ["volume_true", "surface"])
 @pytest.mark.parametrize("what", ["energy", "volume"])
-def test_by_finite_differences(box, what):
+def test_by_finite_differences(box, what, estimator):
     query = innersphere.Query("cpu")
     for seed in range(3):
         poses = poses_of(seed)
-        value, gradients = value_and_gradients(what, query, box, box, *poses)
-        assert value == query.overlap(box, box, *poses)[what] > 0
+        value, gradients = value_and_gradients(what, query, box, box, *poses, estimator=estimator)
+        assert value == query.overlap(box, box, *poses, estimator=estimator)[what] > 0
         for body in (0, 1):
             position, quaternion = poses[body]
             by_place, by_turn = gradients[2 * body : 2 * body + 2]
@@ -39,7 +40,7 @@ def test_by_finite_differences(box, what):
             def at(place, turn):
                 both = list(poses)
                 both[body] = (place, turn)  # noqa: B023
-                return query.overlap(box, box, *both)[what]
+                return query.overlap(box, box, *both, estimator=estimator)[what]
 
             measured = np.zeros(6)
             told = np.concatenate([by_place, np.zeros(3)])

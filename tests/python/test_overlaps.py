@@ -136,6 +136,10 @@ def test_expected_errors_are_those_of_the_file(tmp_path):
     assert innersphere.expected_error(packing, packing, shared, estimator="surface")["bound"][0, 0] == 0
     without_area = query.overlap(packing, packing, pose_b=moved(0.3, 0.2), want="volume")
     assert np.isnan(innersphere.expected_error(packing, packing, without_area)["mean"])
+    by_triangles = query.overlap(packing, packing, pose_b=np.stack([moved(0.3, 0.2), moved(50, 0)]), estimator="surface")
+    with pytest.raises(innersphere.InvalidArgumentError, match="name the estimator"):
+        innersphere.expected_error(packing, packing, by_triangles)
+    assert innersphere.expected_error(packing, packing, by_triangles, estimator="surface")["mean"][0] == 0
     with pytest.raises(TypeError):
         innersphere.expected_error(packing, packing, "much")
     for rows in ("raw", "volume_true"):  # areas cancel where a solid lies upon itself: depth does not tell

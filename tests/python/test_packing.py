@@ -256,6 +256,7 @@ def test_defaults_are_those_of_the_library():
         ((BOX_VERTICES.astype(str), BOX_FACES), TypeError, "vertices has the dtype <U"),
         ((BOX_VERTICES,), ValueError, "1 parts"),
         (7, TypeError, "int"),
+        (SimpleNamespace(geometry={}), TypeError, r"scene: scene.to_mesh\(\)"),
         ("no/such.obj", FileNotFoundError, "no/such.obj"),
     ],
 )

@@ -2,6 +2,7 @@
 
 import math
 import os
+import warnings
 
 import numpy as np
 import pytest
@@ -202,6 +203,175 @@ def test_mirrored_and_stretched_meshes_are_where_pybullet_has_them(client, tmp_p
     assert hit.sum() > 200
     np.testing.assert_allclose(after[hit], before[hit], atol=1e-5)
     assert (after[~hit] == 1).mean() > 0.99  # PyBullet's own misses a few
+
+
+L_SHAPE = prism(
+    [[0, 0], [0.3, 0], [0.3, 0.1], [0.1, 0.1], [0.1, 0.4], [0, 0.4]], [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], 0.05
+)
+
+
+@pytest.fixture(scope="module")
+def bracket():
+    """An L: no turn or mirror leaves it as it is."""
+    return innersphere.pack(L_SHAPE, spheres=100, overlap_errors=False)
+
+
+PLACE, TURN = [1.0, 2.0, 3.0], p.getQuaternionFromEuler([0.3, -0.2, 0.5])
+
+
+def assert_mesh_at(sim, body, place, turn):
+    """The pose that is told, and by rays from above the place of the mesh itself."""
+    got = sim.mesh_pose(body)
+    np.testing.assert_allclose(got[0], place, atol=2e-6)
+    assert abs(np.dot(got[1], turn)) == pytest.approx(1, abs=1e-6)  # PyBullet's own sums are in single precision
+    for (x, y), hit in (((0.2, 0.05), True), ((0.05, 0.3), True), ((0.2, 0.3), False)):
+        ends = [p.multiplyTransforms(place, turn, [x, y, z], [0, 0, 0, 1])[0] for z in (1, -1)]
+        fraction = p.rayTest(*ends, physicsClientId=sim.client)[0][2]
+        assert fraction == (pytest.approx(0.475, abs=1e-4) if hit else 1)
+
+
+@pytest.mark.parametrize("solver", ["bullet", "substep"])
+def test_bodies_in_maximal_coordinates_get_other_packings_in_place(client, bracket, solver):
+    sim = isp.attach(client, solver=solver)
+    body = sim.create_body(bracket, 1, PLACE, TURN, maximal_coordinates=True)
+    assert_mesh_at(sim, body, PLACE, TURN)
+    for part in (bracket[:20], bracket):
+        p.getAABB(body, physicsClientId=client)  # what PyBullet leaves of this was taken for a frame
+        sim.set_shape(body, part)
+        assert_mesh_at(sim, body, PLACE, TURN)
+
+
+@pytest.mark.parametrize("maximal", [False, True])
+def test_packings_are_where_a_urdf_has_its_link(client, bracket, tmp_path, maximal):
+    (tmp_path / "one.urdf").write_text(
+        """<robot name="one"><link name="base"><inertial><origin xyz="0.01 0.02 0.03" rpy="0.1 0.2 0.3"/>
+        <mass value="1"/><inertia ixx=".02" ixy="0" ixz="0" iyy=".03" iyz="0" izz=".04"/></inertial>
+        <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link></robot>"""
+    )
+    sim = isp.attach(client)
+    options = dict(useMaximalCoordinates=maximal, physicsClientId=client)
+    body = p.loadURDF(str(tmp_path / "one.urdf"), PLACE, TURN, **options)
+    sim.set_shape(body, bracket)
+    assert_mesh_at(sim, body, PLACE, TURN)
+    inside = [0.1, -0.2, 0.3], p.getQuaternionFromEuler([0.5, 0.4, 0.3])
+    sim.set_shape(body, bracket, -1, *inside)
+    assert_mesh_at(sim, body, *p.multiplyTransforms(PLACE, TURN, *inside))
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1, physicsClientId=client)
+    other = p.createMultiBody(1, shape, -1, [0, 0, 9], TURN, [0.1, 0.2, 0.3], UPRIGHT, **options)
+    sim.set_shape(other, bracket)
+    assert_mesh_at(sim, other, [0, 0, 9], TURN)
+
+
+def test_a_surface_is_drawn_by_one_shape(client, ring, bracket, monkeypatch):
+    draw, drawn = p.createVisualShape, []
+
+    def count(*arguments, **options):
+        drawn.append((options["vertices"], options["indices"]))
+        return draw(*arguments, **options)
+
+    monkeypatch.setattr(p, "createVisualShape", count)
+    sim = isp.attach(client)
+    for _ in range(3):  # PyBullet never lets go of the lists
+        bodies = [sim.create_body(one, 1) for one in (ring, bracket, ring[:50], bracket)]
+        for body, packing in zip(bodies, (ring, bracket, ring, bracket)):
+            (data,) = p.getVisualShapeData(body, physicsClientId=client)
+            assert data[2] == p.GEOM_MESH
+        p.removeBody(bodies[0], physicsClientId=client)
+        p.resetSimulation(physicsClientId=client)
+    assert len(drawn) == 6
+    for vertices, indices in drawn[2:]:
+        assert any(vertices is one[0] and indices is one[1] for one in drawn[:2])
+    np.testing.assert_allclose(drawn[0][0], ring.vertices, atol=1e-12)
+    isp.attach(client)  # in a new world, before the object that knows the shapes of the old one
+    sim.create_body(ring, 1)
+    assert len(drawn) == 7
+
+
+def links_robot(tmp_path):
+    """One mesh; two; a mesh and a box; a box: each in a link of its own."""
+    write_obj(tmp_path / "ring.obj", *torus_mesh(24, 12))
+    mesh, box = '<mesh filename="ring.obj"/>', '<box size="0.01 0.01 0.01"/>'
+    links = {"base": [mesh], "pair": [mesh, mesh], "mixed": [mesh, box], "plain": [box], "tip": [mesh]}
+    text = ""
+    for name, shapes in links.items():
+        collisions = "".join(f"<collision concave=\"yes\"><geometry>{shape}</geometry></collision>" for shape in shapes)
+        text += f"""<link name="{name}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0"
+            izz="1"/></inertial>{collisions}</link>"""
+    for parent, child, kind in (("base", "pair", "continuous"), ("pair", "mixed", "continuous"), ("mixed", "plain", "continuous"),
+                                ("plain", "tip", "continuous")):  # fmt: skip
+        text += f'<joint name="to_{child}" type="{kind}"><parent link="{parent}"/><child link="{child}"/></joint>'
+    (tmp_path / "robot.urdf").write_text(f'<robot name="links">{text}</robot>')
+    return str(tmp_path / "robot.urdf")
+
+
+def test_links_that_keep_their_meshes_are_named(client, tmp_path):
+    sim = isp.attach(client)
+    body = p.loadURDF(links_robot(tmp_path), useFixedBase=True, physicsClientId=client)
+    options = dict(spheres=20, overlap_errors=False, cache=tmp_path / "cache")
+    with pytest.raises(TypeError, match="no option 'sphers'"):
+        sim.pack_all(body, sphers=20)
+    with pytest.warns(UserWarning) as told:
+        assert list(sim.pack_all(body, **options)) == [-1, 3]
+    (first,) = told
+    assert first.filename == __file__
+    text = str(first.message)
+    assert f"body {body}" in text and "plain" not in text and "base" not in text and "tip" not in text
+    assert "link 0 (pair) has 2 shapes, 2 of them meshes" in text and "link 1 (mixed) has 2 shapes, 1 of" in text
+    with pytest.warns(UserWarning, match=r"link -1 \(base\) has a packing already.*link 3 \(tip\) has a packing already"):
+        assert sim.pack_all(body, **options) == {}
+
+    vertices = torus_mesh(24, 12)[0].tolist()
+    shape = p.createCollisionShape(p.GEOM_MESH, vertices=vertices, physicsClientId=client)
+    given = p.createMultiBody(1, shape, physicsClientId=client)
+    with pytest.warns(UserWarning, match="without the name of its file: .*set_shape"):
+        assert sim.pack_all(given, **options) == {}
+    with pytest.warns(UserWarning, match=f"no link of body {floor(client)} collides with a mesh"):
+        assert sim.pack_all(given + 1, **options) == {}
+    maximal = p.createMultiBody(1, shape, useMaximalCoordinates=True, physicsClientId=client)
+    with pytest.raises(isp.PyBulletError, match=f"body {maximal} is in maximal coordinates.*set_shape"):
+        sim.pack_all(maximal, **options)
+    with pytest.raises(isp.PyBulletError, match="no body 99 "):
+        sim.pack_all(99, **options)
+    with isp.attach(client) as other:
+        pass
+    with pytest.raises(isp.PyBulletError, match="detached"):
+        other.pack_all(given, **options)
+    sim = isp.attach(client)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        write_obj(tmp_path / "ring.obj", *torus_mesh(24, 12))
+        (tmp_path / "part.urdf").write_text(URDF)
+        part = p.loadURDF(str(tmp_path / "part.urdf"), [0, 0, 5], physicsClientId=client)
+        assert list(sim.pack_all(part, **options)) == [-1]  # its other link is a box
+
+
+def test_worlds_of_other_kinds_are_found_after_resets(client, ring):
+    sim = isp.attach(client)
+    for kind in (None, p.RESET_USE_DEFORMABLE_WORLD, None, p.RESET_USE_DEFORMABLE_WORLD):
+        for _ in range(3):
+            p.resetSimulation(*([] if kind is None else [kind]), physicsClientId=client)
+            body = sim.create_body(ring, MASS, [0, 0, 0.5], visual=-1)
+            floor(client)
+            p.setGravity(0, 0, -9.81, physicsClientId=client)
+            np.testing.assert_allclose(sim.mesh_pose(body)[0], [0, 0, 0.5], atol=1e-6)
+            assert len(sim.overlaps()) == 0
+            run(client, 0.5)
+            assert len(sim.overlaps()) == 1
+
+
+def test_a_restored_state_goes_on_the_same_after_set_shape(client, ring):
+    sim = isp.attach(client)
+    floor(client)
+    bodies = [sim.create_body(ring, MASS, [0.03 * i, 0, 0.3 + 0.2 * i], [0.2, 0.1, 0, math.sqrt(0.95)]) for i in range(3)]
+    run(client, 0.02)
+    state, ends = p.saveState(physicsClientId=client), []
+    for _ in range(3):
+        p.restoreState(state, physicsClientId=client)
+        for body in bodies:
+            sim.set_shape(body, ring)
+        run(client, 0.5)
+        ends.append([p.getBasePositionAndOrientation(body, physicsClientId=client) for body in bodies])
+    assert ends[0] == ends[1] == ends[2]
 
 
 def test_resets_and_removal(client, ring):

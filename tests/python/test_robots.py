@@ -2,8 +2,11 @@
 
 import importlib.util
 import math
+import os
 import shutil
+import signal
 import subprocess
+import threading
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -323,6 +326,32 @@ def test_clumps_overlap_and_come_near_to_the_solid(box, tmp_path):
         robots.spheres_of(box, cover=True, clump=True)
     with pytest.raises(innersphere.InvalidArgumentError, match="weight"):
         robots.spheres_of(box[:4], clump=True, outside_weight=0)
+
+
+@pytest.mark.parametrize("options", [dict(cover=True, resolution=2e-4), dict(clump=True)])
+def test_ctrl_c_ends_coverings_and_clumps(box, options):
+    handled, done = [], threading.Event()
+
+    def handle(*_):
+        handled.append(1)
+        if len(handled) == 3:  # those that come while the library is at work: of others only one is kept
+            raise KeyboardInterrupt
+
+    def send():
+        while len(handled) < 3 and not done.wait(0.02):
+            os.kill(os.getpid(), signal.SIGINT)
+
+    before = signal.signal(signal.SIGINT, handle)
+    sender = threading.Thread(target=send)
+    try:
+        sender.start()
+        with pytest.raises(KeyboardInterrupt):
+            robots.spheres_of(box, **options)
+            done.set()
+    finally:
+        done.set()
+        sender.join()
+        signal.signal(signal.SIGINT, before)
 
 
 def test_covering_needs_a_surface(ball):

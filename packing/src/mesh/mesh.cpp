@@ -1,5 +1,7 @@
 #include "innersphere/mesh.hpp"
 
+#include <cmath>
+
 #include "common/bounds.hpp"
 #include "innersphere/error.hpp"
 #include "mesh/mesh_clean.hpp"
@@ -133,6 +135,16 @@ void noteCuts(const Cuts& cuts, MeshReport& report) {
       "better fill");
 }
 
+void noteSharedPart(double part, MeshReport& report) {
+  constexpr double kTold = 1e-4;  // of the volume: samples tell no less
+  if (!(part > kTold)) return;
+  report.notes.push_back(
+      "shells share " + text(std::round(1e4 * part) / 100) +
+      " % of the volume: it counts once in volume and mass properties, which a grid then tells to a few "
+      "percent, and for each shell in queries by triangles (estimator 'surface'); a union in a mesh editor "
+      "makes all of them right");
+}
+
 }  // namespace
 
 std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshOptions& options,
@@ -189,6 +201,7 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
                                             text(solid->massProperties().volume) +
                                             " m^3); it is a sheet, give it a thickness in a mesh editor");
   }
+  noteSharedPart(solid->sharedPart(), report);
   return solid;
 }
 

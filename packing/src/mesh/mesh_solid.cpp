@@ -30,6 +30,7 @@ MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once, cons
       beside_(findBeside(mesh_, touched, count_once, tree_, winding_)) {
   for (const Vec3d& v : mesh_.vertices) extend(bounds_, v);
   Moments moments = momentsOf(mesh_);
+  const double all_shells = moments.volume;
   if (count_once) {
     // The divergence theorem integrates the winding number; the solid counts as 1 where that exceeds 1/2.
     // Within its distance from the surface the number around a point does not change.
@@ -53,6 +54,7 @@ MeshSolid::MeshSolid(Mesh closed, const std::string& name, bool count_once, cons
     }));
   }
   mass_ = moments.massProperties();
+  if (mass_.volume > 0) shared_part_ = (all_shells - mass_.volume) / mass_.volume;
 }
 
 ClosestPoint MeshSolid::closestPoint(const Vec3d& p, double cutoff) const {

@@ -28,6 +28,8 @@ class MeshSolid : public Solid {
   bool contains(const Vec3d& p, const Triangle& nearest) const;
   Bounds bounds() const override { return bounds_; }
   MassProperties massProperties() const override { return mass_; }
+  /// The part of the volume that shells count more than once, as far as samples tell; 0 without `count_once`.
+  double sharedPart() const { return shared_part_; }
   Mesh surface() const override { return mesh_; }
   std::string name() const override { return name_; }
   std::string hash() const override;
@@ -43,6 +45,7 @@ class MeshSolid : public Solid {
   WindingTree winding_;
   std::vector<BesideTriangle> beside_;
   MassProperties mass_;
+  double shared_part_ = 0;
 };
 
 }  // namespace innersphere

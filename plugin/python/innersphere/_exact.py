@@ -21,7 +21,8 @@ def exact_overlap(a: Any, b: Any, pose_a: Any = None, pose_b: Any = None) -> NDA
 
     It takes milliseconds a pose where a query takes microseconds. Needs Manifold (pip install manifold3d).
 
-    a, b: closed meshes, as pack() takes them, or packings, whose surface is in single precision.
+    a, b: closed meshes, as pack() takes them, or packings, whose surface is in single precision. What their shells share
+        counts once.
     pose_a, pose_b: as Query.overlap() takes them.
 
     Returns a structured array of exact_dtype, of the shape of the poses:
@@ -65,7 +66,22 @@ def _manifold(manifold3d: Any, mesh: Any, name: str) -> Any:
         vertices, faces = mesh.vertices + mesh.origin, mesh.faces
     else:
         vertices, faces = _core.surface_of_mesh(triangles_of(mesh, 1.0), name)
-    solid = manifold3d.Manifold(manifold3d.Mesh64(np.ascontiguousarray(vertices, np.float64), faces.astype(np.uint64)))
+    whole = _manifold_of_shells(manifold3d, vertices, faces, name)
+    # Manifold counts what shells share once for each of them: bodies are found, with their cavities, and united.
+    shells = [shell.to_mesh64() for shell in whole.decompose()]
+    if len(shells) == 1:
+        return whole
+    corners = [np.asarray(shell.vert_properties)[:, :3] for shell in shells]
+    first = np.cumsum([0, *map(len, corners)])
+    rows = [np.asarray(shell.tri_verts).astype(np.int64) + start for shell, start in zip(shells, first)]
+    bodies = _core.bodies_of(np.ascontiguousarray(np.concatenate(corners)), np.concatenate(rows))
+    parts = [_manifold_of_shells(manifold3d, *body, name) for body in bodies]
+    return manifold3d.Manifold.batch_boolean(parts, manifold3d.OpType.Add)
+
+
+def _manifold_of_shells(manifold3d: Any, vertices: Any, faces: Any, name: str) -> Any:
+    mesh = manifold3d.Mesh64(np.ascontiguousarray(vertices, np.float64), faces.astype(np.uint64))
+    solid = manifold3d.Manifold(mesh)
     if solid.status() != manifold3d.Error.NoError:
         raise InvalidArgumentError(f"Manifold does not take the surface of {name}: {solid.status().name}")
     return solid

@@ -22,12 +22,13 @@ def value_and_gradients(
     A pose has two arrays (positions, quaternions), one (matrices) or none. Gradients have the shape of the result before
     that of a single pose. They are those along rotations: steps off unit quaternions and orthogonal matrices change
     nothing. what: "energy" has force and torque for its gradient; "volume" has the area, which goes on where
-    the volume ends at that of the smaller solid.
+    the volume ends at that of the smaller solid. With estimator="surface" both are the same.
     """
     got = np.asarray(query.overlap(a, b, pose_a, pose_b, **options))
     (place_a, turn_a), (place_b, _) = parts_of_pose(pose_a, "pose_a"), parts_of_pose(pose_b, "pose_b")
     arm = np.broadcast_to(place_b - place_a, (*got.shape, 3))
-    if what == "energy":
+    # "surface" has no energy of lenses: its force and torque are of the volume.
+    if what == "energy" or options.get("estimator") == "surface":
         force, torque = got["force"], got["torque"]
     else:
         force = got["area"]

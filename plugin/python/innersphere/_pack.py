@@ -135,9 +135,10 @@ def _evenly_scaled(mesh: Any, scale: float) -> _core.Mesh:
     elif hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
         vertices, faces = mesh.vertices, mesh.faces
     else:
+        of_scene = "; join the meshes of a scene: scene.to_mesh()" if hasattr(mesh, "geometry") else ""
         raise TypeError(
             f"mesh is of the type {type(mesh).__name__}; it must be a path, a tuple of vertices and faces, or an "
-            "object that has both"
+            f"object that has both{of_scene}"
         )
     vertices = np.ascontiguousarray(as_float64(vertices, "vertices") * scale)
     faces = as_indices(faces, "faces")

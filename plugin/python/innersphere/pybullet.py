@@ -14,9 +14,12 @@ of PyBullet is used as before: only the contacts of bodies with a packing are in
 
 from __future__ import annotations
 
+import hashlib
 import importlib.metadata
+import inspect
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from typing import Any, Literal
 
@@ -36,6 +39,10 @@ contact_dtype = np.dtype(
     + [(name, np.float64, 3) for name in ("centroid", "area", "force", "torque")]
 )
 """The type of what Simulation.overlaps() returns."""
+
+# Vertices and indices of surfaces that were drawn. createVisualShape() never lets go of its lists: for the same surface it
+# gets the same ones, so that a program that makes bodies over and over does not grow.
+_lists: dict[bytes, tuple[list[list[float]], list[int]]] = {}
 
 _AT_ORIGIN = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
@@ -139,6 +146,8 @@ class Simulation:
         self.client = client
         self._plugin: int | None = plugin
         self._maximal_coordinates = maximal_coordinates
+        self._visuals: dict[bytes, int] = {}  # of surfaces
+        self._visuals_of = 0  # the number of the world that they are in
 
     def _run(self, prepare: Any, *arguments: Any) -> Any:
         """Has PyBullet's server do a job in its own thread, and returns what came of it."""
@@ -192,12 +201,14 @@ class Simulation:
             if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
                 raise TypeError(f"{name} is {value!r}; it must be an integer")
         _check_connected(self.client)
-        bodies = [
-            p.getBodyUniqueId(i, physicsClientId=self.client)
-            for i in range(p.getNumBodies(physicsClientId=self.client))
-        ]
-        if body not in bodies:
-            raise PyBulletError(f"there is no body {body} in client {self.client}; there are {bodies}")
+        try:
+            p.getBodyInfo(body, physicsClientId=self.client)
+        except (p.error, OverflowError):
+            bodies = [
+                p.getBodyUniqueId(i, physicsClientId=self.client)
+                for i in range(p.getNumBodies(physicsClientId=self.client))
+            ]
+            raise PyBulletError(f"there is no body {body} in client {self.client}; there are {bodies}") from None
         links = p.getNumJoints(body, physicsClientId=self.client)
         if not -1 <= link < links:
             raise PyBulletError(f"body {body} has no link {link}; its links are -1 (the base) to {links - 1}")
@@ -267,14 +278,19 @@ class Simulation:
         most_vertices = 100_000  # that PyBullet takes at once
         if len(packing.faces) == 0 or len(packing.vertices) > most_vertices or packing.faces.size > most_vertices:
             return -1
-        return int(
-            p.createVisualShape(
-                p.GEOM_MESH,
-                vertices=(packing.vertices + packing.origin).tolist(),
-                indices=packing.faces.ravel().tolist(),
-                physicsClientId=self.client,
+        vertices = packing.vertices + packing.origin
+        surface = hashlib.blake2b(vertices.tobytes() + packing.faces.tobytes(), digest_size=16).digest()
+        # A reset takes all shapes away.
+        world = self._run(_core.pybullet.world_number)
+        if self._visuals_of != world:
+            self._visuals, self._visuals_of = {}, world
+        if surface not in self._visuals:
+            if surface not in _lists:
+                _lists[surface] = vertices.tolist(), packing.faces.ravel().tolist()
+            self._visuals[surface] = p.createVisualShape(
+                p.GEOM_MESH, vertices=_lists[surface][0], indices=_lists[surface][1], physicsClientId=self.client
             )
-        )
+        return self._visuals[surface]
 
     def set_shape(
         self,
@@ -298,9 +314,16 @@ class Simulation:
             raise TypeError(f"packing is a {type(packing).__name__}; it must be an innersphere.Packing")
         position, orientation = _pose(position, orientation, "the packing")
         self._check_link(body, link)
-        inertial = p.getDynamicsInfo(body, link, physicsClientId=self.client)[3:5]
+        if self._is_rigid(body):  # getDynamicsInfo() leaves out where its centre of mass is
+            inertial = self._run(_core.pybullet.inertial_frame, body)
+        else:
+            inertial = p.getDynamicsInfo(body, link, physicsClientId=self.client)[3:5]
         mesh_to_body = p.multiplyTransforms(*p.invertTransform(*inertial), position, orientation)
         self._run(_core.pybullet.set_shape, body, link, packing, mesh_to_body)
+
+    def _is_rigid(self, body: int) -> bool:
+        """Whether a body is in maximal coordinates."""
+        return bool(p.getDynamicsInfo(body, -1, physicsClientId=self.client)[10] == 1)  # btMultiBody: 2
 
     def pack_all(self, body: int, **options: Any) -> dict[int, _core.Packing]:
         """Gives every link of a body that collides with one mesh a packing of it, mirrored and stretched as the link has it.
@@ -308,22 +331,63 @@ class Simulation:
         options: those of innersphere.pack(): spheres, cache, repair, progress. With cache, each mesh is packed only
             once for each of its scales.
 
-        Returns the packings by link; links of other shapes stay as they are. Raises what pack() and set_shape() raise.
-        It packs all meshes first: on an error nothing has changed.
+        Returns the packings by link; links of other shapes stay as they are. A warning names the links with meshes that
+        stay so, and why: they have several shapes, as where fixed joints were merged, have a packing already, or a mesh
+        of which PyBullet keeps no file, as of createCollisionShape(); and it says if no link has a mesh at all. Raises
+        what pack() and set_shape() raise, and PyBulletError for a body in maximal coordinates, of which PyBullet does
+        not tell the shapes. It packs all meshes first: on an error nothing has changed.
         """
+        unknown = sorted(set(options) - (set(inspect.signature(pack).parameters) - {"mesh", "scale"}))
+        if unknown:
+            raise TypeError(f"pack_all() has no option {unknown[0]!r}; options are those of innersphere.pack() but scale")
         self._check_link(body, -1)
+        if self._is_rigid(body):
+            raise PyBulletError(
+                f"body {body} is in maximal coordinates, of which PyBullet tells no shapes: give it a packing by "
+                "set_shape(), or load it without useMaximalCoordinates"
+            )
+        self._run(_core.pybullet.world_number)  # so that it is attached
         found: dict[int, tuple[_core.Packing, Any]] = {}
+        left = []
         for link in range(-1, p.getNumJoints(body, physicsClientId=self.client)):
-            shapes = p.getCollisionShapeData(body, link, physicsClientId=self.client)
-            meshes = [shape for shape in shapes if shape[2] == p.GEOM_MESH]
-            if len(meshes) != 1 or len(shapes) != 1:
+            shape, why = self._mesh_of(body, link)
+            if why:
+                left.append(f"link {link} ({self._name_of(body, link)}) {why}")
+            if shape is None:
                 continue
-            _, _, _, scale, file, position, orientation = meshes[0][:7]
+            _, _, _, scale, file, position, orientation = shape[:7]
             self._run(_core.pybullet.check_link, body, link)
             found[link] = pack(file.decode(), scale=scale, **options), (position, orientation)
         for link, (packing, frame) in found.items():
             self._run(_core.pybullet.set_shape, body, link, packing, frame)
+        if left:
+            warnings.warn(f"pack_all() leaves of body {body} as they are: {'; '.join(left)}", stacklevel=2)
+        elif not found:
+            warnings.warn(f"pack_all() changes nothing: no link of body {body} collides with a mesh", stacklevel=2)
         return {link: packing for link, (packing, _) in found.items()}
+
+    def _mesh_of(self, body: int, link: int) -> tuple[Any, str]:
+        """What a link collides with if that is one mesh of a file; else why it is not, or nothing if there is no mesh."""
+        try:
+            self._run(_core.pybullet.mesh_pose, body, link)
+        except PyBulletError:
+            pass
+        else:
+            return None, "has a packing already"
+        shapes = p.getCollisionShapeData(body, link, physicsClientId=self.client)
+        meshes = [shape for shape in shapes if shape[2] == p.GEOM_MESH]
+        if not meshes:
+            return None, ""
+        if len(shapes) > 1:
+            return None, f"has {len(shapes)} shapes, {len(meshes)} of them meshes: join them in one file"
+        if meshes[0][4] == b"unknown_file":
+            return None, "has a mesh without the name of its file: give it a packing by set_shape()"
+        return meshes[0], ""
+
+    def _name_of(self, body: int, link: int) -> str:
+        if link < 0:
+            return str(p.getBodyInfo(body, physicsClientId=self.client)[0].decode(errors="replace"))
+        return str(p.getJointInfo(body, link, physicsClientId=self.client)[12].decode(errors="replace"))
 
     def mesh_pose(self, body: int, link: int = -1) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Returns where the mesh of a link's packing is: position [m] and quaternion x y z w.

@@ -281,6 +281,17 @@ nb::object expectedErrors(const SharedPacking& a, const SharedPacking& b, nb::ha
   query.prefix_a = a.count;
   query.prefix_b = b.count;
   const Estimator by = parseWord("estimator", estimator, kEstimators);
+  bool any = false, energies_are_volumes = true;  // as by triangles alone
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    if (!(volumes.data()[i] > 0)) continue;
+    any = true;
+    energies_are_volumes = energies_are_volumes && energies.data()[i] == volumes.data()[i];
+  }
+  if (by != Estimator::surface && any && energies_are_volumes) {
+    throw Error(
+        ErrorCode::bad_argument,
+        "energy is volume, as estimator=\"surface\" has it: name the estimator that found the overlaps");
+  }
   std::vector<ExpectedError> errors;
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     const double* area = areas.data() + 3 * i;
@@ -444,7 +455,8 @@ bound  what |error| exceeds in 1 of 20 cases: else the truth lies between volume
 
 Errors of A and B are independent, as each was measured with copies of itself and cut by planes when it was packed. nan where nothing
 overlaps, nothing so shallow was measured or area and energy are 0, as with want="volume", for packings without
-overlap_errors, and with "volume_true" where more than 45 % of both are shared if a packing is of an older file; 0 with "surface".)");
+overlap_errors, and with "volume_true" where more than 45 % of both are shared if a packing is of an older file; 0 with "surface".
+Raises InvalidArgumentError if shared is what "surface" finds and another estimator is named.)");
   module.def("cuda_device_count", &cudaDeviceCount, "The number of CUDA devices that answer.");
   module.def("cuda_available", &cudaAvailable, "Whether CUDA is built in and a device answers.");
 }

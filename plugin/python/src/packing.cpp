@@ -57,8 +57,17 @@ class PythonProgress {
     }
   }
 
-  void rethrow() const {
-    if (raised_) std::rethrow_exception(raised_);
+  /// Does long work without the GIL: `work` gets this for its progress. Throws what Python raised, and what
+  /// `work` throws.
+  template <typename Work>
+  auto run(const Work& work) {
+    try {
+      const nb::gil_scoped_release release;
+      return work(std::ref(*this));
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::cancelled && raised_) std::rethrow_exception(raised_);
+      throw;
+    }
   }
 
  private:
@@ -82,9 +91,8 @@ Mesh meshOf(const Vertices& vertices, const Faces& faces) {
   return meshFrom(vertices.data(), vertices.shape(0), faces.data(), faces.shape(0));
 }
 
-/// Vertices and faces of a solid.
-nb::tuple surfaceOf(const Solid& solid) {
-  const Mesh mesh = solid.surface();
+/// Vertices and faces of a mesh.
+nb::tuple surfaceOf(const Mesh& mesh) {
   auto* vertices = new std::vector<Vec3d>(mesh.vertices);
   auto* faces = new std::vector<std::array<std::uint32_t, 3>>(mesh.triangles.begin(), mesh.triangles.end());
   const nb::capsule vertex_owner(vertices,
@@ -104,7 +112,19 @@ nb::tuple surfaceOfMesh(const Mesh& mesh, const std::string& name) {
     const nb::gil_scoped_release release;
     return makeSolid(mesh, name);
   }();
-  return surfaceOf(*solid);
+  return surfaceOf(solid->surface());
+}
+
+/// Vertices and faces of each body of a surface, with its cavities.
+nb::list bodiesOf(const Vertices& vertices, const Faces& faces) {
+  const std::vector<Mesh> bodies = [&] {
+    const Mesh mesh = meshOf(vertices, faces);
+    const nb::gil_scoped_release release;
+    return splitBodies(mesh);
+  }();
+  nb::list found;
+  for (const Mesh& body : bodies) found.append(surfaceOf(body));
+  return found;
 }
 
 Mesh readScaledMesh(const std::filesystem::path& path, double scale) {
@@ -147,15 +167,9 @@ SharedPacking packWith(const Mesh& mesh, const std::string& name, std::int64_t s
   options.cache_folder = cache.string();
   std::vector<std::string> notices;
   options.notice = [&](const std::string& message) { notices.push_back(message); };
-  PythonProgress python(std::move(progress));
-  SharedPacking result;
-  try {
-    const nb::gil_scoped_release release;
-    result = share(packMesh(mesh, name, options, std::ref(python)));
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::cancelled) python.rethrow();
-    throw;
-  }
+  SharedPacking result = PythonProgress(std::move(progress)).run([&](const Progress& told) {
+    return share(packMesh(mesh, name, options, told));
+  });
   for (const std::string& notice : notices) {
     if (PyErr_WarnEx(PyExc_RuntimeWarning, notice.c_str(), 1) != 0) throw nb::python_error();
   }
@@ -193,26 +207,20 @@ nb::tuple spheresOf(const Covering& covering) {
 }
 
 nb::tuple coverPacking(const SharedPacking& self, double resolution) {
-  Covering covering;
-  {
-    const nb::gil_scoped_release release;
-    CoverOptions options;
-    options.resolution = resolution;
-    covering = coverSurface(spheresAndSurface(self), options);
-  }
-  return spheresOf(covering);
+  CoverOptions options;
+  options.resolution = resolution;
+  return spheresOf(PythonProgress(nb::none()).run([&](const Progress& told) {
+    return coverSurface(spheresAndSurface(self), options, told);
+  }));
 }
 
 nb::tuple clumpOfPacking(const SharedPacking& self, double outside_weight) {
-  Covering clump;
-  {
-    const nb::gil_scoped_release release;
-    ClumpOptions options;
-    options.spheres = self.count;
-    options.outside_weight = outside_weight;
-    clump = clumpSurface(spheresAndSurface(self), options);
-  }
-  return spheresOf(clump);
+  ClumpOptions options;
+  options.spheres = self.count;
+  options.outside_weight = outside_weight;
+  return spheresOf(PythonProgress(nb::none()).run([&](const Progress& told) {
+    return clumpSurface(spheresAndSurface(self), options, told);
+  }));
 }
 
 SharedPacking readShared(const std::filesystem::path& path) {
@@ -462,7 +470,7 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
   nb::class_<Mesh>(module, "Mesh", "Triangles that pack() takes.").def("stretch", &stretch, "factors"_a);
   module.def("read_mesh", &readScaledMesh, "path"_a, "scale"_a);
   module.def(
-      "solid", [](const std::string& name) { return surfaceOf(*makeNamedSolid(name)); }, "name"_a,
+      "solid", [](const std::string& name) { return surfaceOf(makeNamedSolid(name)->surface()); }, "name"_a,
       nb::sig("def solid(name: str) -> tuple[numpy.typing.NDArray[numpy.float64], "
               "numpy.typing.NDArray[numpy.uint32]]"),
       R"(The surface of a solid to try things with: vertices (n, 3) [m] and faces (m, 3), as pack() takes them.
@@ -471,6 +479,7 @@ name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, c
 bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for another name.)");
   module.def("mesh_of", &meshOf, "vertices"_a, "faces"_a);
   module.def("surface_of_mesh", &surfaceOfMesh, "mesh"_a, "name"_a);
+  module.def("bodies_of", &bodiesOf, "vertices"_a, "faces"_a);
   module.def("pack", &packWith, "mesh"_a, "name"_a, "spheres"_a, "min_radius"_a, "density"_a, "gap"_a,
              "order"_a, "delta"_a, "overlap_errors"_a, "threads"_a, "repair"_a, "cache"_a,
              "progress"_a.none());

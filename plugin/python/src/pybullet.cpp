@@ -161,7 +161,8 @@ void bindPyBullet(nb::module_& module) {
       .def_ro("bases", &Seen::bases);
   bindWaiting<Seen>(jobs, "Look");
   bindWaiting<bool>(jobs, "Order");
-  bindWaiting<Pose>(jobs, "MeshPose");
+  bindWaiting<int>(jobs, "Number");
+  bindWaiting<Pose>(jobs, "Place");
   bindWaiting<std::vector<OverlapRow>>(jobs, "Overlaps");
   jobs.attr("api_version") = pybullet::kApiVersion;
 
@@ -189,6 +190,13 @@ void bindPyBullet(nb::module_& module) {
         });
       },
       "body"_a, "link"_a);
+  jobs.def("world_number", [] { return Waiting<int>([](Plugin& plugin) { return plugin.worldNumber(); }); });
+  jobs.def(
+      "inertial_frame",
+      [](int body) {
+        return Waiting<Pose>([=](Plugin& plugin) { return from(plugin.inertialFrame(body)); });
+      },
+      "body"_a);
   jobs.def(
       "set_shape",
       [](int body, int link, const SharedPacking& packing, const Pose& mesh_to_body) {

@@ -91,6 +91,7 @@ void Plugin::apply(btMultiBodyDynamicsWorld& world, const Options& options) {
   }
   if (options.substeps && world.getWorldType() == BT_DEFORMABLE_MULTIBODY_DYNAMICS_WORLD)
     throw std::invalid_argument("solver 'substep' does not solve worlds of deformable bodies");
+  if (!PackingCollisionAlgorithm::isRegistered(world.getDispatcher())) ++worlds_;
   PackingCollisionAlgorithm::registerAlgorithm(world, options.contacts);
   dispatcher_ = world.getDispatcher();
   setSolver(world, options.substeps);
@@ -124,7 +125,9 @@ btMultiBodyDynamicsWorld& Plugin::find() const {
 
 btMultiBodyDynamicsWorld& Plugin::world() {
   if (!attached_) throw std::invalid_argument("innersphere is detached");
-  btMultiBodyDynamicsWorld& found = find();
+  btMultiBodyDynamicsWorld* same = place_.world();
+  btMultiBodyDynamicsWorld& found = same != nullptr ? *same : find();
+  if (same == nullptr) place_ = WorldPlace(command_processor_, found);
   if (!PackingCollisionAlgorithm::isRegistered(found.getDispatcher())) apply(found, options_);
   return found;
 }
@@ -162,6 +165,22 @@ void Plugin::give(int body, int link, std::unique_ptr<PackingShape> shape) {
   given_.push_back({std::move(shape), before});
 }
 
+btTransform Plugin::inertialFrame(int body) {
+  const btRigidBody* rigid = btRigidBody::upcast(&collider(body, -1));
+  if (rigid == nullptr)
+    throw std::invalid_argument("body " + std::to_string(body) + " is not in maximal coordinates");
+  std::string why;
+  btTransform frame;
+  if (!findInertialFrame(command_processor_, client_, body, *rigid, frame, why))
+    throw std::runtime_error(why);
+  return frame;
+}
+
+int Plugin::worldNumber() {
+  world();
+  return worlds_;
+}
+
 void Plugin::dropUnused(btMultiBodyDynamicsWorld& world) {
   std::set<const btCollisionShape*> used;
   for (int i = 0; i < world.getNumCollisionObjects(); ++i)
@@ -174,7 +193,7 @@ void Plugin::dropUnused(btMultiBodyDynamicsWorld& world) {
 #define INNERSPHERE_PLUGIN_FUNCTION extern "C" __attribute__((visibility("default")))
 
 INNERSPHERE_PLUGIN_FUNCTION int initPlugin_innersphere(innersphere::pybullet::Context* context) {
-  context->user = new innersphere::pybullet::Plugin(context->command_processor);
+  context->user = new innersphere::pybullet::Plugin(*context);
   return innersphere::pybullet::kApiVersion;
 }
 

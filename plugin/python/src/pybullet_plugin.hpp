@@ -11,10 +11,8 @@
 #include "innersphere/contact_options.hpp"
 #include "innersphere/multi_body_substep_solver.hpp"
 #include "innersphere/packing_shape.hpp"
-
-class btCollisionObject;
-class btDispatcher;
-class btMultiBodyDynamicsWorld;
+#include "pybullet_interface.hpp"
+#include "pybullet_world.hpp"
 
 namespace innersphere::pybullet {
 
@@ -34,7 +32,8 @@ struct Options {
 /// What is kept for a client from attach() to detach(). Only the server's thread uses it.
 class Plugin {
  public:
-  explicit Plugin(void* command_processor) : command_processor_(command_processor) {}
+  explicit Plugin(const Context& context)
+      : command_processor_(context.command_processor), client_(context.client) {}
   ~Plugin() { release(); }
 
   /// Gives bodies their shapes back, and the dispatcher its own functions, if the world is still there.
@@ -53,6 +52,11 @@ class Plugin {
   /// is, or SubstepSolver would not move it.
   btCollisionObject& packable(int body, int link);
   void give(int body, int link, std::unique_ptr<PackingShape> shape);
+  /// Returns where the centre of mass and the principal axes of a body in maximal coordinates are in its
+  /// base, as PyBullet keeps it. Throws as collider() does, and std::runtime_error if it does not say.
+  btTransform inertialFrame(int body);
+  /// Returns a number that the world has, and those after the next resets do not.
+  int worldNumber();
 
  private:
   void apply(btMultiBodyDynamicsWorld& world, const Options& options);
@@ -60,8 +64,11 @@ class Plugin {
   void dropUnused(btMultiBodyDynamicsWorld& world);
 
   void* command_processor_;
+  void* client_;  ///< by which plug-ins call PyBullet
   Options options_;
   bool attached_ = false;
+  WorldPlace place_;                          ///< where the last world was found
+  int worlds_ = 0;                            ///< that packings have collided in
   const btDispatcher* dispatcher_ = nullptr;  ///< registered last; it may be gone
   std::vector<Given> given_;
   std::unique_ptr<MultiBodySubstepSolver> solver_;  ///< put into the last world, if asked for

@@ -49,6 +49,8 @@ std::string_view classOf(const void* object, const void* module) {
   return *name == '*' ? name + 1 : name;
 }
 
+constexpr std::size_t kMostBytes = 1 << 19;  // of the command processor's data, which are looked through
+
 bool endsWith(std::string_view name, std::string_view end) {
   return name.size() >= end.size() && name.substr(name.size() - end.size()) == end;
 }
@@ -63,6 +65,17 @@ bool hasKnownMembers(btMultiBodyDynamicsWorld& world, const void* module) {
          endsWith(classOf(world.getPairCache(), module), "PairCache");
 }
 
+/// Returns a function of PyBullet's C interface, or null.
+template <typename Function>
+Function* function(void* library, const char* name) {
+  return reinterpret_cast<Function*>(dlsym(library, name));
+}
+
+/// The first member of the command processor, after the table of its class, leads to its data.
+void* const* dataOf(void* command_processor) {
+  return static_cast<void* const*>(command_processor) + 1;
+}
+
 }  // namespace
 
 btMultiBodyDynamicsWorld* findWorld(void* command_processor, std::string& why) {
@@ -71,9 +84,7 @@ btMultiBodyDynamicsWorld* findWorld(void* command_processor, std::string& why) {
     why = "its command processor is of an unknown class";
     return nullptr;
   }
-  // The processor's data are its first member: a block of some kilobytes.
-  void* data = const_cast<void*>(wordAt(static_cast<void**>(command_processor) + 1));
-  constexpr std::size_t kMostBytes = 1 << 19;
+  void* data = const_cast<void*>(wordAt(dataOf(command_processor)));  // a block of some kilobytes
   void* first = nullptr;
   const std::size_t bytes = data != nullptr && read(data, &first, sizeof first)
                                 ? std::min(malloc_usable_size(data), kMostBytes)
@@ -101,6 +112,68 @@ btMultiBodyDynamicsWorld* findWorld(void* command_processor, std::string& why) {
     found = nullptr;
   }
   return found;
+}
+
+WorldPlace::WorldPlace(void* command_processor, btMultiBodyDynamicsWorld& world)
+    : data_of_(dataOf(command_processor)), data_(*data_of_) {
+  void* const* members = static_cast<void* const*>(data_);
+  const std::size_t count = std::min(malloc_usable_size(data_), kMostBytes) / sizeof(void*);
+  void* const wanted = static_cast<btDynamicsWorld*>(&world);
+  // Of several words only one may be kept up to date.
+  if (std::count(members, members + count, wanted) != 1) return;
+  member_ = std::find(members, members + count, wanted);
+  world_ = &world;
+  table_ = *reinterpret_cast<const void* const*>(&world);
+}
+
+btMultiBodyDynamicsWorld* WorldPlace::world() const {
+  if (member_ == nullptr || *data_of_ != data_ || *member_ != static_cast<btDynamicsWorld*>(world_))
+    return nullptr;
+  return *reinterpret_cast<const void* const*>(world_) == table_ ? world_ : nullptr;
+}
+
+bool findInertialFrame(void* command_processor, void* client, int body, const btRigidBody& rigid,
+                       btTransform& frame, std::string& why) {
+  Dl_info info{};
+  const void* table = wordAt(command_processor);
+  void* library = table != nullptr && dladdr(table, &info) != 0
+                      ? dlopen(info.dli_fname, RTLD_LAZY | RTLD_NOLOAD)
+                      : nullptr;
+  if (library == nullptr || client == nullptr) {
+    why = "it has no interface for plug-ins";
+    return false;
+  }
+  // PyBullet stays loaded without this.
+  dlclose(library);
+  const auto request = function<void*(void*, int)>(library, "b3RequestActualStateCommandInit");
+  const auto submit = function<void*(void*, void*)>(library, "b3SubmitClientCommandAndWaitStatus");
+  const auto read_state =
+      function<int(void*, int*, int*, int*, const double**, const double**, const double**, const double**)>(
+          library, "b3GetStatusActualState");
+  if (request == nullptr || submit == nullptr || read_state == nullptr) {
+    why = "it has no functions that tell the state of a body";
+    return false;
+  }
+  int told = -1, positions = 0;
+  const double *f = nullptr, *at = nullptr;
+  void* status = submit(client, request(client, body));
+  if (status == nullptr || !read_state(status, &told, &positions, nullptr, &f, &at, nullptr, nullptr) ||
+      told != body || positions < 7 || f == nullptr || at == nullptr) {
+    why = "it does not tell the state of body " + std::to_string(body);
+    return false;
+  }
+  // Before the frame is believed, what stands beside it has to be what Bullet has.
+  const btTransform& pose = rigid.getWorldTransform();
+  const btQuaternion turn(f[3], f[4], f[5], f[6]);
+  const btScalar off = (btVector3(at[0], at[1], at[2]) - pose.getOrigin()).length();
+  const btScalar same_turn = btFabs(btQuaternion(at[3], at[4], at[5], at[6]).dot(pose.getRotation()));
+  if (!(off <= 1e-9 * (1 + pose.getOrigin().length())) || !(btFabs(same_turn - 1) < 1e-6) ||
+      !(btFabs(turn.length2() - 1) < 1e-6)) {
+    why = "the state that it tells of body " + std::to_string(body) + " is not that of its world";
+    return false;
+  }
+  frame = btTransform(turn, btVector3(f[0], f[1], f[2]));
+  return true;
 }
 
 std::pair<int, int> numbersOf(const btCollisionObject& object) {

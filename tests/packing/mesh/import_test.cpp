@@ -167,6 +167,47 @@ TEST(MeshImport, NodeTransformsAndMirrorsApply) {
   EXPECT_TRUE(report.notes.empty());
 }
 
+std::string colladaOf(const Mesh& mesh, const std::string& up, double unit) {
+  std::ostringstream out;
+  out << R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">)"
+      << "<asset><unit name=\"u\" meter=\"" << unit << "\"/><up_axis>" << up << "</up_axis></asset>"
+      << R"(<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count=")"
+      << 3 * mesh.vertices.size() << "\">";
+  for (const Vec3d& v : mesh.vertices) out << v[0] << " " << v[1] << " " << v[2] << " ";
+  out << R"(</float_array><technique_common><accessor source="#a" stride="3" count=")" << mesh.vertices.size()
+      << R"("><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>)"
+      << R"(</accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/>)"
+      << R"(</vertices><triangles count=")" << mesh.triangles.size()
+      << R"("><input semantic="VERTEX" source="#v" offset="0"/><p>)";
+  for (const auto& t : mesh.triangles) out << t[0] << " " << t[1] << " " << t[2] << " ";
+  out << "</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>"
+      << R"(<visual_scene id="s"><node id="n"><translate>10 0 0</translate><rotate>0 0 1 90</rotate>)"
+      << R"(<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>)"
+      << R"(<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+  return out.str();
+}
+
+// As PyBullet and others read them: which axis is up changes nothing; units and nodes do.
+TEST(MeshImport, ColladaKeepsTheAxesThatAreWritten) {
+  const Scratch scratch;
+  for (const std::string up : {"X_UP", "Y_UP", "Z_UP"}) {
+    const Mesh mesh = readMesh(scratch.write(up + ".dae", colladaOf(boxMesh({0, 0, 0}, {1, 2, 4}), up, 0.5)));
+    EXPECT_NEAR(volumeOf(mesh), 1, 1e-5) << up;
+    Vec3d low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+    for (const Vec3d& v : mesh.vertices) {
+      for (int k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], v[k]);
+        high[k] = std::max(high[k], v[k]);
+      }
+    }
+    const Vec3d expected_low{4, 0, 0}, expected_high{5, 0.5, 2};  // turned about z: x to y, y to -x
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(low[k], expected_low[k], 1e-5) << up;
+      EXPECT_NEAR(high[k], expected_high[k], 1e-5) << up;
+    }
+  }
+}
+
 TEST(MeshImport, SaysWhatIsWrongWithAFile) {
   const Scratch scratch;
   expectError(scratch.path("none.obj"), ErrorCode::file_not_found, "none.obj");

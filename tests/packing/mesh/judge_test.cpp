@@ -157,6 +157,16 @@ TEST(MeshJudge, FlushOverlapsCountOnceToo) {
   EXPECT_EQ(report.cuts, 0u);
   EXPECT_NEAR(solid->massProperties().volume, 3, 0.05);
   EXPECT_NEAR(solid->massProperties().centre_of_mass[0], 1.5, 0.02);
+  EXPECT_NE(joined(report).find("shells share 3"), std::string::npos) << joined(report);  // 1 of 3 m^3
+}
+
+TEST(MeshJudge, ShellsThatTouchShareNothing) {
+  Mesh mesh = boxMesh({0, 0, 0}, {2, 1, 1});
+  append(mesh, boxMesh({2, 0.25, 0.25}, {3, 0.75, 0.75}));
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "beside", {}, &report);
+  EXPECT_NEAR(solid->massProperties().volume, 2.25, 1e-12);
+  EXPECT_EQ(joined(report), "");
 }
 
 TEST(MeshJudge, InsideOutIsTurned) {

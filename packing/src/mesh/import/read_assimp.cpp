@@ -1,5 +1,6 @@
 #include "mesh/import/read_assimp.hpp"
 
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -82,6 +83,9 @@ class Collector {
 
 Mesh readAssimp(const std::string& path) {
   Assimp::Importer importer;
+  // Coordinates are taken as they are written, as by whatever else reads the file: assimp would turn Z up
+  // into Y up.
+  importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType);
   if (!scene || !scene->mRootNode) {
     throw Error(ErrorCode::bad_format, path + " cannot be read as a mesh (" + importer.GetErrorString() +
