@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -232,7 +233,7 @@ double gatherItems(const SphereContact* contacts, std::size_t count, const Vec3d
     const double weight = norm(area);
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
     hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-    if (weight > 0) {
+    if (weight > 0 && std::isfinite(weight)) {
       scratch.items.push_back({contact, p, weight});
       scratch.directions.add(area, weight);
     } else {
@@ -271,6 +272,7 @@ void addUndirected(const std::vector<Item>& undirected, std::vector<Group>& grou
       const double distance2 = dot(way, way);
       if (distance2 < least || !nearest) nearest = &group, least = distance2;
     }
+    assert(nearest && "items with a direction make groups");
     nearest->volume += item.contact->volume;
   }
 }

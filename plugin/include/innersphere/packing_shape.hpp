@@ -97,7 +97,8 @@ class PackingShape : public btConcaveShape {
   /// Returns a distance from the origin of the shape that no point of the solid exceeds [m], with the margin.
   btScalar getAngularMotionDisc() const override;
   /// Sets the margin [m], 0 at first, which makes the solid that much larger on all sides: contacts come that
-  /// much earlier. Mass properties do not follow it, nor does it scale.
+  /// much earlier. Mass properties do not follow it, nor does it scale. Throws Error bad_argument if it is
+  /// negative or not finite: spheres can be searched with more than their radii, not with less.
   void setMargin(btScalar margin) override;
   /// Returns how far apart two points of a contact may be until Bullet drops it [m]: `factor` times the
   /// solid's size, but no more than the median radius of the spheres in use, so that fine features of a large

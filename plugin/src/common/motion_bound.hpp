@@ -1,6 +1,8 @@
 // Bounds how far bodies can move in a step, and have moved.
 #pragma once
 
+#include <limits>
+
 #include <LinearMath/btTransform.h>
 
 #include "common/body_velocity.hpp"
@@ -18,8 +20,8 @@ struct Motion {
   btVector3 velocity{0, 0, 0};  ///< of its origin [m/s]
   btScalar rim_speed = 0;       ///< by turning [m/s]
   btScalar size = 0;            ///< no point is further from its origin [m]; BT_LARGE_FLOAT: it is infinite
-  /// The body is swept if it moves by more than this in a step [m]; BT_LARGE_FLOAT: it never is.
-  btScalar swept_from = BT_LARGE_FLOAT;
+  /// The body is swept if it moves by more than this in a step [m]; infinity: it never is.
+  btScalar swept_from = std::numeric_limits<btScalar>::infinity();
 };
 
 /// Returns true if the bodies move so fast against each other that contact has to be looked for all along the

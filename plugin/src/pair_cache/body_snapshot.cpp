@@ -1,5 +1,7 @@
 #include "pair_cache/body_snapshot.hpp"
 
+#include <cmath>
+
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btTransformUtil.h>
 
@@ -40,6 +42,10 @@ void BodySnapshot::take(btScalar time_step) {
   transform_ = start_ = now;
   if (velocity_.has_arrived)
     btTransformUtil::integrateTransform(now, -velocity_.linear, -velocity_.spin, time_step, start_);
+}
+
+bool BodySnapshot::hasFiniteSpeed() const {
+  return std::isfinite(velocity_.linear.length2()) && std::isfinite(velocity_.spin.length2());
 }
 
 bool BodySnapshot::isAsTaken(const btCollisionObjectWrapper& wrapper) const {

@@ -48,6 +48,8 @@ class BodySnapshot {
   const std::optional<btTransform>& shapePlace() const { return shape_place_; }
   const BodyVelocity& velocity() const { return velocity_; }
   const Motion& motion() const { return motion_; }
+  /// Returns true if its speeds are finite, and their squares are, which all lengths are made of.
+  bool hasFiniteSpeed() const;
   bool isActive() const { return active_; }
   /// Returns how often a snapshot has found another shape, or another packing in it.
   std::uint32_t changes() const { return changes_; }

@@ -169,7 +169,7 @@ ContactLaw ContactPair::lawOf(const StepSettings& settings) const {
   if (chosen.response == Response::penalty && !Penalty::applies(*a.object, *b.object))
     chosen.response = Response::compliant;
   return ContactLaw(chosen, reducedMass(*a.object, *b.object), settings.time_step, smallerSize(a, b),
-                    settings.solver, areOfChain(*body_a, *body_b));
+                    settings.solver, areOfChain(*body_a, *body_b), areSolved(*a.object, *b.object));
 }
 
 bool ContactPair::hasPoints() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/body_name.hpp"
 #include "common/log.hpp"
 #include "common/parallel.hpp"
 #include "innersphere/error.hpp"
@@ -220,15 +221,22 @@ void PairTable::report(ContactPair& pair, const btCollisionObjectWrapper& a,
 
 bool PairTable::updateOrLog(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b,
                             const StepSettings& settings) {
-  if (!isFinite(*a.shapePlace()) || !isFinite(*b.shapePlace())) {
-    pair.logOnce("A body's transform is not finite; its contacts are skipped. Remove it from the world.");
+  for (const BodySnapshot* body : {&a, &b}) {
+    const bool placed = isFinite(*body->shapePlace());
+    if (placed && body->hasFiniteSpeed()) continue;
+    pair.logOnce("The " + std::string(placed ? "velocity" : "transform") + " of the body with " +
+                 numbersOf(*body->object()) + " is not finite" + (placed ? ", or is too large" : "") +
+                 "; its contacts are skipped. Mend it, or remove the body from the world.");
     return false;
   }
   try {
     updateAlone(pair, a, b, settings);
     return true;
   } catch (const Error& error) {
-    pair.logOnce(std::string("Contacts of a pair of bodies are skipped: ") + error.what());
+    const bool bad_input = error.code() == ErrorCode::bad_argument || error.code() == ErrorCode::not_finite;
+    pair.logOnce("Contacts are skipped between A, the body with " + numbersOf(*a.object()) +
+                 ", and B, the one with " + numbersOf(*b.object()) + ": " + error.what() +
+                 (bad_input ? ". Look at what setWorldTransform() and the shapes were given." : ""));
     return false;
   }
 }

@@ -20,8 +20,9 @@ Reuse reuseFor(const ContactPair& pair, const BodySnapshot& a, const BodySnapsho
   return reuseOf(pair, a, b, settings.time_step, settings.options.reuse);
 }
 
-/// Takes a pair that is not idle to where its bodies are. False if that is not known.
+/// Takes a pair that is not idle to where its bodies are. False if that is not known, nor where they will be.
 bool place(ContactPair& pair, const BodySnapshot& a, const BodySnapshot& b) {
+  if (!a.hasFiniteSpeed() || !b.hasFiniteSpeed()) return false;
   const std::optional<btTransform> at_a = pair.a.placeIn(a);
   const std::optional<btTransform> at_b = pair.b.placeIn(b);
   if (!at_a || !at_b) return false;

@@ -68,6 +68,14 @@ btScalar inverseMass(const btCollisionObject& object) {
   return 0;
 }
 
+/// Whether a solver may move it. Parts of a multi-body may move though they have no mass themselves.
+bool canBeMoved(const btCollisionObject& object) {
+  const btMultiBodyLinkCollider* collider = btMultiBodyLinkCollider::upcast(&object);
+  if (collider == nullptr) return inverseMass(object) > 0;
+  return !object.isStaticOrKinematicObject() &&
+         (collider->m_link >= 0 || !collider->m_multiBody->hasFixedBase());
+}
+
 /// The speed at which bodies leave along `normal`, if they leave along the deepest of their patches [m/s]:
 /// those of several directions must not add up.
 btScalar leavingAlong(const btVector3& normal, const std::vector<ContactPatch>& patches) {
@@ -83,7 +91,7 @@ btScalar leavingAlong(const btVector3& normal, const std::vector<ContactPatch>& 
 }  // namespace
 
 ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step,
-                       btScalar size, const SolverSettings& solver, bool of_links)
+                       btScalar size, const SolverSettings& solver, bool of_links, bool solved)
     : response_(options.response),
       given_stiffness_(btScalar(options.stiffness)),
       damping_ratio_(btScalar(options.damping)),
@@ -91,7 +99,8 @@ ContactLaw::ContactLaw(const ContactOptions& options, btScalar reduced_mass, btS
       time_step_(time_step > 0 ? time_step : btScalar(1) / 60),
       size_(size),
       solver_(solver),
-      of_links_(of_links) {
+      of_links_(of_links),
+      solved_(solved) {
   if (defaultSpring()) damping_ratio_ *= kDamping;
   if (!penalty()) return;
   damping_ratio_ = 1;  // the points' own restitution has a say in it
@@ -122,6 +131,8 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   PointLaw law;
   law.depth = depth;
   law.time_step = law_->time_step_;
+  law.solved = law_->solved_;
+  if (!law.solved) return law;
   law.rolling = rolling_;
   if (law_->solver_.substeps && !law_->penalty()) {
     law.spring = law_->response_ == Response::compliant && !law_->defaultSpring();
@@ -178,6 +189,11 @@ btScalar ContactLaw::OfPatch::slipUndoneBy(btScalar impulse) const {
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b) {
   const btScalar inverse = inverseMass(a) + inverseMass(b);
   return inverse > 0 ? 1 / inverse : btScalar(0);
+}
+
+// As btCollisionDispatcher::needsResponse() has it. A user's own must not be asked: this is by any thread.
+bool areSolved(const btCollisionObject& a, const btCollisionObject& b) {
+  return a.hasContactResponse() && b.hasContactResponse() && (canBeMoved(a) || canBeMoved(b));
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -16,6 +16,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 struct PointLaw {
   bool spring = false;     ///< the solver is to use stiffness and damping
   bool penalty = false;    ///< the solver is to leave the point alone
+  bool solved = true;      ///< a solver reads the point; else whoever does wants to know it as it is
   btScalar depth = 0;      ///< to report [m]
   btScalar stiffness = 0;  ///< [N/m]
   btScalar damping = 0;    ///< [N s/m]
@@ -46,6 +47,7 @@ struct PointLaw {
 /// speed; what is deeper than the threshold of split impulses it moves apart at once.
 ///
 /// A SubstepSolver is told the measured depth, without a spring but for one that is given: it has its own.
+/// So is whoever reads contacts that no solver does, see areSolved().
 ///
 /// Where bodies touch in one place or along a line, on which they could roll, they resist it as if their load
 /// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second. Links that bear several
@@ -55,9 +57,10 @@ struct PointLaw {
 class ContactLaw {
  public:
   /// Makes the law of a pair. `reduced_mass` is in kg, and 0 counts as 1; `time_step` is in s, and 0 counts
-  /// as 1/60; `size` [m] is that of the smaller body; `of_links` says that both are of a chain.
+  /// as 1/60; `size` [m] is that of the smaller body; `of_links` says that both are of a chain,
+  /// `solved` that a solver reads their contacts.
   ContactLaw(const ContactOptions& options, btScalar reduced_mass, btScalar time_step, btScalar size,
-             const SolverSettings& solver = {}, bool of_links = false);
+             const SolverSettings& solver = {}, bool of_links = false, bool solved = true);
 
   /// This is the law for the points of one patch.
   class OfPatch {
@@ -98,10 +101,16 @@ class ContactLaw {
   btScalar size_;
   SolverSettings solver_;
   bool of_links_;
+  bool solved_;
 };
 
 /// Returns 1 / (1/m_a + 1/m_b) [kg], static and kinematic bodies counting as infinitely heavy; 0 if both are.
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b);
+
+/// Returns true if a solver does something about contacts of these bodies: both respond to them, and one of
+/// the two can be moved. Those of sensors, of ghosts and characters on what stands still, and of bodies in a
+/// world without dynamics are only read.
+bool areSolved(const btCollisionObject& a, const btCollisionObject& b);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

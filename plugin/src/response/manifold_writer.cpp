@@ -124,6 +124,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
                             BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   const PointLaw& law = from.law;
+  if (!law.solved) return;
   // Directions of the user's own may be those of a belt that moves what lies on it.
   const bool belt = (point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0;
   if (!belt) point.m_combinedFriction *= from.friction;

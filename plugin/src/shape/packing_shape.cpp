@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <string>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <LinearMath/btAabbUtil2.h>
@@ -183,6 +184,11 @@ btScalar PackingShape::getAngularMotionDisc() const {
 }
 
 void PackingShape::setMargin(btScalar margin) {
+  if (!(margin >= 0) || !std::isfinite(margin)) {
+    throw Error(ErrorCode::bad_argument,
+                "The margin of a PackingShape is " + std::to_string(margin) +
+                    "; it must be finite and not negative. For a smaller solid scale it or pack another.");
+  }
   btConcaveShape::setMargin(margin);
   noteChange();
 }

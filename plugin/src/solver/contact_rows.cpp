@@ -37,6 +37,8 @@ void ContactRows::find(int begin, int end, btPersistentManifold** manifolds, con
   for (int i = begin; i < end; ++i) {
     btPersistentManifold& manifold = *manifolds[i];
     if (manifold.getNumContacts() == 0) continue;
+    // Bullet leaves sensors out only where it looks for islands.
+    if (!manifold.getBody0()->hasContactResponse() || !manifold.getBody1()->hasContactResponse()) continue;
     Entry entry{};
     entry.manifold = &manifold;
     entry.number = i;

@@ -7,6 +7,7 @@
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
+#include "common/body_name.hpp"
 #include "common/log.hpp"
 #include "innersphere/error.hpp"
 #include "solver/colouring.hpp"
@@ -196,9 +197,7 @@ void SubstepSolver::Impl::report() {
   std::string message =
       "SubstepSolver leaves out bodies, contacts and rows of constraints that have infinite or undefined "
       "velocities, forces, places or properties: such bodies are stopped, and nothing touches them. ";
-  if (body != nullptr)
-    message += "The first such body has getWorldArrayIndex() " + std::to_string(body->getWorldArrayIndex()) +
-               " and getUserIndex() " + std::to_string(body->getUserIndex()) + ". ";
+  if (body != nullptr) message += "The first such body has " + numbersOf(*body) + ". ";
   log(message + "This is said once.");
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "innersphere/error.hpp"
 #include "sphere_sets.hpp"
@@ -144,6 +145,25 @@ TEST(Patches, SpheresPushedFromAllSidesOnlyAddVolume) {
   EXPECT_NEAR(patches[0].centroid[2], 0, 1e-9);
   contacts.assign(1, contacts.back());
   EXPECT_TRUE(build(contacts).empty());
+}
+
+/// Such areas have no direction. In the same place of one sum they were no group, and volumes had none to go
+/// to.
+TEST(Patches, InfiniteAreasOnlyAddVolume) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const float area : {kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
+    std::vector<SphereContact> contacts;
+    addSquare(contacts, 2, 1, {0, 0, 0}, {0, 0, 1});
+    contacts[0].area = {area, 0, 0};
+    contacts[1].area = {-area, 0, 0};
+    const auto patches = build(contacts);
+    ASSERT_EQ(patches.size(), 1u);
+    EXPECT_NEAR(patches[0].normal[2], 1, 1e-6);
+    EXPECT_NEAR(patches[0].area, 0.5, 1e-6);
+    EXPECT_NEAR(patches[0].volume, 4e-3, 1e-8);
+    contacts.resize(2);
+    EXPECT_TRUE(build(contacts).empty());
+  }
 }
 
 TEST(Patches, NothingFromNothing) {

@@ -79,6 +79,20 @@ TEST(Shape, MarginGrowsTheBounds) {
   EXPECT_NEAR(max.x(), 0.6, 1e-5);
 }
 
+TEST(Shape, AMarginThatNoSearchCanHaveIsRefused) {
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 2));
+  shape->setMargin(btScalar(0.1));
+  for (const double margin : {-1e-6, -0.6, double(INFINITY), double(NAN)}) {
+    try {
+      shape->setMargin(btScalar(margin));
+      ADD_FAILURE() << margin;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_argument) << margin;
+    }
+    EXPECT_EQ(shape->getMargin(), btScalar(0.1)) << margin;
+  }
+}
+
 TEST(Shape, InertiaOfABoxIsExact) {
   const auto shape = makeShape(latticeBox({1, 2, 3}, 2));
   btVector3 inertia;

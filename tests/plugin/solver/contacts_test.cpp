@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
+
 #include "solver/solver_world.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
@@ -213,6 +215,19 @@ TEST(SubstepContacts, ImpulsesInPointsCarryTheWeight) {
   const btPersistentManifold& manifold = *world.dispatcher.getManifoldByIndexInternal(0);
   for (int i = 0; i < manifold.getNumContacts(); ++i) sum += manifold.getContactPoint(i).m_appliedImpulse;
   EXPECT_NEAR(sum, 7 * kGravity * kStep, 0.001 * 7 * kGravity * kStep);
+}
+
+TEST(SubstepContacts, SensorsPushNothing) {
+  for (const bool split : {true, false}) {
+    SolverWorld world;
+    world.world.getSimulationIslandManager()->setSplitIslands(split);
+    btRigidBody& sensor = world.addSlab();
+    sensor.setCollisionFlags(sensor.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+    const btRigidBody& box = world.addBox(btVector3(1, 1, 1) / 2, 1, btVector3(0, 0, btScalar(0.5)));
+    world.run(0.5);
+    EXPECT_GT(world.dispatcher.getNumManifolds(), 0);
+    EXPECT_NEAR(box.getLinearVelocity().z(), -kGravity / 2, 1e-3) << split;
+  }
 }
 
 TEST(SubstepContacts, ALiftCarriesAndABeltMoves) {

@@ -1,14 +1,19 @@
 // What must not happen whatever the user does.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <LinearMath/btThreads.h>
 
 #include "capture_log.hpp"
+#include "innersphere/substep_solver.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
@@ -39,6 +44,105 @@ TEST(Robustness, ABodyAtNanIsSkippedAndReportedOnce) {
   world.run(3);
   EXPECT_NEAR(other.getWorldTransform().getOrigin().z(), 0.5, 0.01);
   world.world.addRigidBody(&lost);  // TestWorld removes it
+}
+
+struct SpinCase {
+  std::string name;
+  std::shared_ptr<btCollisionShape> ground, body;
+};
+
+std::vector<SpinCase> spinCases() {
+  const auto packing = makeShape(latticeBox({1, 1, 1}, 4)), slab = makeShape(latticeBox({4, 4, 1}, 8));
+  const btVector3 half(btScalar(0.5), btScalar(0.5), btScalar(0.5));
+  const auto hull = std::make_shared<btConvexHullShape>();
+  for (int i = 0; i < 8; ++i)
+    hull->addPoint(btVector3(btScalar(i & 1), btScalar(i >> 1 & 1), btScalar(i >> 2)) - half);
+  const auto ball = std::make_shared<btSphereShape>(btScalar(0.5));
+  return {{"box", slab, std::make_shared<btBoxShape>(half)},
+          {"cylinder", slab, std::make_shared<btCylinderShapeZ>(half)},
+          {"hull", slab, hull},
+          {"cone", slab, std::make_shared<btConeShapeZ>(btScalar(0.5), btScalar(1))},
+          {"ball", slab, ball},
+          {"packing", slab, packing},
+          {"packing on a box", std::make_shared<btBoxShape>(btVector3(2, 2, half.z())), packing},
+          {"packing on a ball", ball, packing},
+          {"packing on a cone", std::make_shared<btConeShapeZ>(btScalar(2), btScalar(1)), packing}};
+}
+
+/// Lengths of such vectors are not finite, nor is what follows from them.
+TEST(Robustness, ABodyOfInfiniteSpeedTouchesNothingAndIsNamedOnce) {
+  constexpr btScalar kInfinity = std::numeric_limits<btScalar>::infinity();
+  const btScalar too_large = 2 * std::sqrt(std::numeric_limits<btScalar>::max());
+  for (const SpinCase& c : spinCases()) {
+    for (const bool substeps : {false, true}) {
+      for (const btScalar speed : {too_large, kInfinity, std::numeric_limits<btScalar>::quiet_NaN()}) {
+        CaptureLog log;
+        SubstepSolver divided;
+        TestWorld world;
+        if (substeps) world.world.setConstraintSolver(&divided);
+        PackingCollisionAlgorithm::prepareWorld(world.world);
+        world.add(c.ground, 0, btVector3(0, 0, btScalar(-0.5)));
+        btRigidBody& body = world.add(c.body, 1, btVector3(0, 0, btScalar(0.49)));
+        body.setUserIndex(7);
+        body.setCcdMotionThreshold(btScalar(speed == too_large ? 0.1 : 0));
+        world.run(1.0 / 60);
+        EXPECT_GT(world.contactCount(), 0) << c.name;
+        body.setAngularVelocity(btVector3(0, speed, 0));
+        world.run(1.0 / 60);
+        EXPECT_EQ(world.contactCount(), 0) << c.name << ' ' << speed;
+        world.run(0.2);
+        const auto named = std::count_if(log.messages.begin(), log.messages.end(), [](const auto& message) {
+          return message.find("getUserIndex() 7 ") != std::string::npos &&
+                 message.find("contacts are skipped") != std::string::npos;
+        });
+        EXPECT_EQ(named, 1) << c.name << ' ' << speed;
+      }
+    }
+  }
+}
+
+/// Its squares are finite still, so it has contacts; what is made of them must be finite, too.
+TEST(Robustness, PointsOfABodyOfAnEnormousSpeedAreFinite) {
+  const btScalar enormous = std::sqrt(std::numeric_limits<btScalar>::max()) / 4;
+  for (const SpinCase& c : spinCases()) {
+    for (const bool turns : {false, true}) {
+      TestWorld world;
+      world.add(c.ground, 0, btVector3(0, 0, btScalar(-0.5)));
+      btRigidBody& body = world.add(c.body, 1, btVector3(0, 0, btScalar(0.49)));
+      world.run(1.0 / 60);
+      if (turns) {
+        body.setAngularVelocity(btVector3(0, enormous, 0));
+      } else {
+        body.setLinearVelocity(btVector3(0, 0, -enormous));
+      }
+      world.dispatcher.dispatchAllCollisionPairs(world.broadphase.getOverlappingPairCache(),
+                                                 world.world.getDispatchInfo(), &world.dispatcher);
+      EXPECT_GT(world.contactCount(), 0) << c.name;
+      for (const btManifoldPoint& point : world.contactsOfLast()) {
+        EXPECT_TRUE(std::isfinite(point.getDistance())) << c.name;
+        EXPECT_TRUE(std::isfinite(point.getPositionWorldOnA().length2())) << c.name;
+      }
+    }
+  }
+}
+
+/// A user has to find it among a thousand.
+TEST(Robustness, BodiesOfAPairWithBadInputAreNamed) {
+  CaptureLog log;
+  TestWorld world;
+  const auto shape = makeShape(latticeBox({1, 1, 1}, 4));
+  world.add(shape, 0, btVector3(0, 0, 0));
+  btRigidBody& stretched = world.add(shape, 1, btVector3(0, 0, btScalar(0.9)));
+  stretched.setUserIndex(7);
+  btTransform place = stretched.getWorldTransform();
+  place.setBasis(place.getBasis().scaled(btVector3(2, 1, 1)));
+  stretched.setWorldTransform(place);
+  world.run(0.1);
+  ASSERT_EQ(log.messages.size(), 1u);
+  for (const char* part : {"A, the body with getWorldArrayIndex() 0 and getUserIndex() -1",
+                           "B, the one with getWorldArrayIndex() 1 and getUserIndex() 7",
+                           "the rotation of B is off orthonormal", "setWorldTransform()"})
+    EXPECT_NE(log.messages[0].find(part), std::string::npos) << log.messages[0];
 }
 
 TEST(Robustness, ChangedShapeOfALivingPair) {
