@@ -194,8 +194,9 @@ void SubstepSolver::Impl::report() {
   if (body == nullptr && contacts_.broken() == 0 && constraints_.broken() == 0) return;
   reported_ = true;
   std::string message =
-      "SubstepSolver leaves out bodies, contacts and rows of constraints that have infinite or undefined "
-      "velocities, forces, places or properties: such bodies are stopped, and nothing touches them. ";
+      "SubstepSolver leaves out bodies, contacts and rows of constraints whose velocities, forces, places or "
+      "properties are, or have become, infinite or undefined: such bodies are stopped, and nothing touches "
+      "them. ";
   if (body != nullptr)
     message += "The first such body has getWorldArrayIndex() " + std::to_string(body->getWorldArrayIndex()) +
                " and getUserIndex() " + std::to_string(body->getUserIndex()) + ". ";
