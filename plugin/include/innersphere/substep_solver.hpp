@@ -15,6 +15,8 @@ struct SubstepOptions {
   /// The number of substeps, 1 to 1,000; 0: it is chosen for each group of bodies, by what follows.
   int substeps = 0;
   /// Substeps are at least so short [s]: what stands in stacks sways less, the shorter they are.
+  /// It is a time, however small bodies are: models of millimetres that are stepped fast get one or two
+  /// substeps, and sink by some 0.4 % of their size unless it is made shorter as well.
   btScalar longest = btScalar(1) / 960;
   /// How deep a body may be pressed into what it bears by a heavier one, as a share of its own size (the
   /// diameter of its bounding sphere). Half of it takes 1.4 times as many substeps.

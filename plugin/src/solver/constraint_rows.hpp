@@ -38,6 +38,11 @@ class ConstraintRows {
 
   /// Asks a constraint for its rows. It keeps the impulses of rows that it had before.
   void refresh(int joint, const SolverBodies& bodies);
+  /// Bodies have turned: tells how rows are coupled now. Those of a thin rod that whirls would over-relax.
+  void refactor(int joint, const SolverBodies& bodies) {
+    const Joint& j = joints_[static_cast<std::size_t>(joint)];
+    if (j.count > 0) factor(j, bodies.state(j.a), bodies.state(j.b));
+  }
   /// Applies the impulses of the last substep.
   void warmStart(int joint, std::vector<BodyState>& states);
   void solve(int joint, Pass pass, std::vector<BodyState>& states);

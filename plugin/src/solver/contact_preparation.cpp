@@ -20,6 +20,12 @@ constexpr btScalar kAligned = btScalar(0.035);
 /// [rad]: a direction that is closer to one in which a body is held may be that one, for rounding.
 constexpr btScalar kAcross = btScalar(1e-5);
 
+/// A row whose mass is too large by x leaves 1 - x of a speed: more than there was, the other way round, from
+/// x = 2 on. What it yields, over its masses, is the square of a length. That grows with the lever by less
+/// than the root of slendernessOf() times its way: up to sqrt(2) while the square of all is below this. The
+/// way has three parts, and the sum of their squares stands for a third of its own at least.
+constexpr btScalar kOverRelaxing = (3 - 4 * SIMDSQRT12) / 3;
+
 /// Bullet's anisotropic friction: how far each axis of a body counts.
 btVector3 scaledByAnisotropy(const btCollisionObject& body, const btVector3& way) {
   const btMatrix3x3& axes = body.getWorldTransform().getBasis();
@@ -43,6 +49,19 @@ void holdWithin(btScalar most, btScalar& along_1, btScalar& along_2) {
 /// Of bodies that can be moved [m].
 btScalar smallerSize(const TouchingPair& pair, const SolverBodies& bodies) {
   return bodies.isMovable(pair.b) ? std::min(bodies.size(pair.a), bodies.size(pair.b)) : bodies.size(pair.a);
+}
+
+/// Of a body about the axis about which it turns most easily [1/(kg m^2)].
+btScalar largestInverseInertia(int body, const SolverBodies& bodies) {
+  if (!bodies.isMovable(body)) return 0;
+  const btVector3& inverse = bodies.rigid(body)->getInvInertiaDiagLocal();
+  return inverse[inverse.maxAxis()];
+}
+
+/// The inverse square of the lever on which a pair yields by turning as much as it does by moving [1/m^2].
+btScalar slendernessOf(const TouchingPair& pair, const SolverBodies& bodies) {
+  const btScalar turns = largestInverseInertia(pair.a, bodies) + largestInverseInertia(pair.b, bodies);
+  return turns > 0 ? turns / (bodies.inverseMass(pair.a) + bodies.inverseMass(pair.b)) : btScalar(0);
 }
 
 struct Spring {
@@ -76,9 +95,9 @@ void ContactRows::beginStep(const btContactSolverInfo& info, int substeps, btSca
 
 void ContactRows::prepare(int index, const SolverBodies& bodies) {
   Block& block = blocks_[static_cast<std::size_t>(index)];
-  block.bounces = block.rolls = block.bends = block.bouncing = false;
-  block.share = block.calm = Lanes{};
-  Lanes inverse_mass[2] = {};
+  block.bounces = block.rolls = block.bends = block.bouncing = block.turned = false;
+  block.slender = block.reach_a = block.reach_b = block.share = block.calm = Lanes{};
+  block.inverse_mass[0] = block.inverse_mass[1] = Lanes{};
   for (int i = 0; i < block.count; ++i) points_[static_cast<std::size_t>(block.begin + i)] = PointLanes{};
   for (int lane = 0; lane < kLanes; ++lane) {
     block.a[lane] = block.b[lane] = bodies.movable();
@@ -87,8 +106,10 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
     block.a[lane] = pair.a;
     block.b[lane] = pair.b;
     block.calm[lane] = depth_ * smallerSize(pair, bodies) / (substep_ * substeps_);
-    inverse_mass[0][lane] = bodies.inverseMass(pair.a);
-    inverse_mass[1][lane] = bodies.inverseMass(pair.b);
+    block.inverse_mass[0][lane] = bodies.inverseMass(pair.a);
+    block.inverse_mass[1][lane] = bodies.inverseMass(pair.b);
+    block.slender[lane] = slendernessOf(pair, bodies) / kOverRelaxing;
+    btScalar reach_a = 0, reach_b = 0;
     block.share[lane] = bodies.isMovable(pair.b) ? btScalar(0.5) : btScalar(0);
     for (int i = 0; i < pair.count; ++i) {
       PointLanes& point = points_[static_cast<std::size_t>(block.begin + i)];
@@ -96,15 +117,20 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       fillPlace(point, lane, source, pair, bodies);
       fillForces(point, lane, *source.point, pair, bodies);
       fillTurning(point, lane, source);
+      const btScalar rolls = point.fall_1[lane] + point.fall_2[lane];
+      reach_a = std::max(reach_a, point.arm_a.get(lane).length() + rolls);
+      reach_b = std::max(reach_b, point.arm_b.get(lane).length() + rolls);
       block.bounces = block.bounces || point.restitution[lane] > 0;
       block.bends = block.bends || !point.axis_1.get(lane).isZero() || !point.axis_2.get(lane).isZero();
       block.rolls = block.rolls || point.rolling[lane] > 0 || point.spinning[lane] > 0;
     }
+    block.reach_a[lane] = reach_a * reach_a;
+    block.reach_b[lane] = reach_b * reach_b;
   }
   if (block.bounces) bounces_ = true;
   const LaneBodies a(block.a, bodies.states()), b(block.b, bodies.states());
   for (int i = block.begin; i < block.begin + block.count; ++i)
-    fillMasses(points_[static_cast<std::size_t>(i)], a, b, inverse_mass, block.rolls);
+    fillMasses(points_[static_cast<std::size_t>(i)], a, b, block.inverse_mass, block.rolls);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.pair[lane] < 0) continue;
     const TouchingPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
@@ -331,6 +357,31 @@ void ContactRows::fillMasses(PointLanes& point, const LaneBodies& a, const LaneB
   const Lanes least = smaller(rolling_1, rolling_2);
   point.mass_rolling = least > Lanes{} ? least : larger(rolling_1, rolling_2);
   point.mass_spinning = about(point.normal);
+}
+
+/// As bodies turn, rows yield more, or less: a thin rod up to a hundred times more within a step. Rows of old
+/// masses would throw it.
+void ContactRows::renewMassesOf(const Block& block, const std::vector<BodyState>& states) {
+  const LaneBodies a(block.a, states), b(block.b, states);
+  const Lanes none{}, one = inAll(1);
+  for (int i = block.begin; i < block.begin + block.count; ++i) {
+    PointLanes& point = points_[static_cast<std::size_t>(i)];
+    const Lanes before = point.mass;
+    fillMasses(point, a, b, block.inverse_mass, block.rolls);
+    // A spring of the user's gives way as before (Softness::ofSpring).
+    const auto changes = (point.spring * before * point.mass > none) & (point.soft_mass > none);
+    const Lanes give = changes ? point.soft_impulse * point.mass / (point.soft_mass * before) : none;
+    point.soft_mass = changes ? one / (one + give) : point.soft_mass;
+    point.soft_impulse = changes ? give / (one + give) : point.soft_impulse;
+  }
+}
+
+void ContactRows::renewMassesWide(int index, const std::vector<BodyState>& states) {
+  renewMassesOf(blocks_[static_cast<std::size_t>(index)], states);
+}
+
+void ContactRows::renewMasses(int index, const std::vector<BodyState>& states) {
+  wide_ ? renewMassesWide(index, states) : renewMassesOf(blocks_[static_cast<std::size_t>(index)], states);
 }
 
 /// How they give way.

@@ -217,6 +217,17 @@ void ContactRows::follow(const Block& block, PointLanes& point, const LaneBodies
   point.arm_b = point.pivot_b + point.normal_0 * point.radius_b + to_b + apart * block.share;
 }
 
+/// Whether arms and normals may have changed so much, as their bodies see them, that rows over-relax.
+bool ContactRows::hasTurnedFar(const Block& block, const LaneBodies& a, const LaneBodies& b) {
+  const Lanes3 moved = a.moved - b.moved;
+  const Lanes turned = dot(a.axis, a.axis) * block.reach_a + dot(b.axis, b.axis) * block.reach_b;
+  const Lanes way = dot(moved, moved) + turned * inAll(4);  // an axis has half of the angle
+  const auto far = way * block.slender > inAll(1);
+  bool any = false;
+  for (int lane = 0; lane < kLanes; ++lane) any = any || far[lane] != 0;
+  return any;
+}
+
 void ContactRows::carryBlock(const Block& block, std::vector<BodyState>& states) {
   Lanes3 impulse, on_a, on_b;
   for (int i = block.begin; i < block.begin + block.count; ++i) {
@@ -328,12 +339,14 @@ void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneB
 }
 
 void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& states) {
-  const Block& block = blocks_[static_cast<std::size_t>(index)];
+  Block& block = blocks_[static_cast<std::size_t>(index)];
   LaneBodies a(block.a, states), b(block.b, states);
   PointLanes* const begin = points_.data() + block.begin;
   PointLanes* const end = begin + block.count;
   if (pass != Pass::push) {
     for (PointLanes* point = begin; point != end; ++point) follow(block, *point, a, b);
+    block.turned = block.turned || hasTurnedFar(block, a, b);
+    if (block.turned) renewMasses(index, states);
   }
   Slowed slowed{};
   for (int round = block.bouncing ? kBounceRounds : 1; round > 0; --round) {

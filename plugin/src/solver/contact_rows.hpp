@@ -116,8 +116,12 @@ class ContactRows {
     int begin, count;            ///< in points_
     Lanes calm;                  ///< at this speed they come as deep into each other as is wanted [m/s]
     Lanes share;                 ///< of what they slide apart, to the place in the middle
+    Lanes inverse_mass[2];       ///< of bodies that are not held [1/kg]
+    Lanes reach_a, reach_b;      ///< squared: of arms, and how far places roll as the body turns [m^2]
+    Lanes slender;               ///< inverse square of the way that changes masses too much [1/m^2]
     bool bounces, rolls, bends;  ///< what some of its points do
     bool bouncing;               ///< in this substep
+    bool turned;                 ///< so far in this step that masses follow
   };
   /// What a pass takes from the speeds of pairs, and what passes that relax will take after it, at most
   /// [m/s].
@@ -144,16 +148,20 @@ class ContactRows {
                          const SolverBodies& bodies);
   static void fillMasses(PointLanes& point, const LaneBodies& a, const LaneBodies& b,
                          const Lanes (&inverse_mass)[2], bool rolls);
+  void renewMasses(int index, const std::vector<BodyState>& states);
   void fillTurning(PointLanes& lanes, int lane, const Source& source) const;
   void makeRoomFor(const Entry& entry);
   void remember(const TouchingPair& pair, int lane, const PointLanes* points);
   void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                     const SolverBodies& bodies) const;
   // Position-independent code inlines what is declared so.
+  inline void renewMassesOf(const Block& block, const std::vector<BodyState>& states);
   inline void carryBlock(const Block& block, std::vector<BodyState>& states);
   inline void solveBlock(int index, Pass pass, std::vector<BodyState>& states);
   INNERSPHERE_WIDE void carryWide(int index, std::vector<BodyState>& states);
+  INNERSPHERE_WIDE void renewMassesWide(int index, const std::vector<BodyState>& states);
   INNERSPHERE_WIDE void solveWide(int index, Pass pass, std::vector<BodyState>& states);
+  inline static bool hasTurnedFar(const Block& block, const LaneBodies& a, const LaneBodies& b);
   inline static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
   inline static void roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way,
                           Lanes3& to_a, Lanes3& to_b);

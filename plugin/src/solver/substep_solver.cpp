@@ -135,6 +135,7 @@ void SubstepSolver::Impl::step(btScalar substep) {
   } while (contacts_.takeImpact() && passes < kMostPasses);
   crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.move(begin, end, substep); });
   bodies_.moveDriven(substep);
+  for (int i = 0; i < constraints_.count(); ++i) constraints_.refactor(i, bodies_);
   // As many take the speed back that was given to drive bodies apart: what fewer leave of it throws bodies.
   // What arrives is stopped by several, too: by one alone a face that lands flat would slide away.
   bool arrives = contacts_.takeArrival();
@@ -195,8 +196,9 @@ void SubstepSolver::Impl::report() {
   if (body == nullptr && contacts_.broken() == 0 && constraints_.broken() == 0) return;
   reported_ = true;
   std::string message =
-      "SubstepSolver leaves out bodies, contacts and rows of constraints that have infinite or undefined "
-      "velocities, forces, places or properties: such bodies are stopped, and nothing touches them. ";
+      "SubstepSolver leaves out bodies, contacts and rows of constraints whose velocities, forces, places or "
+      "properties are, or have become, infinite or undefined: such bodies are stopped, and nothing touches "
+      "them. ";
   if (body != nullptr) message += "The first such body has " + numbersOf(*body) + ". ";
   log(message + "This is said once.");
 }

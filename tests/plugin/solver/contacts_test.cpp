@@ -1,10 +1,12 @@
 // Contacts under SubstepSolver, most of Bullet's own shapes, against closed forms, at 60 steps a second.
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 
+#include "solver/contact_rows.hpp"
 #include "solver/solver_world.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
@@ -414,6 +416,86 @@ TEST(SubstepContacts, ABodyThatTumblesKeepsItsMomentumAndEnergy) {
   world.run(20);
   EXPECT_LT((momentum() - before).length(), 1e-3 * before.length());
   EXPECT_NEAR(world.energy(), energy, 0.01 * energy);
+}
+
+/// One step in one substep: a rod turns by `angle` after its row was made, which a pass is to stop.
+void stopATurnedRod(btScalar angle) {
+  constexpr btScalar kTime = btScalar(1) / 60;
+  SolverWorld world;
+  btRigidBody& rod = world.addBox(btVector3(0.5f, 0.025f, 0.025f), btScalar(0.1), btVector3(0, 0, 0));
+  btRigidBody& wall = world.addBox(btVector3(1, 1, 1), 0, btVector3(-2, 0, 0));
+  const btVector3 arm(0.4f, 0.05f, 0), normal(1, 0, 0), spin(0, angle / kTime, 0);
+  rod.setLinearVelocity(btVector3(-1, 0, 0));
+  rod.setAngularVelocity(spin);
+  rod.setFlags(0);
+  btPersistentManifold manifold(&rod, &wall, 0, 1, 1);
+  manifold.m_index1a = 0;
+  btManifoldPoint point(arm, btVector3(0, 0, 0), normal, 0);
+  point.m_positionWorldOnA = point.m_positionWorldOnB = arm;
+  manifold.addManifoldPoint(point);
+  btPersistentManifold* manifolds[] = {&manifold};
+  btCollisionObject* objects[] = {&rod, &wall};
+  btContactSolverInfo info;
+  info.m_timeStep = kTime;
+  SolverBodies bodies;
+  bodies.begin(2, kTime);
+  bodies.find(0, 2, objects);
+  bodies.collect();
+  bodies.fill(0, 1);
+  ContactRows contacts;
+  contacts.begin(1);
+  contacts.find(0, 1, manifolds, bodies);
+  contacts.collect(bodies);
+  contacts.beginStep(info, 1, SubstepOptions().depth);
+  const int pair = 0;
+  contacts.clearBlocks();
+  contacts.addBlock(&pair, 1);
+  contacts.prepare(0, bodies);
+  bodies.move(0, 1, kTime);
+  contacts.solve(0, Pass::relax, bodies.states());
+  rod.setCompanionId(-1);
+  const BodyState& state = bodies.state(0);
+  // Points of what is flat stay where they are, as seen from the body.
+  const btScalar before = (rod.getLinearVelocity() + spin.cross(arm)).dot(normal);
+  EXPECT_NEAR((state.velocity + state.spin.cross(arm)).dot(normal) / before, 0, 1e-4) << angle;
+}
+
+TEST(SubstepContacts, RowsOfARodFollowAsItTurns) {
+  for (const btScalar angle : {0.1f, 0.5f, 1.0f, 1.5f, 3.0f}) stopATurnedRod(angle);
+}
+
+TEST(SubstepContacts, RodsThatWhirlIntoEachOtherGainNothing) {
+  const btVector3 half(0.025f, 0.025f, 0.5f);
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    std::mt19937 engine(seed);
+    const auto any = [&] { return btScalar(engine() % 2001) / 1000 - 1; };
+    SolverWorld world;
+    world.world.setGravity(btVector3(0, 0, 0));
+    btVector3 momentum(0, 0, 0);
+    for (int i = 0; i < 8; ++i) {
+      const btVector3 at(any() / 10, btScalar(0.12) * btScalar(i), any() / 4);
+      btRigidBody& rod = world.addBox(half, btScalar(0.1), at);
+      const btQuaternion turn(any(), any(), any(), any());
+      rod.setCenterOfMassTransform(btTransform(turn.normalized(), at));
+      rod.setLinearVelocity(btVector3(any(), any() - btScalar(i), any()));
+      rod.setAngularVelocity(btVector3(any(), any(), any()) * 30);
+      momentum += rod.getLinearVelocity();
+    }
+    const auto energy = [&] {
+      double places = 0;  // no gravity
+      for (const auto& rod : world.bodies)
+        places += double(rod->getMass() * kGravity * rod->getWorldTransform().getOrigin().z());
+      return world.energy() - places;
+    };
+    const double start = energy();
+    for (int i = 0; i < 40; ++i) {
+      world.step();
+      ASSERT_LT(energy(), 1.02 * start) << seed << ", step " << i;
+    }
+    EXPECT_LT(energy(), 0.9 * start) << seed;
+    for (const auto& rod : world.bodies) momentum -= rod->getLinearVelocity();
+    EXPECT_LT(momentum.length(), 1e-3) << seed;
+  }
 }
 
 // All corners of a packing arrive in one substep. What one of them bears turns the body until the others

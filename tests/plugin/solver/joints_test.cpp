@@ -110,6 +110,26 @@ TEST(SubstepJoints, AFastTopPrecessesAsItsMomentsSay) {
   EXPECT_NEAR(top.getWorldTransform().getOrigin().z(), kArm * c, 0.01 * kArm);
 }
 
+TEST(SubstepJoints, ARodThatWhirlsOnABallJointGainsNothing) {
+  for (const btScalar rate : {20, 60, 120, 200}) {  // [rad/s]
+    SolverWorld world;
+    world.world.setGravity(btVector3(0, 0, 0));
+    btRigidBody& rod = world.addBox(btVector3(0.025f, 0.025f, 0.5f), btScalar(0.1), btVector3(0, 0, 0));
+    world.join<btPoint2PointConstraint>(rod, btVector3(0, 0, 0.5f));
+    const btVector3 spin(rate, 0, btScalar(0.3) * rate);
+    rod.setAngularVelocity(spin);
+    rod.setLinearVelocity(spin.cross(btVector3(0, 0, -0.5f)));
+    const auto energy = [&] {
+      return world.energy() - double(rod.getMass() * kGravity * rod.getWorldTransform().getOrigin().z());
+    };
+    const double start = energy();
+    for (int i = 0; i < 120; ++i) {
+      world.step();
+      ASSERT_LT(energy(), 1.001 * start) << rate << ", step " << i;
+    }
+  }
+}
+
 TEST(SubstepJoints, ASliderMovesAlongItsAxisUnderGravityOnly) {
   SolverWorld world;
   btRigidBody& carriage = world.addBox(btVector3(0.1f, 0.1f, 0.1f), 1, btVector3(0, 0, 0));
