@@ -179,7 +179,9 @@ SmoothNormals::Bend SmoothNormals::bendBeyond(std::size_t t, std::size_t k) cons
   const btScalar here = (facet.face - start).dot(way) * sense;
   if (btFabs(here) < kFlat) return Bend::none;
   if (here < 0 || here > kOwn * btFabs(angle)) return Bend::goes_on;
-  const btScalar there = (facet.normals[opposite] - facet.face).dot(way) * sense;
+  const btVector3 lean = (facet.normals[opposite] - facet.face) * sense;
+  // Not what leans on along the edge: the far corner may lie on a fold that meets this edge aslant.
+  const btScalar there = btMin(lean.dot(way), lean.dot(unit(facet.inwards[k])));
   // Irregular cuts of a curved surface bend to and fro, but not in straight rows.
   if (there * kUneven < -here && btFabs(start.dot(edge)) * kUneven > here) return Bend::none;
   return there * kUneven < here ? Bend::ends : Bend::goes_on;
@@ -235,6 +237,8 @@ void SmoothNormals::findFolds(const Surface& surface, const Around& around) {
       if (on_fold[v]) facets_[t].normals[k] = normalAt(surface, fanOf(t, around[v]), v, facets_[t]);
     }
   }
+  // Where these folds no longer turn normals, others may show.
+  if (!folds.empty()) findFolds(surface, around);
 }
 
 /// Of the triangles around a corner, those that are reached from one of them across no sharp edge.

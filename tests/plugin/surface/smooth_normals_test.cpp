@@ -252,6 +252,19 @@ TEST(SmoothNormals, FacesOfAPyramidAreFlat) {
   for (std::size_t t = 0; t < 4; ++t) expectFlat(normals, t);
 }
 
+TEST(SmoothNormals, FacesOfAHipRoofAreFlat) {
+  for (const double pitch : {5.0, 10.0, 14.0}) {
+    const auto top = static_cast<float>(slope(pitch));
+    Surface surface;
+    surface.vertices = {{-2, -1, 0},  {2, -1, 0},  {2, 1, 0}, {-2, 1, 0},
+                        {-1, 0, top}, {1, 0, top}, {0, 0, -1}};
+    surface.triangles = {{0, 1, 5}, {0, 5, 4}, {2, 3, 5}, {3, 4, 5}, {1, 2, 5},
+                         {3, 0, 4}, {1, 0, 6}, {2, 1, 6}, {3, 2, 6}, {0, 3, 6}};
+    const SmoothNormals normals(surface);
+    for (std::size_t t = 0; t < 6; ++t) expectFlat(normals, t);
+  }
+}
+
 TEST(SmoothNormals, RampsAndCorrugationsAreFlat) {
   const double rise = 0.6 * slope(20), wave = 0.25 * slope(10);
   const SmoothNormals ramp(
