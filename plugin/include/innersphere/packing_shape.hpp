@@ -20,6 +20,11 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// origin of their frame, and turn as if its axes were principal axes of inertia. So the shape has the
 /// principal frame of the solid, unless another one is asked for, and that is not the frame of the mesh.
 /// meshTransform() and bodyTransform() lead from one to the other.
+///
+/// Contacts are on the triangles of the mesh, or on the curved surface that was cut into them: triangles that
+/// meet at less than 30 degrees are facets of one if it bends on, in the same sense and about as much, at the
+/// far side of at least one of the two. Faces that only meet at an angle, as on a roof, are flat at any
+/// angle.
 class PackingShape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();

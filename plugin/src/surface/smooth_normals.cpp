@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "common/bullet_vectors.hpp"
 
@@ -16,6 +17,11 @@ constexpr btScalar kFlat = btScalar(1e-4);
 /// straight tube, and the others of the rounding or the bend in which it ends: no cut of one curve has such
 /// neighbours.
 constexpr btScalar kMuchFurther = 4;
+/// Ratio: a curve that was cut into facets does not turn this much more at one side of a facet than at the
+/// other.
+constexpr btScalar kUneven = 8;
+/// Ratio: where normals lean further than this times the angle at an edge, it is other edges that turn them.
+constexpr btScalar kOwn = 2;
 /// How far beyond an edge, in weights, a line still meets a triangle, and a point is still over it: no
 /// rounding leaves a gap between two, or takes the bulge from a point on a rim.
 constexpr btScalar kBeyond = btScalar(1e-4);
@@ -142,20 +148,128 @@ btVector3 SmoothNormals::normalAt(const Surface& surface, const std::vector<std:
   return unit(sum);
 }
 
-void SmoothNormals::setNormals(const Surface& surface, const Around& around) {
+void SmoothNormals::setAcross(const Surface& surface, const Around& around) {
   for (std::size_t t = 0; t < facets_.size(); ++t) {
     Facet& facet = facets_[t];
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = surface.triangles[t][k];
       facet.across[k] = kSeam;
-      for (std::uint32_t other : around[v]) {
+      for (std::uint32_t other : around[surface.triangles[t][k]]) {
         const auto& triangle = surface.triangles[other];
         if (other != t &&
             std::find(triangle.begin(), triangle.end(), surface.triangles[t][next(k)]) != triangle.end())
           facet.across[k] = isSmooth(facet, facets_[other]) ? other : kSharp + other;
       }
-      facet.normals[k] = normalAt(surface, around[v], v, facet);
     }
+  }
+}
+
+/// By how the normals at its corners lean from a triangle's own, along the more upright of the edges that
+/// lead from this one to the corner opposite: on a curved surface they do so equally at both ends.
+SmoothNormals::Bend SmoothNormals::bendBeyond(std::size_t t, std::size_t k) const {
+  const Facet& facet = facets_[t];
+  const std::size_t opposite = next(next(k));
+  const btVector3 edge = unit(facet.corners[next(k)] - facet.corners[k]);
+  const btVector3 ways[] = {unit(facet.corners[opposite] - facet.corners[k]),
+                            unit(facet.corners[opposite] - facet.corners[next(k)])};
+  const bool from_next = btFabs(ways[1].dot(edge)) < btFabs(ways[0].dot(edge));
+  const btVector3& way = ways[from_next];
+  const btVector3& start = facet.normals[from_next ? next(k) : k];
+  const btScalar angle = (facet.face - facets_[facet.across[k]].face).dot(way);
+  const btScalar sense = angle < 0 ? btScalar(-1) : btScalar(1);
+  const btScalar here = (facet.face - start).dot(way) * sense;
+  if (btFabs(here) < kFlat) return Bend::none;
+  if (here < 0 || here > kOwn * btFabs(angle)) return Bend::goes_on;
+  const btVector3 lean = (facet.normals[opposite] - facet.face) * sense;
+  // Not what leans on along the edge: the far corner may lie on a fold that meets this edge aslant.
+  const btScalar there = btMin(lean.dot(way), lean.dot(unit(facet.inwards[k])));
+  // Irregular cuts of a curved surface bend to and fro, but not in straight rows.
+  if (there * kUneven < -here && btFabs(start.dot(edge)) * kUneven > here) return Bend::none;
+  return there * kUneven < here ? Bend::ends : Bend::goes_on;
+}
+
+/// Makes sharp the edges in which faces meet that are flat across them: on neither side the bend goes on.
+void SmoothNormals::findFolds(const Surface& surface, const Around& around) {
+  struct Fold {
+    std::uint32_t* across[2];  // from either side
+    std::uint32_t ends[2];
+  };
+  std::vector<Fold> folds;
+  std::vector<std::uint32_t> sharp_ends(surface.vertices.size());  // from each side of an edge
+  for (std::uint32_t t = 0; t < facets_.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& across = facets_[t].across[k];
+      const std::uint32_t ends[] = {surface.triangles[t][k], surface.triangles[t][next(k)]};
+      if (across >= kSeam) {
+        for (const std::uint32_t v : ends) ++sharp_ends[v];
+      }
+      if (across >= kSeam || across < t) continue;
+      std::uint32_t* const others = facets_[across].across;
+      std::uint32_t* const back = std::find(others, others + 3, t);
+      if (back == others + 3) continue;
+      const Bend bends[] = {bendBeyond(t, k), bendBeyond(across, static_cast<std::size_t>(back - others))};
+      const auto either = [&](Bend bend) { return bends[0] == bend || bends[1] == bend; };
+      if (either(Bend::ends) && !either(Bend::goes_on))
+        folds.push_back({{&across, back}, {ends[0], ends[1]}});
+    }
+  }
+  const auto turn = [&](const Fold& fold, bool sharp) {
+    for (std::uint32_t* const across : fold.across) *across = sharp ? *across + kSharp : *across - kSharp;
+    for (const std::uint32_t v : fold.ends) sharp_ends[v] = sharp ? sharp_ends[v] + 2 : sharp_ends[v] - 2;
+  };
+  for (const Fold& fold : folds) turn(fold, true);
+  // What ends within the surface does not part it.
+  const auto endsWithin = [&](const Fold& fold) {
+    const bool ends = sharp_ends[fold.ends[0]] <= 2 || sharp_ends[fold.ends[1]] <= 2;
+    if (ends) turn(fold, false);
+    return ends;
+  };
+  for (std::size_t before = folds.size() + 1; before != folds.size();) {
+    before = folds.size();
+    folds.erase(std::remove_if(folds.begin(), folds.end(), endsWithin), folds.end());
+  }
+  std::vector<bool> on_fold(surface.vertices.size());
+  for (const Fold& fold : folds) {
+    for (const std::uint32_t v : fold.ends) on_fold[v] = true;
+  }
+  for (std::uint32_t t = 0; t < facets_.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = surface.triangles[t][k];
+      if (on_fold[v]) facets_[t].normals[k] = normalAt(surface, fanOf(t, around[v]), v, facets_[t]);
+    }
+  }
+  // Where these folds no longer turn normals, others may show.
+  if (!folds.empty()) findFolds(surface, around);
+}
+
+/// Of the triangles around a corner, those that are reached from one of them across no sharp edge.
+std::vector<std::uint32_t> SmoothNormals::fanOf(std::uint32_t t,
+                                                const std::vector<std::uint32_t>& around) const {
+  const auto has = [](const std::vector<std::uint32_t>& some, std::uint32_t other) {
+    return std::find(some.begin(), some.end(), other) != some.end();
+  };
+  std::vector<std::uint32_t> reached{t};
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (const std::uint32_t other : facets_[reached[i]].across) {
+      if (has(around, other) && !has(reached, other)) reached.push_back(other);
+    }
+  }
+  // In the order in which normals are summed up elsewhere.
+  std::vector<std::uint32_t> fan;
+  std::copy_if(around.begin(), around.end(), std::back_inserter(fan),
+               [&](std::uint32_t other) { return has(reached, other); });
+  return fan;
+}
+
+void SmoothNormals::setNormals(const Surface& surface, const Around& around) {
+  setAcross(surface, around);
+  for (std::size_t t = 0; t < facets_.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = surface.triangles[t][k];
+      facets_[t].normals[k] = normalAt(surface, around[v], v, facets_[t]);
+    }
+  }
+  findFolds(surface, around);
+  for (Facet& facet : facets_) {
     facet.curvature = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const btVector3 turn = facet.normals[next(k)] - facet.normals[k];

@@ -15,9 +15,9 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Knows the normals of a surface. Neighbouring triangles that meet at less than 30 degrees are taken as one
-/// curved surface: its normal turns smoothly across them. Sharper edges stay sharp, and flat faces exactly
-/// flat. All that is known of a triangle before a ray comes is kept with it. Const members are safe to call
-/// from several threads at once.
+/// curved surface if that bends on beyond at least one of them: its normal turns smoothly across them. Other
+/// edges stay sharp, and flat faces exactly flat. All that is known of a triangle before a ray comes is kept
+/// with it. Const members are safe to call from several threads at once.
 class SmoothNormals {
  public:
   explicit SmoothNormals(const Surface& surface);
@@ -103,6 +103,13 @@ class SmoothNormals {
   static bool isSmooth(const Facet& a, const Facet& b);
   btVector3 normalAt(const Surface& surface, const std::vector<std::uint32_t>& around, std::uint32_t corner,
                      const Facet& facet) const;
+  void setAcross(const Surface& surface, const Around& around);
+  /// Says whether the surface, beyond a triangle at an edge of which it bends, bends on: in the same sense,
+  /// and about as much. `none`: it does not bend there, or nothing can be told.
+  enum class Bend { none, ends, goes_on };
+  Bend bendBeyond(std::size_t triangle, std::size_t edge) const;
+  void findFolds(const Surface& surface, const Around& around);
+  std::vector<std::uint32_t> fanOf(std::uint32_t triangle, const std::vector<std::uint32_t>& around) const;
   void setNormals(const Surface& surface, const Around& around);
   void countToSharp();
   static bool crossPlane(const Facet& facet, const btVector3& from, const btVector3& direction,

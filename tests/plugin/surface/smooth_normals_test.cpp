@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace innersphere::test {
 namespace {
@@ -188,6 +191,192 @@ TEST(SmoothNormals, ALongSideIsStraightUpToItsRoundEnds) {
     const SmoothNormals::Place there = normals.at(t, crossing);
     EXPECT_NEAR(crossing.distance + there.bulge, kTube, 1e-3 * kTube);
     EXPECT_NEAR(there.normal.z(), 0, 1e-4);
+  }
+}
+
+/// A prism along y, 1 m long, with this outline in x and z, counter-clockwise seen from y = -infinity. Its
+/// sides, two triangles each, come first.
+Surface prism(const std::vector<std::array<double, 2>>& outline) {
+  Surface surface;
+  for (const double y : {-0.5, 0.5}) {
+    for (const auto& p : outline)
+      surface.vertices.push_back({static_cast<float>(p[0]), static_cast<float>(y), static_cast<float>(p[1])});
+  }
+  const auto n = static_cast<std::uint32_t>(outline.size());
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t j = (i + 1) % n;
+    surface.triangles.push_back({i, n + j, j});
+    surface.triangles.push_back({i, n + i, n + j});
+  }
+  for (std::uint32_t i = 1; i + 1 < n; ++i) {
+    surface.triangles.push_back({0, i, i + 1});
+    surface.triangles.push_back({n, n + i + 1, n + i});
+  }
+  return surface;
+}
+
+/// A triangle is flat to the last bit of its corners, with its own normal everywhere.
+void expectFlat(const SmoothNormals& normals, std::size_t triangle) {
+  SmoothNormals::Crossing crossing;
+  const btVector3 out = normals.face(triangle);
+  ASSERT_TRUE(normals.cross(triangle, normals.middle(triangle) + out, -out, crossing));
+  const SmoothNormals::Place there = normals.at(triangle, crossing);
+  EXPECT_NEAR(there.bulge, 0, 1e-6) << triangle;
+  EXPECT_NEAR(there.normal.distance(out), 0, 1e-4) << triangle;
+  EXPECT_EQ(normals.curvature(triangle), 0) << triangle;
+}
+
+double slope(double degrees) {
+  return std::tan(degrees * M_PI / 180);
+}
+
+TEST(SmoothNormals, FacesThatMeetInOneEdgeAreFlat) {
+  for (const double fold : {5.0, 10.0, 20.0, 28.0}) {
+    const double top = 0.3 + slope(fold / 2);
+    const SmoothNormals normals(prism({{-1, 0}, {1, 0}, {1, 0.3}, {0, top}, {-1, 0.3}}));
+    for (std::size_t t = 0; t < 10; ++t) expectFlat(normals, t);
+    // It ends at its ridge.
+    const auto ridge = normals.untilSharpEdge(4, normals.middle(4), btVector3(-1, 0, 0));
+    ASSERT_TRUE(ridge.found()) << fold;
+    EXPECT_NEAR(normals.endsOf(ridge).from.x(), 0, 1e-6);
+    EXPECT_NEAR(normals.endsOf(ridge).to.z(), top, 1e-6);
+  }
+}
+
+TEST(SmoothNormals, FacesOfAPyramidAreFlat) {
+  Surface surface;
+  surface.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0.17F}, {0, 0, -1}};
+  surface.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4},
+                       {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}};
+  const SmoothNormals normals(surface);
+  for (std::size_t t = 0; t < 4; ++t) expectFlat(normals, t);
+}
+
+TEST(SmoothNormals, FacesOfAHipRoofAreFlat) {
+  for (const double pitch : {5.0, 10.0, 14.0}) {
+    const auto top = static_cast<float>(slope(pitch));
+    Surface surface;
+    surface.vertices = {{-2, -1, 0},  {2, -1, 0},  {2, 1, 0}, {-2, 1, 0},
+                        {-1, 0, top}, {1, 0, top}, {0, 0, -1}};
+    surface.triangles = {{0, 1, 5}, {0, 5, 4}, {2, 3, 5}, {3, 4, 5}, {1, 2, 5},
+                         {3, 0, 4}, {1, 0, 6}, {2, 1, 6}, {3, 2, 6}, {0, 3, 6}};
+    const SmoothNormals normals(surface);
+    for (std::size_t t = 0; t < 6; ++t) expectFlat(normals, t);
+  }
+}
+
+TEST(SmoothNormals, RampsAndCorrugationsAreFlat) {
+  const double rise = 0.6 * slope(20), wave = 0.25 * slope(10);
+  const SmoothNormals ramp(
+      prism({{-1, 0}, {1, 0}, {1, 0.3 + rise}, {0.3, 0.3 + rise}, {-0.3, 0.3}, {-1, 0.3}}));
+  for (std::size_t t = 0; t < 12; ++t) expectFlat(ramp, t);
+  std::vector<std::array<double, 2>> outline{{-1, 0}, {1, 0}};
+  for (int i = 0; i <= 8; ++i) outline.push_back({1 - 0.25 * i, 0.3 + (i % 2 == 0 ? 0 : wave)});
+  const SmoothNormals sheet(prism(outline));
+  for (std::size_t t = 0; t < 2 * outline.size(); ++t) expectFlat(sheet, t);
+}
+
+/// Three faces in a row are an arc, unless vertices on the middle one show it to be flat.
+TEST(SmoothNormals, VerticesAlongAFaceShowThatItIsFlat) {
+  const double rise = 0.5 * slope(20), top = 0.3 + rise;
+  const std::vector<std::array<double, 2>> low{{-1, 0}, {1, 0}, {1, 0.3}};
+  for (const bool shown : {false, true}) {
+    auto outline = low;
+    outline.push_back({0.5, top});
+    if (shown) outline.push_back({0, top});
+    outline.insert(outline.end(), {{-0.5, top}, {-1, 0.3}});
+    const SmoothNormals normals(prism(outline));
+    if (!shown) {
+      EXPECT_GT(normals.curvature(6), 0);
+      continue;
+    }
+    for (std::size_t t = 0; t < 2 * outline.size(); ++t) expectFlat(normals, t);
+  }
+}
+
+/// About z: places of the outline are (distance from the axis, z), upwards from a place on the axis to
+/// another.
+Surface turned(const std::vector<std::array<double, 2>>& outline, std::uint32_t around) {
+  Surface surface;
+  for (const auto& p : outline) {
+    for (std::uint32_t i = 0; i < (p[0] > 0 ? around : 1); ++i) {
+      const double angle = 2 * M_PI * i / around;
+      surface.vertices.push_back({static_cast<float>(p[0] * std::cos(angle)),
+                                  static_cast<float>(p[0] * std::sin(angle)), static_cast<float>(p[1])});
+    }
+  }
+  const auto last = static_cast<std::uint32_t>(surface.vertices.size()) - 1;
+  for (std::uint32_t i = 0; i < around; ++i) {
+    const std::uint32_t j = (i + 1) % around;
+    surface.triangles.push_back({0, 1 + j, 1 + i});
+    surface.triangles.push_back({last, last - around + i, last - around + j});
+    for (std::uint32_t low = 1; low + around < last; low += around) {
+      surface.triangles.push_back({low + i, low + j, low + around + j});
+      surface.triangles.push_back({low + i, low + around + j, low + around + i});
+    }
+  }
+  return surface;
+}
+
+/// A bottle with a straight wall in some rings and a straight shoulder: cone and cylinder are exactly known.
+TEST(SmoothNormals, WallAndShoulderOfABottleMeetInAFold) {
+  constexpr double kWall = 0.135, kNeck = 0.045, kLength = 0.5;
+  constexpr std::uint32_t kAround = 96;
+  for (const double lean : {10.0, 26.6}) {
+    for (const int rings : {1, 4, 16, 64}) {
+      const double top = kLength + (kWall - kNeck) / slope(lean);
+      std::vector<std::array<double, 2>> outline{{0, 0}};
+      for (int i = 0; i <= rings; ++i) outline.push_back({kWall, kLength * i / rings});
+      outline.insert(outline.end(), {{kNeck, top}, {kNeck, top + 0.2}, {0, top + 0.2}});
+      const Surface surface = turned(outline, kAround);
+      const SmoothNormals normals(surface);
+      for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const btVector3 middle = normals.middle(t);
+        const bool shoulder = middle.z() > kLength;
+        if (std::fabs(normals.face(t).z()) > 0.9 || middle.z() > top) continue;  // bottom and neck
+        const double up = shoulder ? std::sin(lean * M_PI / 180) : 0;
+        SmoothNormals::Crossing crossing;
+        const btVector3 out = normals.face(t);
+        ASSERT_TRUE(normals.cross(t, middle + out, -out, crossing));
+        const SmoothNormals::Place there = normals.at(t, crossing);
+        const btVector3 place = middle + out * there.bulge;
+        const double radius = shoulder ? kNeck + (top - place.z()) * slope(lean) : kWall;
+        EXPECT_NEAR(std::hypot(double(place.x()), double(place.y())), radius, 3e-5) << t << " of " << rings;
+        EXPECT_NEAR(there.normal.z(), up, 1e-3) << t << " of " << rings;
+      }
+    }
+  }
+}
+
+/// A rounding ends in a wall along which it is tangential: no fold. Both go on in each other.
+TEST(SmoothNormals, ARoundingGoesOnInItsWall) {
+  constexpr double kWall = 0.1, kRound = 0.02, kHeight = 0.3;
+  for (const int rings : {1, 30}) {
+    std::vector<std::array<double, 2>> outline{{0, 0}};
+    for (int i = 0; i <= rings; ++i) outline.push_back({kWall, kHeight * i / rings});
+    for (int i = 1; i <= 8; ++i) {
+      const double angle = M_PI / 16 * i;
+      outline.push_back({kWall - kRound * (1 - std::cos(angle)), kHeight + kRound * std::sin(angle)});
+    }
+    outline.push_back({0, kHeight + kRound});
+    const Surface surface = turned(outline, 48);
+    const SmoothNormals normals(surface);
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const btVector3 middle = normals.middle(t);
+      if (middle.z() < kHeight || normals.face(t).z() > 0.999) continue;
+      const btVector3 down(0, 0, -1);
+      const auto ending = normals.untilSharpEdge(t, middle, down);
+      if (ending.found()) {
+        EXPECT_LT(normals.endsOf(ending).from.z(), 0.01) << t;
+      }
+      SmoothNormals::Crossing crossing;
+      const btVector3 out = normals.face(t);
+      ASSERT_TRUE(normals.cross(t, middle + out, -out, crossing));
+      const btVector3 place = middle + out * normals.at(t, crossing).bulge;
+      const double from_axis = std::hypot(double(place.x()), double(place.y()));
+      const double from_ring = std::hypot(from_axis - (kWall - kRound), double(place.z()) - kHeight);
+      EXPECT_NEAR(from_ring, kRound, 2e-4) << t;
+    }
   }
 }
 

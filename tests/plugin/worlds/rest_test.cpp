@@ -2,9 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
 
+#include "innersphere/mesh.hpp"
+#include "innersphere/solids.hpp"
 #include "named_packings.hpp"
 #include "test_world.hpp"
+#include "turned_meshes.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -54,6 +60,72 @@ TEST_P(Rest, IsAtTheSurfaceAndDoesNotCreep) {
   const btTransform after = body.getWorldTransform();
   EXPECT_LT(before.getOrigin().distance(after.getOrigin()), 1e-4);
   EXPECT_LT(before.getRotation().angleShortestPath(after.getRotation()), 1e-3);
+}
+
+/// A block along y, 1 m long, with a roof of two faces that fold by an angle, and sides of 0.3 m.
+Mesh blockWithARoof(double fold) {
+  const double top = 0.3 + std::tan(fold / 2);
+  const std::vector<std::array<double, 2>> outline{{-1, 0}, {1, 0}, {1, 0.3}, {0, top}, {-1, 0.3}};
+  Mesh mesh;
+  for (const double y : {-0.5, 0.5}) {
+    for (const auto& p : outline) mesh.vertices.push_back({p[0], y, p[1]});
+  }
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    const std::uint32_t j = (i + 1) % 5;
+    mesh.triangles.push_back({i, 5 + j, j});
+    mesh.triangles.push_back({i, 5 + i, 5 + j});
+  }
+  for (std::uint32_t i = 1; i < 4; ++i) {
+    mesh.triangles.push_back({0, i, i + 1});
+    mesh.triangles.push_back({5, 6 + i, 5 + i});
+  }
+  return mesh;
+}
+
+/// Bullet's own box, and a packed one, on one face of a roof, with gravity straight onto it.
+TEST(RestOnARoof, IsAtItsFace) {
+  for (const double degrees : {10.0, 20.0, 28.0}) {
+    const double fold = degrees * M_PI / 180, half = 0.1;
+    const auto roof = makePackedShape(*makeSolid(blockWithARoof(fold), "roof"), 200);
+    const btVector3 out(btScalar(std::sin(fold / 2)), 0, btScalar(std::cos(fold / 2)));
+    const btVector3 on_face(btScalar(0.5), 0, btScalar(0.3 + 0.5 * std::tan(fold / 2)));
+    const btQuaternion along_face(btVector3(0, 1, 0), btScalar(fold / 2));
+    for (const bool packed : {false, true}) {
+      TestWorld world;
+      world.world.setGravity(out * btScalar(-9.81));
+      const btTransform place = roof->bodyTransform(btTransform::getIdentity());
+      world.add(roof, 0, place.getOrigin(), place.getRotation());
+      std::shared_ptr<btCollisionShape> shape =
+          std::make_shared<btBoxShape>(btVector3(btScalar(half), btScalar(half), btScalar(half)));
+      if (packed) shape = makePackedShape(*makeBox({2 * half, 2 * half, 2 * half}), 200);
+      btRigidBody& box = world.add(shape, 1, on_face + out * btScalar(half + 0.005), along_face);
+      world.run(1.5, 1.0 / 240);
+      EXPECT_NEAR((box.getWorldTransform().getOrigin() - on_face).dot(out), half, 1e-4)
+          << degrees << (packed ? ", packed" : ", Bullet's");
+    }
+  }
+}
+
+/// A bottle that was turned on a lathe, with one straight wall and a shoulder, lies on its wall.
+TEST(RestOfABottle, IsAtItsWall) {
+  constexpr double kRadius = 0.135, kNeck = 0.045, kLength = 0.5;
+  for (const double lean : {15.0, 26.6}) {
+    const double top = kLength + (kRadius - kNeck) / std::tan(lean * M_PI / 180);
+    const Mesh mesh = turnedMesh(
+        {{0, 0}, {kRadius, 0}, {kRadius, kLength}, {kNeck, top}, {kNeck, top + 0.2}, {0, top + 0.2}});
+    const auto shape = makePackedShape(*makeSolid(mesh, "bottle"), 250);
+    TestWorld world;
+    world.addFloor();
+    const btTransform lies(btQuaternion(btVector3(0, 1, 0), SIMD_HALF_PI), btVector3(0, 0, btScalar(0.137)));
+    const btTransform place = shape->bodyTransform(lies);
+    btRigidBody& body = world.add(shape, 1, place.getOrigin(), place.getRotation());
+    body.setDamping(btScalar(0.3), btScalar(0.3));
+    world.run(2, 1.0 / 240);
+    for (const double z : {0.0, kLength}) {
+      const btVector3 on_axis = shape->meshTransform(body.getWorldTransform()) * btVector3(0, 0, btScalar(z));
+      EXPECT_NEAR(on_axis.z(), kRadius, 1e-4) << lean << " at " << z;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(
