@@ -49,23 +49,22 @@ const ProbedSample* deepestTilted(const std::vector<ProbedSample>& samples) {
   return deepest;
 }
 
-/// Whether a flat face bears a surface that bends and ends in no edge. That will come down beside where a
-/// line through both leaves it, no further away than they are apart.
-bool isFlatBelowRound(const OpposedPoints& points, btScalar flat_ends, btScalar flat, btScalar round,
-                      btScalar round_ends) {
-  return flat == 0 && round != 0 && round_ends >= BT_LARGE_FLOAT &&
-         flat_ends > points.on_a.distance(points.on_b);
+/// Whether a flat face bears a surface that bends, and ends in no edge: it goes on to where that has its
+/// normal. `slope` is how far the normals are apart.
+bool isFlatBelowRound(btScalar flat, btScalar flat_ends, btScalar round, btScalar round_ends,
+                      btScalar slope) {
+  return flat == 0 && round > 0 && round_ends >= BT_LARGE_FLOAT && flat_ends * round > slope;
 }
 
 /// Of two faces that meet at an angle, whether A's bears the other one, which ends in an edge where the
 /// contact would get deeper. Nothing if two edges cross.
 std::optional<bool> isFaceOfA(const OpposedPoints& points, const FaceExtents* extents) {
   if (extents == nullptr) return false;
-  const btVector3 deeper = (points.normal_b - points.normal_a).normalized();
+  const btScalar slope = points.normal_b.distance(points.normal_a);
+  const btVector3 deeper = (points.normal_b - points.normal_a) / slope;
   const FaceExtents::EdgeDistances distances = extents->edgeDistances(points, deeper);
-  if (isFlatBelowRound(points, distances.b, points.curvature_b, points.curvature_a, distances.a))
-    return false;
-  if (isFlatBelowRound(points, distances.a, points.curvature_a, points.curvature_b, distances.b)) return true;
+  if (isFlatBelowRound(points.curvature_b, distances.b, points.curvature_a, distances.a, slope)) return false;
+  if (isFlatBelowRound(points.curvature_a, distances.a, points.curvature_b, distances.b, slope)) return true;
   if (distances.a < kEndsSooner * distances.b) return false;
   if (distances.b < kEndsSooner * distances.a) return true;
   return std::nullopt;
