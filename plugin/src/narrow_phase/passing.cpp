@@ -28,7 +28,7 @@ bool meets(const SurfaceProbe& probe, bool of_a, const btVector3& from, const bt
 bool passes(const SurfaceProbe& probe, const StepAhead& step, const WeightedPoint& found) {
   const ContactPoint& point = found.point;
   const btScalar graze = kGrazing * step.size;
-  if (!(point.depth < graze) || found.kind == WeightedPoint::Kind::crossing) return false;
+  if (!(point.depth < graze) || found.bends || found.kind == WeightedPoint::Kind::crossing) return false;
   const btVector3 velocity = step.motion.velocityAt(point.on_b);
   const btScalar approach = velocity.dot(point.normal), ahead = kPassingSteps * step.time_step;
   const bool touches = point.depth >= 0;

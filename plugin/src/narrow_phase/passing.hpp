@@ -14,8 +14,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// past a ledge would hit it. Drops those of which, as the bodies move now, neither A's point meets B nor B's
 /// point A. What is met by less than a thousandth of the smaller body's size beside an edge is passed, too,
 /// also where it touches already: so much bodies are in what they lie on, and the next tile of a floor is no
-/// wall. Where edges cross, other places of them may meet: these points stay, and so do those of swept
-/// bodies.
+/// wall. Where edges cross, or surfaces bend, other places of them may meet: these points stay, and so do
+/// those of swept bodies.
 void dropPassing(const SurfaceProbe& probe, const StepAhead& step, std::vector<WeightedPoint>& found);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
