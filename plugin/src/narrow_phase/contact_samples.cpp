@@ -311,7 +311,6 @@ class PatchContactPoints {
     // There, so that the push leads through its centre.
     point.point.on_b = in_b ? on_a - normal * point.point.depth : on_b;
     point.moved = point.point.on_b - points.on_b;
-    point.across.setZero();
     return true;
   }
 

@@ -1,6 +1,7 @@
 // Constraints as rows: hinges, sliders, motors, limits, and what users derive from btTypedConstraint.
 #pragma once
 
+#include <atomic>
 #include <unordered_map>
 #include <vector>
 
@@ -98,7 +99,7 @@ class ConstraintRows {
   btScalar substep_ = 0;
   Softness soft_;
   int movable_ = 0;
-  int broken_ = 0;
+  std::atomic<int> broken_{0};  ///< by whichever thread finds one
   unsigned step_ = 0;
 };
 

@@ -135,7 +135,9 @@ void SubstepSolver::Impl::step(btScalar substep) {
   } while (contacts_.takeImpact() && passes < kMostPasses);
   crew_.forEach(bodies_.movable(), kBodies, [&](int begin, int end) { bodies_.move(begin, end, substep); });
   bodies_.moveDriven(substep);
-  for (int i = 0; i < constraints_.count(); ++i) constraints_.refactor(i, bodies_);
+  crew_.forEach(constraints_.count(), kJoints, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) constraints_.refactor(i, bodies_);
+  });
   // As many take the speed back that was given to drive bodies apart: what fewer leave of it throws bodies.
   // What arrives is stopped by several, too: by one alone a face that lands flat would slide away.
   bool arrives = contacts_.takeArrival();

@@ -11,8 +11,8 @@
 #include "innersphere/mesh.hpp"
 #include "innersphere/substep_solver.hpp"
 #include "named_packings.hpp"
+#include "outline_meshes.hpp"
 #include "test_world.hpp"
-#include "turned_meshes.hpp"
 
 namespace innersphere::test {
 namespace {

@@ -16,9 +16,10 @@
 #include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
 #include "local_overlap.hpp"
+#include "outline_meshes.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
-#include "turned_meshes.hpp"
+#include "thin_meshes.hpp"
 
 namespace innersphere::test {
 namespace {

@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
              (std::get<2>(info.param) ? "InPacking" : "InBox");
     });
 
-// What has a weight and no place to go but out.
+// What pushes itself out by the depth, as characters do, is out after one push.
 TEST(ReadOnlyWorld, OnePushByTheDepthTakesACubeOutOfAnother) {
   for (const Response response : {Response::compliant, Response::rigid}) {
     btDefaultCollisionConfiguration configuration;
@@ -170,6 +170,7 @@ TEST(ReadOnlyWorld, ABodyThatWasASensorLeavesAsOneThatWasNone) {
       const auto motionAfter = [&](bool was_sensor) {
         TestWorld world;
         world.world.setGravity(btVector3(0, 0, 0));
+        world.world.getSolverInfo().m_numIterations = 50;  // ten end 0.4 % above the law
         world.add(block(packed), 0, btVector3(0, 0, -1));
         btRigidBody& body = world.add(cube(), 1, placeAt(depth).getOrigin());
         body.setActivationState(DISABLE_DEACTIVATION);
@@ -182,7 +183,7 @@ TEST(ReadOnlyWorld, ABodyThatWasASensorLeavesAsOneThatWasNone) {
         }
         world.run(5 * kStep, kStep);
         // Half the size of the cube, or three times the depth, in a second.
-        EXPECT_LT(body.getLinearVelocity().length(), 1.01 * std::max(std::sqrt(3.0) / 4, 3 * depth));
+        EXPECT_LT(body.getLinearVelocity().length(), std::max(std::sqrt(3.0) / 4, 3 * depth) + 0.001);
         return world.motion();
       };
       EXPECT_EQ(motionAfter(true), motionAfter(false)) << depth << (packed ? " in packing" : " in box");

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "outline_meshes.hpp"
+
 namespace innersphere::test {
 namespace {
 
@@ -194,27 +196,6 @@ TEST(SmoothNormals, ALongSideIsStraightUpToItsRoundEnds) {
   }
 }
 
-/// A prism along y, 1 m long, with this outline in x and z, counter-clockwise seen from y = -infinity. Its
-/// sides, two triangles each, come first.
-Surface prism(const std::vector<std::array<double, 2>>& outline) {
-  Surface surface;
-  for (const double y : {-0.5, 0.5}) {
-    for (const auto& p : outline)
-      surface.vertices.push_back({static_cast<float>(p[0]), static_cast<float>(y), static_cast<float>(p[1])});
-  }
-  const auto n = static_cast<std::uint32_t>(outline.size());
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t j = (i + 1) % n;
-    surface.triangles.push_back({i, n + j, j});
-    surface.triangles.push_back({i, n + i, n + j});
-  }
-  for (std::uint32_t i = 1; i + 1 < n; ++i) {
-    surface.triangles.push_back({0, i, i + 1});
-    surface.triangles.push_back({n, n + i + 1, n + i});
-  }
-  return surface;
-}
-
 /// A triangle is flat to the last bit of its corners, with its own normal everywhere.
 void expectFlat(const SmoothNormals& normals, std::size_t triangle) {
   SmoothNormals::Crossing crossing;
@@ -233,7 +214,7 @@ double slope(double degrees) {
 TEST(SmoothNormals, FacesThatMeetInOneEdgeAreFlat) {
   for (const double fold : {5.0, 10.0, 20.0, 28.0}) {
     const double top = 0.3 + slope(fold / 2);
-    const SmoothNormals normals(prism({{-1, 0}, {1, 0}, {1, 0.3}, {0, top}, {-1, 0.3}}));
+    const SmoothNormals normals(surfaceOf(prismMesh({{-1, 0}, {1, 0}, {1, 0.3}, {0, top}, {-1, 0.3}})));
     for (std::size_t t = 0; t < 10; ++t) expectFlat(normals, t);
     // It ends at its ridge.
     const auto ridge = normals.untilSharpEdge(4, normals.middle(4), btVector3(-1, 0, 0));
@@ -268,11 +249,11 @@ TEST(SmoothNormals, FacesOfAHipRoofAreFlat) {
 TEST(SmoothNormals, RampsAndCorrugationsAreFlat) {
   const double rise = 0.6 * slope(20), wave = 0.25 * slope(10);
   const SmoothNormals ramp(
-      prism({{-1, 0}, {1, 0}, {1, 0.3 + rise}, {0.3, 0.3 + rise}, {-0.3, 0.3}, {-1, 0.3}}));
+      surfaceOf(prismMesh({{-1, 0}, {1, 0}, {1, 0.3 + rise}, {0.3, 0.3 + rise}, {-0.3, 0.3}, {-1, 0.3}})));
   for (std::size_t t = 0; t < 12; ++t) expectFlat(ramp, t);
   std::vector<std::array<double, 2>> outline{{-1, 0}, {1, 0}};
   for (int i = 0; i <= 8; ++i) outline.push_back({1 - 0.25 * i, 0.3 + (i % 2 == 0 ? 0 : wave)});
-  const SmoothNormals sheet(prism(outline));
+  const SmoothNormals sheet(surfaceOf(prismMesh(outline)));
   for (std::size_t t = 0; t < 2 * outline.size(); ++t) expectFlat(sheet, t);
 }
 
@@ -285,37 +266,13 @@ TEST(SmoothNormals, VerticesAlongAFaceShowThatItIsFlat) {
     outline.push_back({0.5, top});
     if (shown) outline.push_back({0, top});
     outline.insert(outline.end(), {{-0.5, top}, {-1, 0.3}});
-    const SmoothNormals normals(prism(outline));
+    const SmoothNormals normals(surfaceOf(prismMesh(outline)));
     if (!shown) {
       EXPECT_GT(normals.curvature(6), 0);
       continue;
     }
     for (std::size_t t = 0; t < 2 * outline.size(); ++t) expectFlat(normals, t);
   }
-}
-
-/// About z: places of the outline are (distance from the axis, z), upwards from a place on the axis to
-/// another.
-Surface turned(const std::vector<std::array<double, 2>>& outline, std::uint32_t around) {
-  Surface surface;
-  for (const auto& p : outline) {
-    for (std::uint32_t i = 0; i < (p[0] > 0 ? around : 1); ++i) {
-      const double angle = 2 * M_PI * i / around;
-      surface.vertices.push_back({static_cast<float>(p[0] * std::cos(angle)),
-                                  static_cast<float>(p[0] * std::sin(angle)), static_cast<float>(p[1])});
-    }
-  }
-  const auto last = static_cast<std::uint32_t>(surface.vertices.size()) - 1;
-  for (std::uint32_t i = 0; i < around; ++i) {
-    const std::uint32_t j = (i + 1) % around;
-    surface.triangles.push_back({0, 1 + j, 1 + i});
-    surface.triangles.push_back({last, last - around + i, last - around + j});
-    for (std::uint32_t low = 1; low + around < last; low += around) {
-      surface.triangles.push_back({low + i, low + j, low + around + j});
-      surface.triangles.push_back({low + i, low + around + j, low + around + i});
-    }
-  }
-  return surface;
 }
 
 /// A bottle with a straight wall in some rings and a straight shoulder: cone and cylinder are exactly known.
@@ -328,7 +285,7 @@ TEST(SmoothNormals, WallAndShoulderOfABottleMeetInAFold) {
       std::vector<std::array<double, 2>> outline{{0, 0}};
       for (int i = 0; i <= rings; ++i) outline.push_back({kWall, kLength * i / rings});
       outline.insert(outline.end(), {{kNeck, top}, {kNeck, top + 0.2}, {0, top + 0.2}});
-      const Surface surface = turned(outline, kAround);
+      const Surface surface = surfaceOf(turnedMesh(outline, kAround));
       const SmoothNormals normals(surface);
       for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         const btVector3 middle = normals.middle(t);
@@ -359,7 +316,7 @@ TEST(SmoothNormals, ARoundingGoesOnInItsWall) {
       outline.push_back({kWall - kRound * (1 - std::cos(angle)), kHeight + kRound * std::sin(angle)});
     }
     outline.push_back({0, kHeight + kRound});
-    const Surface surface = turned(outline, 48);
+    const Surface surface = surfaceOf(turnedMesh(outline, 48));
     const SmoothNormals normals(surface);
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
       const btVector3 middle = normals.middle(t);

@@ -15,7 +15,7 @@
 #include "named_packings.hpp"
 #include "packing/mesh_shapes.hpp"
 #include "test_world.hpp"
-#include "turned_meshes.hpp"
+#include "thin_meshes.hpp"
 
 namespace innersphere::test {
 namespace {

@@ -9,8 +9,8 @@
 #include "innersphere/mesh.hpp"
 #include "innersphere/solids.hpp"
 #include "named_packings.hpp"
+#include "outline_meshes.hpp"
 #include "test_world.hpp"
-#include "turned_meshes.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -64,22 +64,7 @@ TEST_P(Rest, IsAtTheSurfaceAndDoesNotCreep) {
 
 /// A block along y, 1 m long, with a roof of two faces that fold by an angle, and sides of 0.3 m.
 Mesh blockWithARoof(double fold) {
-  const double top = 0.3 + std::tan(fold / 2);
-  const std::vector<std::array<double, 2>> outline{{-1, 0}, {1, 0}, {1, 0.3}, {0, top}, {-1, 0.3}};
-  Mesh mesh;
-  for (const double y : {-0.5, 0.5}) {
-    for (const auto& p : outline) mesh.vertices.push_back({p[0], y, p[1]});
-  }
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    const std::uint32_t j = (i + 1) % 5;
-    mesh.triangles.push_back({i, 5 + j, j});
-    mesh.triangles.push_back({i, 5 + i, 5 + j});
-  }
-  for (std::uint32_t i = 1; i < 4; ++i) {
-    mesh.triangles.push_back({0, i, i + 1});
-    mesh.triangles.push_back({5, 6 + i, 5 + i});
-  }
-  return mesh;
+  return prismMesh({{-1, 0}, {1, 0}, {1, 0.3}, {0, 0.3 + std::tan(fold / 2)}, {-1, 0.3}});
 }
 
 /// Bullet's own box, and a packed one, on one face of a roof, with gravity straight onto it.

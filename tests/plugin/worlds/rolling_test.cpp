@@ -7,8 +7,8 @@
 #include "innersphere/solids.hpp"
 #include "innersphere/substep_solver.hpp"
 #include "named_packings.hpp"
+#include "outline_meshes.hpp"
 #include "test_world.hpp"
-#include "turned_meshes.hpp"
 
 namespace innersphere::test {
 namespace {

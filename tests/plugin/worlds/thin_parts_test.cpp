@@ -12,7 +12,7 @@
 #include "innersphere/mesh.hpp"
 #include "named_packings.hpp"
 #include "test_world.hpp"
-#include "turned_meshes.hpp"
+#include "thin_meshes.hpp"
 
 namespace innersphere::test {
 namespace {

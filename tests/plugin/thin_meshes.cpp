@@ -1,4 +1,4 @@
-#include "turned_meshes.hpp"
+#include "thin_meshes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,7 @@
 
 #include "innersphere/mesh.hpp"
 #include "innersphere/solids.hpp"
+#include "outline_meshes.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -34,31 +35,6 @@ struct Limb {
 };
 
 }  // namespace
-
-Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile, std::uint32_t around) {
-  const auto rings = static_cast<std::uint32_t>(profile.size() - 2);
-  Mesh mesh;
-  for (std::uint32_t k = 1; k <= rings; ++k) {
-    for (std::uint32_t i = 0; i < around; ++i) {
-      const double angle = 2 * M_PI * i / around;
-      mesh.vertices.push_back(
-          {profile[k][0] * std::cos(angle), profile[k][0] * std::sin(angle), profile[k][1]});
-    }
-  }
-  mesh.vertices.push_back({0, 0, profile.front()[1]});
-  mesh.vertices.push_back({0, 0, profile.back()[1]});
-  const std::uint32_t first = rings * around, last = first - around;
-  for (std::uint32_t i = 0; i < around; ++i) {
-    const std::uint32_t next = (i + 1) % around;
-    mesh.triangles.push_back({first, next, i});
-    mesh.triangles.push_back({last + i, last + next, first + 1});
-    for (std::uint32_t low = 0; low < last; low += around) {
-      mesh.triangles.push_back({low + i, low + next, low + around + next});
-      mesh.triangles.push_back({low + i, low + around + next, low + around + i});
-    }
-  }
-  return mesh;
-}
 
 std::unique_ptr<Solid> makeCow() {
   std::vector<Limb> limbs{

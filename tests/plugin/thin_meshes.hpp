@@ -11,9 +11,6 @@
 
 namespace innersphere::test {
 
-/// A body of revolution about z: (distance from the axis, z) from one place on the axis to another,
-/// counter-clockwise around the cross section.
-Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile, std::uint32_t around = 48);
 /// A cup about z, 0.1 m high, with walls of 1 mm, of so many flat faces around.
 Mesh cupMesh(std::uint32_t around = 48);
 /// A ball of 0.1 m with a horn along z, 0.2 m long, that ends in a point.

@@ -1,0 +1,21 @@
+// Meshes made of outlines.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "innersphere/geometry.hpp"
+
+namespace innersphere::test {
+
+/// A body of revolution about z: (distance from the axis, z) from one place on the axis to another,
+/// counter-clockwise around the cross section.
+Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile, std::uint32_t around = 48);
+/// A prism along y, 1 m long, with this outline in x and z, counter-clockwise seen from y = -infinity, and
+/// seen as a whole from its first place. Its sides, two triangles each, come first.
+Mesh prismMesh(const std::vector<std::array<double, 2>>& outline);
+/// The same in single precision.
+Surface surfaceOf(const Mesh& mesh);
+
+}  // namespace innersphere::test
