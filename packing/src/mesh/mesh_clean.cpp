@@ -77,6 +77,12 @@ void renumber(Mesh& mesh, const Place& place) {
 
 }  // namespace
 
+void append(Mesh& mesh, const Mesh& more) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const auto& t : more.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
 void flip(std::array<std::uint32_t, 3>& triangle) {
   std::swap(triangle[1], triangle[2]);
 }

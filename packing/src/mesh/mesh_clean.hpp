@@ -1,4 +1,4 @@
-// Makes one vertex of what is one point, and removes triangles that are none.
+// Makes one vertex of what is one point, removes triangles that are none, and joins meshes.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +24,9 @@ std::size_t dropRepeated(Mesh& mesh);
 
 /// Removes the second triangle of each two with the same corners in opposite senses. Returns how many went.
 std::size_t dropTwins(Mesh& mesh);
+
+/// Adds a mesh to another; nothing is merged.
+void append(Mesh& mesh, const Mesh& more);
 
 /// Turns a triangle over.
 void flip(std::array<std::uint32_t, 3>& triangle);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/bounds.hpp"
+#include "mesh/mesh_clean.hpp"
 
 namespace innersphere {
 namespace {
@@ -158,33 +159,43 @@ class MeetingBoxes {
   std::vector<Node> nodes_;
 };
 
-}  // namespace
-
-Cuts findCuts(const Mesh& mesh) {
-  std::vector<Bounds> boxes;
+/// The triangles' boxes, larger by how near triangles touch.
+struct Boxes {
+  std::vector<Bounds> of_triangles;
   Bounds all = emptyBounds();
+  double tolerance;  ///< [m]
+};
+
+Boxes boxesOf(const Mesh& mesh) {
+  Boxes boxes;
   for (const Corners& t : mesh.triangles) {
     Bounds box = emptyBounds();
     for (std::uint32_t v : t) extend(box, mesh.vertices[v]);
-    extend(all, box.min);
-    extend(all, box.max);
-    boxes.push_back(box);
+    extend(boxes.all, box.min);
+    extend(boxes.all, box.max);
+    boxes.of_triangles.push_back(box);
   }
-  const double tolerance = kTouch * (diagonal(all) + norm(all.min));
-  for (Bounds& box : boxes) {
-    for (double& x : box.max) x += tolerance;
+  boxes.tolerance = kTouch * (diagonal(boxes.all) + norm(boxes.all.min));
+  for (Bounds& box : boxes.of_triangles) {
+    for (double& x : box.max) x += boxes.tolerance;
   }
+  return boxes;
+}
 
+}  // namespace
+
+Cuts findCuts(const Mesh& mesh) {
+  const Boxes boxes = boxesOf(mesh);
   // The first pair has the triangle that begins first along the longest axis.
-  const Vec3d size = all.max - all.min;
+  const Vec3d size = boxes.all.max - boxes.all.min;
   const int axis = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
-  const auto begins = [&](std::uint32_t i) { return std::pair(boxes[i].min[axis], i); };
+  const auto begins = [&](std::uint32_t i) { return std::pair(boxes.of_triangles[i].min[axis], i); };
   auto first = std::pair(std::numeric_limits<double>::infinity(), 0u);
   Cuts cuts;
-  cuts.touched.resize(boxes.size());
-  MeetingBoxes(boxes).forPairs([&](std::uint32_t i, std::uint32_t j) {
+  cuts.touched.resize(mesh.triangles.size());
+  MeetingBoxes(boxes.of_triangles).forPairs([&](std::uint32_t i, std::uint32_t j) {
     const Corners &s = mesh.triangles[i], &t = mesh.triangles[j];
-    if (isAside(mesh, s, t, tolerance) || isAside(mesh, t, s, tolerance)) return;
+    if (isAside(mesh, s, t, boxes.tolerance) || isAside(mesh, t, s, boxes.tolerance)) return;
     cuts.touched[i] = cuts.touched[j] = true;
     if (!hasEdgeThrough(mesh, s, t) && !hasEdgeThrough(mesh, t, s)) return;
     ++cuts.pairs;
@@ -192,6 +203,18 @@ Cuts findCuts(const Mesh& mesh) {
   });
   if (cuts.pairs > 0) cuts.at = mesh.vertices[mesh.triangles[first.second][0]];
   return cuts;
+}
+
+bool cutEachOther(const Mesh& a, const Mesh& b) {
+  Mesh both = a;
+  append(both, b);
+  bool cut = false;
+  MeetingBoxes(boxesOf(both).of_triangles).forPairs([&](std::uint32_t i, std::uint32_t j) {
+    if (cut || (i < a.triangles.size()) == (j < a.triangles.size())) return;
+    const Corners &s = both.triangles[i], &t = both.triangles[j];
+    cut = hasEdgeThrough(both, s, t) || hasEdgeThrough(both, t, s);
+  });
+  return cut;
 }
 
 }  // namespace innersphere

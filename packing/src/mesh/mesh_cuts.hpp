@@ -20,4 +20,7 @@ struct Cuts {
 /// corners. Triangles that touch, or overlap within one plane, do not count.
 Cuts findCuts(const Mesh& mesh);
 
+/// Whether an edge of one of them passes through a triangle of the other.
+bool cutEachOther(const Mesh& a, const Mesh& b);
+
 }  // namespace innersphere

@@ -7,6 +7,7 @@
 #include "common/bounds.hpp"
 #include "mesh/mass_properties.hpp"
 #include "mesh/mesh_clean.hpp"
+#include "mesh/mesh_cuts.hpp"
 #include "mesh/winding_tree.hpp"
 
 namespace innersphere {
@@ -50,7 +51,7 @@ bool isInside(const Shell& inner, const Shell& outer) {
   for (const Vec3d& p : inner.mesh.vertices) {
     if (std::abs(tree.windingNumber(p)) < 0.5) return false;
   }
-  return true;
+  return !cutEachOther(inner.mesh, outer.mesh);
 }
 
 bool boxesMeet(const std::vector<Shell>& shells) {
@@ -74,12 +75,6 @@ std::optional<std::size_t> hostOf(const std::vector<Shell>& shells, std::size_t 
     if (isInside(shells[cavity], shells[i])) host = i;
   }
   return host;
-}
-
-void append(Mesh& mesh, const Mesh& more) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
-  for (const auto& t : more.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
 }  // namespace

@@ -254,6 +254,15 @@ TEST(MeshJudge, ShellInsideMaterialIsDropped) {
   EXPECT_NEAR(solid->closestPoint({0, 0, 0}).distance, 2, 1e-15);
 }
 
+TEST(MeshJudge, ShellWithItsCornersInsideAnotherStays) {
+  Mesh mesh = torusMesh(1, 0.3, 32, 16);
+  append(mesh, boxMesh({-0.7, -0.7, -0.1}, {0.7, 0.7, 0.1}));  // a floor whose corners end in the wall
+  MeshReport report;
+  const auto solid = makeSolid(mesh, "tray", {}, &report);
+  EXPECT_EQ(joined(report).find("removed"), std::string::npos) << joined(report);
+  EXPECT_TRUE(solid->contains({0, 0, 0}));
+}
+
 TEST(MeshJudge, DegenerateTrianglesGo) {
   Mesh mesh = boxMesh();
   mesh.triangles.push_back({0, 0, 1});
