@@ -50,6 +50,22 @@ TEST_F(FaceOnEdge, IsTheFaceOverTheNearestPoint) {
   EXPECT_FALSE(faceOver(body_, seenFrom(-0.6), face));
 }
 
+// As the leading edge of a box that slides from one tile to the next.
+TEST_F(FaceOnEdge, IsTheFaceThatTheEdgeIsInByLess) {
+  const btVector3 edge(btScalar(-0.499), btScalar(-0.375), btScalar(-0.49999));
+  for (std::uint32_t i = 0; i < body_.count(); ++i) {
+    NearSphere near;
+    near.sphere = i;
+    near.normal = body_.centreOf(i) - edge;
+    near.distance = near.normal.length();
+    if (near.distance > 0.5 || body_.isFeeler(i)) continue;
+    near.normal /= near.distance;
+    FaceOver face;
+    ASSERT_TRUE(faceOver(body_, near, face));
+    EXPECT_NEAR(face.normal.distance(btVector3(0, 0, -1)), 0, kRounding) << body_.centreOf(i).z();
+  }
+}
+
 TEST_F(FaceOnEdge, BearsAlongItsNormal) {
   for (const double aside : {-0.05, 0.05, 0.1}) {
     NearSphere near = seenFrom(aside);
