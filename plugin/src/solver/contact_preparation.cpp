@@ -154,7 +154,8 @@ void ContactRows::fillPlace(PointLanes& lanes, int lane, const Source& source, c
     const btVector3 then_a = bodies.startOf(pair.a, on_a), then_b = bodies.startOf(pair.b, on_b);
     gap += (then_a - on_a - (then_b - on_b)).dot(normal);
     on_a = then_a;
-    on_b = then_b;
+    // Where the point of what moves by itself was then is beside A's.
+    on_b = bodies.isMovable(pair.b) ? then_b : on_a - normal * gap;
   }
   // The fixed world does not turn.
   const btVector3 arm_a = on_a - bodies.origin(pair.a),

@@ -211,10 +211,11 @@ void ContactRows::follow(const Block& block, PointLanes& point, const LaneBodies
   point.gap = point.gap_0 + dot(way, point.normal_0);
   Lanes3 to_a, to_b;  // as seen from their origins
   if (block.bends) roll(point, a, b, way, to_a, to_b);
-  // Both feel the push at one place, in the middle, so that it turns them as much as it would turn one body.
+  // Both feel the push at one place, so that it turns them as much as it would turn one body: in the middle,
+  // or where A is of what moves by itself.
   const Lanes3 apart = moved + point.normal_0 * point.gap_0 + to_a - to_b;
   point.arm_a = point.pivot_a - point.normal_0 * point.radius_a + to_a - apart * block.share;
-  point.arm_b = point.pivot_b + point.normal_0 * point.radius_b + to_b + apart * block.share;
+  point.arm_b = point.pivot_b + point.normal_0 * point.radius_b + to_b + apart * (inAll(1) - block.share);
 }
 
 /// Whether arms and normals may have changed so much, as their bodies see them, that rows over-relax.

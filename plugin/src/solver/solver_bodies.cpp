@@ -69,6 +69,7 @@ void SolverBodies::collect() {
   states_.resize(bodies_.size());
   bodies_.back() = Body();  // the fixed world
   states_.back() = BodyState();
+  motions_.clear();
 }
 
 void SolverBodies::fill(int begin, int end) {
@@ -129,7 +130,9 @@ int SolverBodies::indexOf(const btCollisionObject& object) {
   const int place = placeOf(object);
   if (place != kOther) return place;
   const btRigidBody* rigid = btRigidBody::upcast(&object);
-  if (rigid == nullptr || (rigid->getLinearVelocity().isZero() && rigid->getAngularVelocity().isZero()))
+  const bool kinematic = rigid != nullptr && rigid->isKinematicObject();
+  if (rigid == nullptr ||
+      (!kinematic && rigid->getLinearVelocity().isZero() && rigid->getAngularVelocity().isZero()))
     return movable_;
   if (!hasNumbers(*rigid)) {
     broken_ = true;
@@ -137,14 +140,18 @@ int SolverBodies::indexOf(const btCollisionObject& object) {
     return kBroken;
   }
   if (bodies_.back().rigid == rigid) return static_cast<int>(bodies_.size()) - 1;
+  DrivenMotion motion{.velocity = rigid->getLinearVelocity(), .spin = rigid->getAngularVelocity()};
+  if (kinematic) motion = driven_bodies_.motionOf(*rigid, time_step_);
+  if (motion.velocity.isZero() && motion.spin.isZero()) return movable_;
+  motions_.push_back(motion);
   Body& body = bodies_.emplace_back();
   BodyState& state = states_.emplace_back();
   body.rigid = const_cast<btRigidBody*>(rigid);
   body.given = rigid->getWorldTransform();
-  state.velocity = rigid->getLinearVelocity();
-  state.spin = rigid->getAngularVelocity();
+  state.velocity = motion.velocity;
+  state.spin = motion.spin;
   btTransform start = body.given;
-  if (rigid->isKinematicObject())  // Bullet has moved it already
+  if (kinematic)  // Bullet has moved it already
     btTransformUtil::integrateTransform(body.given, -state.velocity, -state.spin, time_step_, start);
   body.origin = start.getOrigin();
   body.rotation = start.getRotation();
@@ -229,15 +236,32 @@ void SolverBodies::move(int begin, int end, btScalar substep) {
   }
 }
 
+template <typename Visit>
+void SolverBodies::forEachDriven(const Visit& visit) {
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const std::size_t body = static_cast<std::size_t>(movable_) + 1 + i;
+    visit(bodies_[body], states_[body], motions_[i]);
+  }
+}
+
+void SolverBodies::startDriven(btScalar substep) {
+  const btScalar before = (substep - time_step_) / 2;  // than the middle of the step
+  forEachDriven([&](const Body&, BodyState& state, const DrivenMotion& motion) {
+    state.velocity += motion.acceleration * before;
+    state.spin += motion.angular_acceleration * before;
+  });
+}
+
 void SolverBodies::moveDriven(btScalar substep) {
-  for (std::size_t i = static_cast<std::size_t>(movable_) + 1; i < states_.size(); ++i) {
-    BodyState& state = states_[i];
+  forEachDriven([&](const Body& body, BodyState& state, const DrivenMotion& motion) {
     // A static body with a velocity is a belt: its surface moves, it does not.
-    if (!bodies_[i].rigid->isKinematicObject()) continue;
+    if (!body.rigid->isKinematicObject()) return;
     state.moved = state.moved + state.velocity * substep;
     state.turned = (rotationOf(state.spin, substep) * state.turned).normalized();
-    if (bodies_[i].followed) bodies_[i].rigid->setWorldTransform(poseOf(bodies_[i], state));
-  }
+    if (body.followed) body.rigid->setWorldTransform(poseOf(body, state));
+    state.velocity += motion.acceleration * substep;
+    state.spin += motion.angular_acceleration * substep;
+  });
 }
 
 btTransform SolverBodies::poseOf(const Body& body, const BodyState& state) const {

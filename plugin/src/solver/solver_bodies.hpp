@@ -7,6 +7,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "innersphere/bullet_precision.hpp"
+#include "solver/driven_bodies.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -94,7 +95,9 @@ class SolverBodies {
   void accelerate(int begin, int end, btScalar substep);
   /// Moves the bodies in [begin, end).
   void move(int begin, int end, btScalar substep);
-  /// What moves by itself goes on, as far as contacts and constraints see it.
+  /// What moves by itself has the velocities of the first of the substeps [s], and then goes on, as far as
+  /// contacts and constraints see it.
+  void startDriven(btScalar substep);
   void moveDriven(btScalar substep);
 
   /// Writes poses and velocities of the bodies in [begin, end) such that Bullet's own integration over the
@@ -102,6 +105,8 @@ class SolverBodies {
   void finish(int begin, int end);
   /// Puts what moves by itself where it was found.
   void release();
+  /// All groups of a step are done.
+  void endStep() { driven_bodies_.endStep(); }
   /// Returns the first body that came with infinite or undefined velocities, forces or places, or has got
   /// lost; null if there is none. Such bodies are stopped, and nothing touches the former.
   const btRigidBody* broken() const;
@@ -129,10 +134,15 @@ class SolverBodies {
   void turn(const Body& body, BodyState& state, btScalar substep) const;
   static void updateInertia(const Body& body, BodyState& state);
   btTransform poseOf(const Body& body, const BodyState& state) const;
+  /// Calls visit(body, state, motion) for each body that moves by itself.
+  template <typename Visit>
+  void forEachDriven(const Visit& visit);
 
   btScalar time_step_ = 0;
   std::vector<BodyState> states_;
   std::vector<Body> bodies_;
+  std::vector<DrivenMotion> motions_;  ///< of the bodies after the fixed world
+  DrivenBodies driven_bodies_;
   std::vector<btRigidBody*> found_;  ///< for each object; null: it cannot be moved
   int movable_ = 0;
   std::atomic<bool> broken_{false};

@@ -80,6 +80,7 @@ void SubstepSolver::Impl::beginStep() {
 /// A btDiscreteDynamicsWorld hands over a group in each step, if only an empty one.
 void SubstepSolver::Impl::endStep() {
   constraints_.endStep();
+  bodies_.endStep();
   if (called_ || reported_world_) return;
   reported_world_ = true;
   log("SubstepSolver is told of steps, but not given anything to solve: a btMultiBodyDynamicsWorld solves "
@@ -167,6 +168,7 @@ void SubstepSolver::Impl::solve(btCollisionObject** bodies, int body_count, btPe
     const int substeps = arrange(constraints, constraint_count, info);
     forEachBlock([&](int block) { contacts_.prepare(block, bodies_); });
     forEachRow([](int) {}, [&](int block) { contacts_.carry(block, bodies_.states()); });
+    bodies_.startDriven(time_step / btScalar(std::max(1, substeps)));
     for (int i = 0; i < substeps; ++i) step(time_step / btScalar(substeps));
     forEachBlock([&](int block) { contacts_.writeBack(block); });
     constraints_.writeBack();
