@@ -433,7 +433,8 @@ What is far from all spheres is not felt by other packings. Empty if the surface
           R"(How well the spheres fill the solid. nan where that is unknown, as gaps of a slice are whose length is not in coverage.
 
 density: volume of the spheres over that of the solid, 0 to 1.
-gap_mean, gap_p95, gap_max: distance from the surface to the nearest sphere [m]: mean, 95th percentile, largest.
+gap_mean, gap_p95, gap_max: distance from the surface to the nearest sphere [m]: mean, 95th percentile, largest, of 50,000 points
+    spread over the surface.
 largest_missing_radius: no larger sphere fits between those that are there [m].)")
       .def_prop_ro(
           "overlap_errors", &overlapErrorsOf,
