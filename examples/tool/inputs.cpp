@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <utility>
 
 #include "file_names.hpp"
 #include "innersphere/error.hpp"
@@ -101,10 +102,13 @@ std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments) {
                 "there is neither a file nor a solid named \"" + arguments.source + "\"" +
                     didYouMean(arguments.source, namedSolids(), "; `innersphere solids` lists the solids"));
   }
+  const auto tell = [&](const std::string& note) { say(arguments.source + ": " + note); };
+  std::vector<std::string> notes;
+  Mesh mesh = readMesh(arguments.source, arguments.mesh, &notes);
+  for (const std::string& note : notes) tell(note);
   MeshReport report;
-  auto solid =
-      makeSolid(readMesh(arguments.source, arguments.mesh), arguments.source, arguments.mesh, &report);
-  for (const std::string& note : report.notes) say(arguments.source + ": " + note);
+  auto solid = makeSolid(std::move(mesh), arguments.source, arguments.mesh, &report);
+  for (const std::string& note : report.notes) tell(note);
   return solid;
 }
 
