@@ -117,10 +117,13 @@ bool isPacking(const std::string& source) {
   return isStream(source) || ending == ".json" || ending == ".cbor" || ending == ".xyzr";
 }
 
+bool isSolid(const std::string& source) {
+  return !isPacking(source) && (std::filesystem::exists(source) || isNamedSolid(source));
+}
+
 Packing loadPacking(const std::string& source) {
   if (isStream(source)) return readStream(source);
-  const bool there = std::filesystem::exists(source) || isNamedSolid(source);
-  if (isPacking(source) || !there) return readPacking(source);
+  if (!isSolid(source)) return readPacking(source);
   throw Error(
       ErrorCode::bad_format,
       source + " is no packing: that is read from .json, .cbor or .xyzr; `innersphere pack` makes one");

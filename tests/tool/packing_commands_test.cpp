@@ -84,7 +84,7 @@ TEST_F(PackingCommands, SaysAtOnceThatASheetIsTooThin) {
   writeFile(path("sheet.obj"),
             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1e-6\nv 1 0 1e-6\nv 0 1 1e-6\nv 1 1 1e-6\n"
             "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 2 4 8 6\nf 4 3 7 8\nf 3 1 5 7\n");
-  refuse("pack sheet.obj -o sheet.cbor", 3, {"it is a sheet", "thickness"});
+  refuse("pack sheet.obj -o sheet.cbor", 3, {"it is a sheet or a rod", "thicker", "--min-radius"});
 }
 
 TEST_F(PackingCommands, ReportsForPeopleGoToStandardOutput) {
@@ -264,6 +264,8 @@ TEST_F(PackingCommands, TheSameBytesOnAnOlderProcessor) {
         shell("run() { $TOOL -q " + command + " -o $1; }; run this-" + kept + " && export " +
               "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX512F,-AVX2,-AVX,-FMA,-FMA4 && run older-" + kept +
               " && cmp this-" + kept + " older-" + kept + " && rm older-" + kept + " && mv -f this-" + kept +
+  refuse("convert tetra.obj tetra.ply", 3, {"tetra.obj is no packing", "surface", ".obj or .stl"});
+  refuse("convert none.obj none.ply", 3, {"none.obj"});
               " " + kept);
     EXPECT_EQ(both.exit_code, 0) << command << "\n" << both.out << both.err;
   };
