@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "common/task_arena.hpp"
 #include "innersphere/error.hpp"
 #include "mesh/mesh_report.hpp"
 #include "packer/ball.hpp"
@@ -281,7 +282,7 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
 
   requireThickness(problem);
   const Reporter report(progress, solid.name());
-  tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
+  tbb::task_arena arena(arenaThreads(options.threads));
   const Chosen chosen = choose(problem, place(problem, arena, report));
   if (chosen.balls.empty()) {
     throw Error(ErrorCode::no_sphere_fits, "no sphere of the smallest allowed radius fits into '" +
