@@ -2,6 +2,7 @@
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "innersphere/error.hpp"
 #include "innersphere/solids.hpp"
 #include "inputs.hpp"
 #include "outputs.hpp"
@@ -19,6 +20,11 @@ void run(const Arguments& arguments) {
   const PackingOutput& output = arguments.output;
   if (!isSurfaceFile(output.path)) {
     checkPackingOutput(output);
+    if (isSolid(arguments.input)) {
+      throw Error(ErrorCode::bad_format,
+                  arguments.input + " is no packing, and a surface is written to .obj or .stl, not to " +
+                      output.path + "; `innersphere pack` makes a packing");
+    }
     return writePackingOutput(loadPacking(arguments.input), output);
   }
   checkOutput(output.path, output.force);

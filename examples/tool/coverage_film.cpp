@@ -77,6 +77,8 @@ std::vector<Surface> bandsOf(const Packing& packing, float diagonal) {
   Surface fine = packing.surface;
   cut(fine, kLongest * diagonal);
   std::vector<Surface> bands(kBands.size() + 1);
+  // Neighbours share vertices, also so that they are shaded as one face.
+  std::vector<std::map<std::uint32_t, std::uint32_t>> known(bands.size());
   for (const auto& t : fine.triangles) {
     Vertex middle{};
     for (std::uint32_t v : t) {
@@ -84,10 +86,15 @@ std::vector<Surface> bandsOf(const Packing& packing, float diagonal) {
     }
     float gap = std::numeric_limits<float>::max();
     for (const Sphere& s : packing.spheres) gap = std::min(gap, length(middle, {s.x, s.y, s.z}) - s.radius);
-    Surface& band = bands[bandOf(gap / diagonal)];
-    const auto first = static_cast<std::uint32_t>(band.vertices.size());
-    for (std::uint32_t v : t) band.vertices.push_back(fine.vertices[v]);
-    band.triangles.push_back({first, first + 1, first + 2});
+    const std::size_t index = bandOf(gap / diagonal);
+    Surface& band = bands[index];
+    auto& triangle = band.triangles.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      const auto [entry, added] =
+          known[index].try_emplace(t[k], static_cast<std::uint32_t>(band.vertices.size()));
+      if (added) band.vertices.push_back(fine.vertices[t[k]]);
+      triangle[k] = entry->second;
+    }
   }
   return bands;
 }

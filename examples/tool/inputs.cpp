@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <utility>
 
 #include "file_names.hpp"
 #include "innersphere/error.hpp"
@@ -101,10 +102,13 @@ std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments) {
                 "there is neither a file nor a solid named \"" + arguments.source + "\"" +
                     didYouMean(arguments.source, namedSolids(), "; `innersphere solids` lists the solids"));
   }
+  const auto tell = [&](const std::string& note) { say(arguments.source + ": " + note); };
+  std::vector<std::string> notes;
+  Mesh mesh = readMesh(arguments.source, arguments.mesh, &notes);
+  for (const std::string& note : notes) tell(note);
   MeshReport report;
-  auto solid =
-      makeSolid(readMesh(arguments.source, arguments.mesh), arguments.source, arguments.mesh, &report);
-  for (const std::string& note : report.notes) say(arguments.source + ": " + note);
+  auto solid = makeSolid(std::move(mesh), arguments.source, arguments.mesh, &report);
+  for (const std::string& note : report.notes) tell(note);
   return solid;
 }
 
@@ -113,10 +117,13 @@ bool isPacking(const std::string& source) {
   return isStream(source) || ending == ".json" || ending == ".cbor" || ending == ".xyzr";
 }
 
+bool isSolid(const std::string& source) {
+  return !isPacking(source) && (std::filesystem::exists(source) || isNamedSolid(source));
+}
+
 Packing loadPacking(const std::string& source) {
   if (isStream(source)) return readStream(source);
-  const bool there = std::filesystem::exists(source) || isNamedSolid(source);
-  if (isPacking(source) || !there) return readPacking(source);
+  if (!isSolid(source)) return readPacking(source);
   throw Error(
       ErrorCode::bad_format,
       source + " is no packing: that is read from .json, .cbor or .xyzr; `innersphere pack` makes one");

@@ -29,6 +29,9 @@ std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments);
 /// True for what loadPacking() reads: stdin ("-"), a pipe, or a file that ends in .json, .cbor or .xyzr.
 bool isPacking(const std::string& source);
 
+/// True for a solid's name, and for a file that is there and no packing by its ending.
+bool isSolid(const std::string& source);
+
 /// Reads a packing from a file (.json, .cbor, .xyzr), a pipe or stdin ("-"), whose content shows the format.
 /// Throws Error.
 Packing loadPacking(const std::string& source);

@@ -1,5 +1,6 @@
 // innersphere: packs solids, shows and checks packings, measures overlaps and runs scenes.
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -116,6 +117,8 @@ int finishOutput(int exit_code) {
 
 int run(const std::vector<std::string>& words) {
   catchInterrupts();
+  // A file over the limit of sizes is then a write that fails, as on a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     const Tool tool;
     return finishOutput(runCommandLine(tool.root, tool.everywhere, words));

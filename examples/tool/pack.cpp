@@ -184,13 +184,15 @@ Command packCommand() {
   command.number(
       "--accuracy", arguments->accuracy, {0, 1, true},
       "Without --spheres, --density and --gap: the fewest spheres of which one is within this part of "
-      "the diagonal of every point of the surface");
+      "the diagonal of every one of 50,000 points spread over the surface");
   command.number("--min-radius", options.min_radius, kNotNegative,
                  "Place no smaller sphere [m]; 0: 1e-4 of the diagonal");
   command.number("--density", options.density, {0, 1},
                  "Stop when this fraction of the volume is filled; 0: no limit");
-  command.number("--gap", options.gap, kNotNegative,
-                 "Stop when no surface point is farther from a sphere [m]; 0: no limit");
+  command.number(
+      "--gap", options.gap, kNotNegative,
+      "Stop when none of 50,000 points spread over the surface is farther from a sphere [m]; 0: no "
+      "limit");
   command
       .choice<Order>(
           "--order", arguments->order, {{"radius", Order::radius}, {"coverage", Order::coverage}},

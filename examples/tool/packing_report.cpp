@@ -22,6 +22,9 @@ double diagonalOf(const Surface& surface) {
   return std::sqrt(squared);
 }
 
+// There is no cheap bound on what lies between the points.
+constexpr const char* kSampled = " (the largest at 50,000 points)";
+
 // The last six prefixes: shorter ones are for programs.
 constexpr std::size_t kPrefixesShown = 6;
 
@@ -114,7 +117,8 @@ Report describe(const Packing& packing) {
   report.add("diagonal", diagonal > 0 ? "diagonal" : "", diagonal, number(diagonal, "m"));
   report.add("gap_mean", "surface gap, mean", quality.gap_mean, gap(quality.gap_mean));
   report.add("gap_p95", "surface gap, p95", quality.gap_p95, gap(quality.gap_p95));
-  report.add("gap_max", "surface gap, max", quality.gap_max, gap(quality.gap_max));
+  report.add("gap_max", "surface gap, max", quality.gap_max,
+             gap(quality.gap_max) + (measured ? kSampled : ""));
   addCoverage(packing, diagonal, report);
   const Certificate& certificate = packing.certificate;
   report.add("delta", "certified greedy", certificate.delta,
@@ -162,10 +166,11 @@ Report describe(const Covering& covering, double diagonal) {
   report.add("source", "source", from.source);
   report.add("options", "options", from.options);
   report.add("spheres", "spheres", covering.spheres.size());
-  const auto addLength = [&](const std::string& key, const std::string& label, double length) {
-    report.add(
-        key, label, length,
-        number(length, "m") + (diagonal > 0 ? ", " + percent(length / diagonal) + " of the diagonal" : ""));
+  const auto addLength = [&](const std::string& key, const std::string& label, double length,
+                             const std::string& how = "") {
+    report.add(key, label, length,
+               number(length, "m") +
+                   (diagonal > 0 ? ", " + percent(length / diagonal) + " of the diagonal" : "") + how);
   };
   report.add("inside", "of the solid inside", covering.inside, percent(covering.inside));
   report.add("outside", "outside of the solid", covering.outside,
@@ -173,7 +178,7 @@ Report describe(const Covering& covering, double diagonal) {
   addLength("overhang_mean", "overhang, mean", covering.overhang_mean);
   addLength("overhang_max", "overhang, max", covering.overhang_max);
   addLength("gap_mean", "surface gap, mean", covering.gap_mean);
-  addLength("gap_max", "surface gap, max", covering.gap_max);
+  addLength("gap_max", "surface gap, max", covering.gap_max, kSampled);
   const MassProperties &solid = covering.solid, &united = covering.united;
   report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
   report.add("union_volume", "volume of the union", united.volume, number(united.volume, "m^3"));

@@ -84,7 +84,7 @@ TEST_F(PackingCommands, SaysAtOnceThatASheetIsTooThin) {
   writeFile(path("sheet.obj"),
             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1e-6\nv 1 0 1e-6\nv 0 1 1e-6\nv 1 1 1e-6\n"
             "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 2 4 8 6\nf 4 3 7 8\nf 3 1 5 7\n");
-  refuse("pack sheet.obj -o sheet.cbor", 3, {"it is a sheet", "thickness"});
+  refuse("pack sheet.obj -o sheet.cbor", 3, {"it is a sheet or a rod", "thicker", "--min-radius"});
 }
 
 TEST_F(PackingCommands, ReportsForPeopleGoToStandardOutput) {
@@ -158,6 +158,22 @@ TEST_F(PackingCommands, DevicesAreNotReplaced) {
   succeed("pack box --spheres 10 -o /dev/null");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
   refuse("pack box --spheres 10 -o /dev/full", 5, {"/dev/full"});
+}
+
+TEST_F(PackingCommands, FilesThatMayNotGrowSoLargeAreFailures) {
+  const Outcome outcome = shell("ulimit -f 1; \"$TOOL\" pack box --spheres 300 -o box.json");
+  EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+  EXPECT_NE(outcome.err.find("box.json"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(files().empty());
+}
+
+// oneTBB itself complains of more threads than it gives.
+TEST_F(PackingCommands, MoreThreadsThanCoresAreNothingToSay) {
+  for (const std::string kind : {"", " --cover", " --clump"}) {
+    succeed("pack box --spheres 16 --threads 4000 --force -o many.json" + kind);
+    succeed("pack box --spheres 16 --threads 1 --force -o one.json" + kind);
+    EXPECT_EQ(readFile(path("many.json")), readFile(path("one.json"))) << kind;
+  }
 }
 
 TEST_F(PackingCommands, WithoutOutputItIsNamedAfterTheSolid) {
@@ -248,6 +264,8 @@ TEST_F(PackingCommands, SurfacesAreWrittenForOtherPrograms) {
   writeFile(path("spheres.xyzr"), "0 0 0 1\n");
   refuse("convert spheres.xyzr spheres.obj", 3, {"surface"});
   refuse("convert box box.cbor", 3, {"box", "pack"});
+  refuse("convert tetra.obj tetra.ply", 3, {"tetra.obj is no packing", "surface", ".obj or .stl"});
+  refuse("convert none.obj none.ply", 3, {"none.obj"});
 }
 
 TEST_F(PackingCommands, TheSameBytesForAnyNumberOfThreads) {

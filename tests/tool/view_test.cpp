@@ -87,6 +87,23 @@ TEST_F(View, PageIsSelfContained) {
   EXPECT_EQ(film["shapes"][0]["spheres"].get<std::string>().size(), 2136u) << "100 spheres of four numbers";
 }
 
+// A closed surface has half as many vertices as triangles; the bands of colours each have their own rim.
+TEST_F(View, ColouredTrianglesShareVertices) {
+  succeed("view torus.cbor --colour coverage --html torus.html");
+  const std::string page = readFile(path("torus.html"));
+  const std::string start = "type=\"application/json\">";
+  const std::size_t begin = page.find(start) + start.size();
+  const auto film = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin))[0];
+  std::size_t vertices = 0, triangles = 0;
+  for (const auto& shape : film["shapes"]) {
+    if (!shape.contains("triangles")) continue;
+    vertices += shape["vertices"].get<std::string>().size();
+    triangles += shape["triangles"].get<std::string>().size();
+  }
+  EXPECT_GT(triangles, 0u);
+  EXPECT_LT(vertices, triangles);
+}
+
 TEST_F(View, WithoutOutputsBothAreNamedAfterTheFile) {
   succeed("view torus.cbor --width 40 --height 30 --samples 1");
   EXPECT_EQ(files(), (std::set<std::string>{"torus.cbor", "torus.html", "torus.png"}));

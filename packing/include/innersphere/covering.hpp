@@ -33,7 +33,7 @@ struct Covering {
   double overhang_max = 0;
   /// The mean distance from the solid's surface to the nearest sphere [m]; of what is in one it is 0.
   double gap_mean = 0;
-  /// The largest of these distances, at points over all of the surface [m].
+  /// The largest of these distances, at 50,000 points spread over the surface [m].
   double gap_max = 0;
   MassProperties solid;   ///< The exact mass properties of the solid, not of the spheres.
   MassProperties united;  ///< Those of the union of the spheres, to about 1e-4.

@@ -55,8 +55,10 @@ struct MeshReport {
 /// applied in double; assimp keeps coordinates in single precision: what is far from its origin is read
 /// coarsely, and makeSolid() notes it. Polygons are cut into triangles along their dents. Throws Error, with
 /// the line or the byte where the file has one: file_not_found, bad_format, empty_input, not_finite (also for
-/// numbers beyond single precision), bad_argument (the scale).
-Mesh readMesh(const std::string& path, const MeshOptions& options = {});
+/// numbers beyond single precision), bad_argument (the scale). `notes` may be null; it gets a sentence for
+/// what was left out: bytes behind the last triangle of a binary STL file.
+Mesh readMesh(const std::string& path, const MeshOptions& options = {},
+              std::vector<std::string>* notes = nullptr);
 
 /// Judges a mesh and makes it a solid with exact distances. It mends what is safe and notes it: it welds
 /// equal positions, and those within 1e-7 of the diagonal if the mesh is open without that; it drops

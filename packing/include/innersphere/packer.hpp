@@ -20,11 +20,12 @@ struct PackOptions {
   double min_radius = 0;
   /// The fraction of the solid, 0 to 1, at which the packer stops once the spheres fill it. 0: no limit.
   double density = 0;
-  /// The packer stops when no point of the surface is farther than this from a sphere [m]. 0: no limit.
+  /// The packer stops when none of 50,000 points spread over the surface is farther than this from a sphere
+  /// [m]. 0: no limit.
   double gap = 0;
   /// What the first spheres are chosen for. SphereOrder::coverage places a few of the largest spheres, then
-  /// spheres all over the surface until no point of it is farther than a hundredth of the diagonal from one,
-  /// and then again the largest. It needs a surface.
+  /// spheres all over the surface until none of those points is farther than a hundredth of the diagonal from
+  /// one, and then again the largest. It needs a surface.
   SphereOrder order = SphereOrder::radius;
   /// Each sphere has at least 1/(1+delta) of the largest radius possible when it is placed, 0.001 to 1. A
   /// smaller delta is denser and slower: 0.1 costs 0.03 points of density against 0.01, and placing is three

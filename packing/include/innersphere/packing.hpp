@@ -43,7 +43,9 @@ struct Quality {
   double density = 0;   ///< The volume of the spheres over the volume of the solid, 0 to 1.
   double gap_mean = 0;  ///< The mean distance from the surface to the nearest sphere [m].
   double gap_p95 = 0;   ///< The 95th percentile of that distance [m].
-  double gap_max = 0;  ///< The largest sampled distance [m]: the covering radius, by which a contact is late.
+  /// The largest of that distance at 50,000 points spread over the surface [m], by which a contact is late.
+  /// Between them it may be larger, by as much as the next of them is away.
+  double gap_max = 0;
 };
 
 /// Tells how near the first spheres of a packing come to the surface. What is far from all of them is not
@@ -52,7 +54,7 @@ struct Coverage {
   std::uint32_t count = 0;  ///< The number of spheres.
   double mean = 0;          ///< The mean distance from the surface to the nearest of them [m].
   double p95 = 0;           ///< The 95th percentile of that distance [m].
-  double max = 0;           ///< The largest sampled distance [m].
+  double max = 0;           ///< The largest of it at points spread over the surface [m], as Quality::gap_max.
   Vec3d farthest{};         ///< Where that is [m].
   /// The part of the surface, 0 to 1, that is farther from them than kCoverageDistance.
   double uncovered = 0;

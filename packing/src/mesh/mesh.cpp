@@ -119,9 +119,13 @@ void notePlace(const Mesh& mesh, double scale, MeshReport& report) {
   }
   const double size = diagonal(report.bounds), step = farthest * std::numeric_limits<float>::epsilon();
   if (step > kCoarse * size && isSingle(mesh, scale)) {
-    report.notes.push_back("the mesh is " + text(farthest / size) +
-                           " of its sizes away from the origin, in single precision, whose numbers are " +
-                           text(step) + " m apart there: move it to the origin before it is exported");
+    report.notes.push_back(
+        "the mesh is " + text(farthest / size) +
+        " of its sizes away from the origin, and its numbers are those of single "
+        "precision, which are " +
+        text(step) +
+        " m apart there: if they were rounded to it, move the mesh to the origin before it is "
+        "exported");
   }
 }
 

@@ -11,6 +11,7 @@
 #include <limits>
 #include <string>
 
+#include "common/task_arena.hpp"
 #include "innersphere/error.hpp"
 #include "packer/container.hpp"
 #include "packer/pattern_search.hpp"
@@ -187,7 +188,7 @@ Covering clumpSolid(const Solid& solid, const ClumpOptions& options, const Progr
   Covering clump;
   clump.kind = CoveringKind::clump;
   clump.origin = container.origin();
-  tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
+  tbb::task_arena arena(arenaThreads(options.threads));
   arena.execute([&] {
     UnionLattice lattice(container, spacingFor(container, volume, options.spheres), options.outside_weight);
     ClumpSearch search(lattice, report);

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "common/bounds.hpp"
+#include "common/task_arena.hpp"
 #include "innersphere/error.hpp"
 #include "packer/container.hpp"
 #include "packer/near_balls.hpp"
@@ -185,7 +186,7 @@ Covering coverSolid(const Solid& solid, const Packing& packing, const CoverOptio
   for (const Sphere& s : packing.spheres)
     balls.push_back(
         {container.fromWorld(packing.origin + Vec3d{s.x, s.y, s.z}), s.radius / container.side()});
-  tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
+  tbb::task_arena arena(arenaThreads(options.threads));
   arena.execute([&] {
     const std::vector<Point> points = pointsOf(solid, container, balls.size());
     balls = tightened(container, std::move(balls), points, report);

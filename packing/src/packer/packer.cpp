@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "common/task_arena.hpp"
 #include "innersphere/error.hpp"
 #include "mesh/mesh_report.hpp"
 #include "packer/ball.hpp"
@@ -91,17 +92,17 @@ struct Problem {
   double volume, enough, gap, diagonal, smallest;
 };
 
-/// Says at once of a sheet what the search for spheres would find out in minutes. A little less than the
-/// smallest radius, because a ball of just the largest radius touches the surface at few points.
+/// Says at once of a sheet or a rod what the search for spheres would find out in minutes. A little less than
+/// the smallest radius, because a ball of just the largest radius touches the surface at few points.
 void requireThickness(const Problem& problem) {
   const SurfaceSamples& samples = problem.samples;
   if (samples.empty() || samples.touchedByBall(problem.container, 0.9 * problem.smallest)) return;
-  throw Error(ErrorCode::no_sphere_fits,
-              "no sphere of the smallest allowed radius, " +
-                  text(problem.smallest * problem.container.side()) + " m, fits into '" +
-                  problem.container.solid().name() +
-                  "': it is a sheet, thinner than that everywhere; give it a thickness, or ask for a smaller "
-                  "min_radius");
+  throw Error(
+      ErrorCode::no_sphere_fits,
+      "no sphere of the smallest allowed radius, " + text(problem.smallest * problem.container.side()) +
+          " m, fits into '" + problem.container.solid().name() +
+          "': it is a sheet or a rod, thinner than that everywhere; make it thicker, or ask for a smaller "
+          "min_radius (--min-radius)");
 }
 
 /// Calls the user back, and ends the work if the user wants that.
@@ -281,11 +282,12 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
 
   requireThickness(problem);
   const Reporter report(progress, solid.name());
-  tbb::task_arena arena(options.threads > 0 ? options.threads : static_cast<int>(tbb::task_arena::automatic));
+  tbb::task_arena arena(arenaThreads(options.threads));
   const Chosen chosen = choose(problem, place(problem, arena, report));
   if (chosen.balls.empty()) {
     throw Error(ErrorCode::no_sphere_fits, "no sphere of the smallest allowed radius fits into '" +
-                                               solid.name() + "'; ask for a smaller min_radius");
+                                               solid.name() +
+                                               "'; ask for a smaller min_radius (--min-radius)");
   }
   packing.order = options.order;
   packing.origin = problem.container.origin();

@@ -53,7 +53,7 @@ SurfaceSamples::SurfaceSamples(const Mesh& surface, const Container& container) 
 bool SurfaceSamples::touchedByBall(const Container& container, double radius) const {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point centre = points_[i] + radius * inwards_[i];
-    const double empty = radius * (1 - 1e-6);
+    const double empty = radius * (1 - 1e-6) - container.margin();
     if (std::isinf(container.closest(centre, empty).distance) && container.contains(centre)) return true;
   }
   return false;

@@ -43,7 +43,7 @@ def pack(
     spheres: number of spheres. 256 are enough for contacts, thousands for volumes.
     min_radius: radius of the smallest sphere [m]; 0: 1e-4 of the diagonal.
     density: fraction of the solid that is filled, 0 to 1.
-    gap: largest distance of a point of the surface from a sphere [m].
+    gap: largest distance from a sphere of 50,000 points spread over the surface [m].
 
     order: what the first spheres are chosen for. "radius": the largest come first, and fill most. "coverage": after a few
         of the largest, spheres come first where the surface is farthest from all before, so that few spheres are in all thin

@@ -127,11 +127,23 @@ nb::list bodiesOf(const Vertices& vertices, const Faces& faces) {
   return found;
 }
 
+void warn(const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) {
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, sentence.c_str(), 1) != 0) throw nb::python_error();
+  }
+}
+
 Mesh readScaledMesh(const std::filesystem::path& path, double scale) {
-  const nb::gil_scoped_release release;
-  MeshOptions options;
-  options.scale = scale;
-  return readMesh(path.string(), options);
+  std::vector<std::string> notes;
+  Mesh mesh = [&] {
+    const nb::gil_scoped_release release;
+    MeshOptions options;
+    options.scale = scale;
+    return readMesh(path.string(), options, &notes);
+  }();
+  for (std::string& note : notes) note = path.string() + ": " + note;
+  warn(notes);
+  return mesh;
 }
 
 /// Multiplies coordinates by a factor for each axis. Triangles of a mirror image wind the other way round.
@@ -170,9 +182,7 @@ SharedPacking packWith(const Mesh& mesh, const std::string& name, std::int64_t s
   SharedPacking result = PythonProgress(std::move(progress)).run([&](const Progress& told) {
     return share(packMesh(mesh, name, options, told));
   });
-  for (const std::string& notice : notices) {
-    if (PyErr_WarnEx(PyExc_RuntimeWarning, notice.c_str(), 1) != 0) throw nb::python_error();
-  }
+  warn(notices);
   return result;
 }
 
@@ -433,7 +443,8 @@ What is far from all spheres is not felt by other packings. Empty if the surface
           R"(How well the spheres fill the solid. nan where that is unknown, as gaps of a slice are whose length is not in coverage.
 
 density: volume of the spheres over that of the solid, 0 to 1.
-gap_mean, gap_p95, gap_max: distance from the surface to the nearest sphere [m]: mean, 95th percentile, largest.
+gap_mean, gap_p95, gap_max: distance from the surface to the nearest sphere [m]: mean, 95th percentile, largest, of 50,000 points
+    spread over the surface.
 largest_missing_radius: no larger sphere fits between those that are there [m].)")
       .def_prop_ro(
           "overlap_errors", &overlapErrorsOf,

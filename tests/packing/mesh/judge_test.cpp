@@ -389,6 +389,19 @@ TEST(MeshJudge, SheetsEncloseNothing) {
   expectRefused(boxMesh({0, 0, 0}, {1, 1, 1e-14}), "no volume");
 }
 
+// 1e7 and 1e7 + 1 are numbers of single precision, whoever has written them; 1e7 + 0.1 is none.
+TEST(MeshJudge, PlacesThatSinglePrecisionMayHaveSpoiltAreNoted) {
+  const auto notes = [](double x) {
+    MeshReport report;
+    makeSolid(boxMesh({x, x, x}, {x + 1, x + 1, x + 1}), "box", {}, &report);
+    return report.notes;
+  };
+  ASSERT_EQ(notes(1e7).size(), 1u);
+  EXPECT_NE(notes(1e7)[0].find("its numbers are those of single precision"), std::string::npos)
+      << notes(1e7)[0];
+  EXPECT_TRUE(notes(1e7 + 0.1).empty());
+}
+
 TEST(MeshJudge, OddUnitsAreNoted) {
   const auto noted = [](double size) {
     MeshReport report;

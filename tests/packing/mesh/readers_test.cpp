@@ -81,6 +81,45 @@ TEST(MeshReaders, BinaryFilesHoldTheBox) {
   }
 }
 
+// Some programs write more behind the last triangle.
+TEST(MeshReaders, BytesBehindABinaryStlFileAreNoted) {
+  const Scratch scratch;
+  const Mesh box = boxMesh({1, 2, 3}, {2, 4, 6});
+  for (const std::string header : {"by hand", "solid by hand", "solid\nby hand"}) {
+    for (const std::string& behind :
+         {std::string(10, '\0'), std::string("\r\n"), std::string("solid facet")}) {
+      std::vector<std::string> notes;
+      const Mesh mesh = readMesh(scratch.write("a.stl", binaryStl(box, header) + behind), {}, &notes);
+      EXPECT_TRUE(isClosedManifold(mesh)) << header;
+      EXPECT_NEAR(volumeOf(mesh), 6, 1e-12) << header;
+      ASSERT_EQ(notes.size(), 1u) << header;
+      EXPECT_NE(notes[0].find(std::to_string(behind.size()) + " bytes behind the 12 triangles"),
+                std::string::npos)
+          << notes[0];
+    }
+    std::vector<std::string> notes;
+    readMesh(scratch.write("a.stl", binaryStl(box, header)), {}, &notes);
+    EXPECT_TRUE(notes.empty());
+    for (std::size_t size : {84, 300, 400, 600}) {
+      expectError(scratch.write("cut.stl", binaryStl(box, header).substr(0, size)), ErrorCode::bad_format,
+                  "byte 84: the file says that it has 12 triangles of 50 bytes, but " +
+                      std::to_string(size - 84) + " bytes follow");
+    }
+  }
+  std::string none = binaryStl(Mesh{}, "solid by hand");
+  expectError(scratch.write("none.stl", none + std::string(50, '\0')), ErrorCode::bad_format, "byte 84");
+}
+
+// Zeros behind a text are no reason to take it for a binary file.
+TEST(MeshReaders, TextStlFilesThatAreDamagedStayTexts) {
+  const Scratch scratch;
+  expectError(scratch.write("a.stl", "solid a\n" + std::string(100, ' ') + "\nfacet normal 0 0 1\n" +
+                                         std::string(100, '\0')),
+              ErrorCode::bad_format, "line 4");
+  expectError(scratch.write("b.stl", "solid a\nfacte normal 0 0 1\n" + std::string(100, ' ')),
+              ErrorCode::bad_format, "line 2");
+}
+
 // 0.1 and 1e5 + 1e-9 are no numbers of single precision.
 TEST(MeshReaders, DoublesStayDoubles) {
   const Scratch scratch;

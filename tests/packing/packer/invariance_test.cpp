@@ -79,6 +79,26 @@ TEST(PackerInvariance, OriginOnlyWhereItIsNeeded) {
   EXPECT_NEAR(far.origin[2], -1e3, 0.001);
 }
 
+// Doubles there are 2e-9 to 1.5e-8 m apart: far more than 1e-6 of the smallest radius.
+TEST(PackerInvariance, ACubeIsNoSheetAsFarAwayAsMayBe) {
+  PackOptions options;
+  options.spheres = 20;
+  options.overlap_errors = false;
+  for (double x : {1e7, 9e7}) {
+    const auto solid = makeSolid(boxMesh({x, x, x}, {x + 1, x + 1, x + 1}), "cube");
+    const Packing packing = pack(*solid, options);
+    ASSERT_EQ(packing.spheres.size(), 20u);
+    EXPECT_NEAR(packing.spheres[0].radius, 0.5, 1e-5);
+    for (const Sphere& s : packing.spheres) {
+      for (int k = 0; k < 3; ++k) {
+        const double place = packing.origin[k] - x + (&s.x)[k];
+        EXPECT_GE(place, s.radius);
+        EXPECT_LE(place, 1.0 - s.radius);
+      }
+    }
+  }
+}
+
 /// `mesh` scaled, then moved.
 Mesh placed(Mesh mesh, double scale, double shift) {
   for (Vec3d& v : mesh.vertices) {

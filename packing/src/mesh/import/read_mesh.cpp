@@ -32,21 +32,20 @@ void requireReadableFile(const std::string& path) {
 
 using Reader = Mesh (*)(std::string_view bytes, const std::string& path);
 
-// The project's own reader of a format, null if assimp reads it.
+// The project's own reader of a format without notes, null if there is none.
 Reader readerOf(const std::string& ending) {
   if (ending == "obj") return readObj;
   if (ending == "off") return readOff;
   if (ending == "ply") return readPly;
-  if (ending == "stl") return readStl;
   return nullptr;
 }
 
-Mesh readAny(const std::string& path, bool own_process) {
+Mesh readAny(const std::string& path, bool own_process, std::vector<std::string>& notes) {
   const bool compressed = endingOf(path) == "gz";
   const std::string ending = endingOf(compressed ? path.substr(0, path.size() - 3) : path);
-  if (const Reader reader = readerOf(ending)) {
-    return reader(compressed ? gunzip(readFile(path), path) : readFile(path), path);
-  }
+  const auto bytes = [&] { return compressed ? gunzip(readFile(path), path) : readFile(path); };
+  if (ending == "stl") return readStl(bytes(), path, notes);
+  if (const Reader reader = readerOf(ending)) return reader(bytes(), path);
   if (compressed) {
     throw Error(ErrorCode::bad_format,
                 path + " cannot be read: only .obj, .stl, .ply and .off may be compressed; unpack it");
@@ -67,13 +66,15 @@ void scaleBy(double scale, Mesh& mesh, const std::string& path) {
 
 }  // namespace
 
-Mesh readMesh(const std::string& path, const MeshOptions& options) {
+Mesh readMesh(const std::string& path, const MeshOptions& options, std::vector<std::string>* notes) {
   if (!(options.scale > 0) || !std::isfinite(options.scale)) {
     throw Error(ErrorCode::bad_argument,
                 "the scale of a mesh has to be a number over 0, not " + text(options.scale));
   }
   requireReadableFile(path);
-  Mesh mesh = readAny(path, options.own_process);
+  std::vector<std::string> found;
+  Mesh mesh = readAny(path, options.own_process, found);
+  if (notes) notes->insert(notes->end(), found.begin(), found.end());
   if (mesh.triangles.empty()) {
     throw Error(ErrorCode::empty_input, path + " has no triangles; export the surface, not points or curves");
   }

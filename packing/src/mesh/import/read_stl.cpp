@@ -14,11 +14,18 @@ std::uint32_t countOf(std::string_view bytes, const std::string& path) {
   return cursor.take<std::uint32_t>();
 }
 
-// Headers of binary files may begin with "solid" too; their size gives them away.
+// Headers of binary files may begin with "solid" too. Their size gives them away, and if they were cut or
+// have something behind them, bytes of zero that do not come before a text's first facet.
 bool isBinary(std::string_view bytes, const std::string& path) {
-  if (bytes.size() < kHeader + kCount) return false;
-  if (bytes.size() == kHeader + kCount + kFacet * countOf(bytes, path)) return true;
-  return !sameWord(TextCursor(bytes, path).word(), "solid");
+  if (bytes.size() >= kHeader + kCount && bytes.size() == kHeader + kCount + kFacet * countOf(bytes, path)) {
+    return true;
+  }
+  TextCursor cursor(bytes, path);
+  if (!sameWord(cursor.word(), "solid")) return bytes.size() >= kHeader + kCount;
+  cursor.nextLine();
+  const auto second = cursor.word();
+  if (sameWord(second, "facet") || sameWord(second, "endsolid")) return false;
+  return bytes.find('\0') != std::string_view::npos;
 }
 
 template <class Cursor, class Read>
@@ -31,11 +38,11 @@ void readTriangle(Cursor& cursor, Polygons& polygons, const Read& readVertex) {
   polygons.endFace(place);
 }
 
-Mesh readBinary(std::string_view bytes, const std::string& path) {
+Mesh readBinary(std::string_view bytes, const std::string& path, std::vector<std::string>& notes) {
   ByteCursor cursor(bytes, path);
   cursor.skip(kHeader);
   const auto count = cursor.take<std::uint32_t>();
-  if (cursor.left() != kFacet * count) {
+  if (cursor.left() < kFacet * count || (count == 0 && cursor.left() > 0)) {
     cursor.fail("the file says that it has " + std::to_string(count) + " triangles of 50 bytes, but " +
                 std::to_string(cursor.left()) + " bytes follow; it was cut or is no STL file");
   }
@@ -47,6 +54,10 @@ Mesh readBinary(std::string_view bytes, const std::string& path) {
       return Vec3d{x, y, z};
     });
     cursor.skip(2);  // attributes
+  }
+  if (cursor.left() > 0) {
+    notes.push_back("the file goes on for " + std::to_string(cursor.left()) + " bytes behind the " +
+                    std::to_string(count) + " triangles that it says it has: they were left out");
   }
   return std::move(polygons).triangulate(path, "byte");
 }
@@ -79,8 +90,8 @@ Mesh readText(std::string_view bytes, const std::string& path) {
 
 }  // namespace
 
-Mesh readStl(std::string_view bytes, const std::string& path) {
-  return isBinary(bytes, path) ? readBinary(bytes, path) : readText(bytes, path);
+Mesh readStl(std::string_view bytes, const std::string& path, std::vector<std::string>& notes) {
+  return isBinary(bytes, path) ? readBinary(bytes, path, notes) : readText(bytes, path);
 }
 
 }  // namespace innersphere

@@ -4,16 +4,18 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "innersphere/geometry.hpp"
 
 namespace innersphere {
 
 /// Return the triangles of a file: `bytes` is its content, `path` names it in messages. Coordinates keep all
-/// digits of the file. Vertices are not welded. Throw Error with the line or byte: bad_format, not_finite.
+/// digits of the file. Vertices are not welded. `notes` gets what a user should know. Throw Error with the
+/// line or byte: bad_format, not_finite.
 Mesh readObj(std::string_view bytes, const std::string& path);
 Mesh readOff(std::string_view bytes, const std::string& path);
 Mesh readPly(std::string_view bytes, const std::string& path);
-Mesh readStl(std::string_view bytes, const std::string& path);
+Mesh readStl(std::string_view bytes, const std::string& path, std::vector<std::string>& notes);
 
 }  // namespace innersphere
