@@ -26,12 +26,13 @@ btVector3 turnBetween(const btQuaternion& from, const btQuaternion& to) {
 }  // namespace
 
 DrivenMotion DrivenBodies::motionOf(const btRigidBody& body, btScalar time_step) {
+  if (!now_.empty() && now_.back().body == &body) return now_.back().motion;  // of its next contact
   // Twice what a cosine near 1 leaves of an angle.
   const btScalar rounding = 4 * std::sqrt(SIMD_EPSILON);
-  DrivenMotion motion;
+  Past now{.body = &body, .rotation = body.getWorldTransform().getRotation()};
+  DrivenMotion& motion = now.motion;
   motion.velocity = body.getLinearVelocity();
   motion.spin = body.getAngularVelocity();
-  Past now{.body = &body, .rotation = body.getWorldTransform().getRotation()};
   const auto past =
       std::lower_bound(before_.begin(), before_.end(), &body,
                        [](const Past& p, const btRigidBody* b) { return std::less<>()(p.body, b); });
@@ -42,15 +43,13 @@ DrivenMotion DrivenBodies::motionOf(const btRigidBody& body, btScalar time_step)
     // A belt's pose stays, and that of a body in the second of several steps of a frame.
     if (now.turned && past->turned && turn.distance(motion.spin * time_step) < rounding)
       motion.spin = turn / time_step;
-    now.gained = motion.velocity - past->velocity;
-    now.spin_gained = motion.spin - past->spin;
+    now.gained = motion.velocity - past->motion.velocity;
+    now.spin_gained = motion.spin - past->motion.spin;
     motion.acceleration = steady(now.gained, past->gained) / time_step;
     motion.angular_acceleration = steady(now.spin_gained, past->spin_gained) / time_step;
   }
-  now.velocity = motion.velocity;
-  now.spin = motion.spin;
   now_.push_back(now);
-  return motion;
+  return now.motion;
 }
 
 void DrivenBodies::endStep() {

@@ -36,7 +36,7 @@ class DrivenBodies {
     const btRigidBody* body = nullptr;
     btQuaternion rotation = btQuaternion::getIdentity();
     bool turned = false;  ///< in that step
-    btVector3 velocity{0, 0, 0}, spin{0, 0, 0};
+    DrivenMotion motion;
     btVector3 gained{0, 0, 0}, spin_gained{0, 0, 0};  ///< from the step before
   };
   std::vector<Past> before_;  ///< sorted by body
