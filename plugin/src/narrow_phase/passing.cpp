@@ -9,9 +9,9 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// Whether a point that goes along `way` meets A, or B, and does not only glide along beside an edge of it,
-/// no deeper than `graze`.
+/// no deeper than `graze`. What it glides along lies across `normal`, that of the contact.
 bool meets(const SurfaceProbe& probe, bool of_a, const btVector3& from, const btVector3& way,
-           btScalar graze) {
+           const btVector3& normal, btScalar graze) {
   const btScalar part = probe.meets(of_a, from, way);
   if (part > 1) return false;
   if (part < 0) return true;
@@ -21,7 +21,8 @@ bool meets(const SurfaceProbe& probe, bool of_a, const btVector3& from, const bt
     return probe.nearestWall(of_a, place, way.length(), wall) && wall.distance > -graze;
   };
   const bool glides = isShallow(from + way * part + direction * (2 * graze)) &&
-                      btFabs(wall.normal.dot(direction)) < kBesideCosine && isShallow(from + way);
+                      btFabs(wall.normal.dot(direction)) < kBesideCosine &&
+                      btFabs(wall.normal.dot(normal)) < kBesideCosine && isShallow(from + way);
   return !glides;
 }
 
@@ -37,8 +38,8 @@ bool passes(const SurfaceProbe& probe, const StepAhead& step, const WeightedPoin
   const btScalar back = touches ? (point.depth + graze) / approach : btScalar(0);
   const btVector3 before = velocity * -back, way = velocity * (back + ahead);
   const btVector3 on_a = point.on_b + point.normal * point.depth + found.across;
-  return !meets(probe, false, on_a + before, way, graze) &&
-         !meets(probe, true, point.on_b - before, -way, graze);
+  return !meets(probe, false, on_a + before, way, point.normal, graze) &&
+         !meets(probe, true, point.on_b - before, -way, point.normal, graze);
 }
 
 }  // namespace

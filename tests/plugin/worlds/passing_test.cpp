@@ -110,5 +110,37 @@ TEST(Passing, ACubeIsHeldByTheEdgeOfALedge) {
   }
 }
 
+/// A tower on a plate tips where the plate speeds up by g b / h, with b half of its width and h half of its
+/// height. It rocks before it stands, as the speed begins at once, and slides by a hair. It walked off and
+/// tipped where its corners passed for what glides along beside an edge.
+TEST(Passing, ATowerThatRocksStandsOnItsCorners) {
+  constexpr btScalar kHalf = btScalar(0.1), kHeight = btScalar(0.3), kPlate = 1;
+  const auto tower = makePackedShape(*makeBox({2 * kHalf, 2 * kHalf, 2 * kHeight}), 256);
+  const auto plate = makePackedShape(*makeBox({2 * kPlate, 2 * kPlate, 2 * kHalf}), 256);
+  for (const int rate : {60, 120, 240}) {
+    for (const double part : {0.9, 0.95, 1.05}) {
+      World world(true);
+      btRigidBody& moved = world.add(plate, 0, btVector3(0, 0, -kHalf));
+      moved.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+      moved.setActivationState(DISABLE_DEACTIVATION);
+      btRigidBody& body = world.add(tower, 1, btVector3(0, 0, kHeight));
+      body.setActivationState(DISABLE_DEACTIVATION);
+      for (btRigidBody* b : {&moved, &body}) b->setFriction(btScalar(1.2));
+      world.run(0.5, 1.0 / rate);
+      const double acceleration = part * kGravity * kHalf / kHeight;
+      btScalar x = 0;
+      for (int i = 1; i <= 2 * rate; ++i) {
+        x = btScalar(acceleration / 2 * i * i / rate / rate);
+        moved.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(x, 0, -kHalf)));
+        world.run(1.0 / rate, 1.0 / rate);
+      }
+      const bool tips = body.getWorldTransform().getBasis()[2].z() < 0.99;
+      EXPECT_EQ(tips, part > 1) << rate << " steps/s, " << part;
+      if (tips) continue;
+      EXPECT_NEAR(body.getWorldTransform().getOrigin().x(), x, 0.001) << rate << " steps/s, " << part;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace innersphere::test
