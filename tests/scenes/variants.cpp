@@ -57,6 +57,8 @@ const std::vector<Variant>& variants() {
                                            {"half-pipe"},
                                            {"half-pipe-mesh"},
                                            {"t-slot"},
+                                           {"t-slot", 0, 0, 1.0 / 60, "_at_60_Hz"},
+                                           {"t-slot", 0, 0, 0.0161, "_at_62_Hz"},
                                            {"gripper"},
                                            {"gripper-motor"},
                                            {"carabiner"},

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
+#include "response/contact_law.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
 
@@ -81,6 +83,24 @@ TEST(ContactLaw, BodiesThatStartInsideEachOtherPartGently) {
     }
     EXPECT_GE(b.getWorldTransform().getOrigin().z() - a.getWorldTransform().getOrigin().z(), 0.99) << overlap;
     EXPECT_LT(fastest, 2) << overlap;
+  }
+}
+
+/// Bodies that are deep in each other part no faster than half of their size in a second, but bear more the
+/// deeper they are: else what cannot bear its load sinks on and on.
+TEST(ContactLaw, WhatIsHeldBackBearsMoreWithItsDepth) {
+  ContactPatch patch;
+  patch.normal = btVector3(0, 0, 1);
+  patch.area = 1;
+  patch.count = 1;
+  const ContactLaw pair({}, 1, btScalar(1) / 60, 1);
+  const ContactLaw::OfPatch law = pair.of({patch}, 0);
+  btScalar bears = 0;
+  for (const double depth : {0.005, 0.01, 0.02, 0.05, 0.2, 1.0}) {
+    const PointLaw at = law.at(btScalar(depth));
+    EXPECT_LE(at.push, 0.5 + 1e-5) << depth;
+    EXPECT_GT(at.bears, 1.2 * bears) << depth;
+    bears = at.bears;
   }
 }
 
