@@ -113,6 +113,13 @@ constexpr btScalar kStartInside = btScalar(0.01);
 /// In lengths of the shorter edge: edges that are less deep in each other are near each other for sure.
 constexpr btScalar kShallow = btScalar(0.01);
 
+// --- Outlines of faces that lie on each other --------------------------------------------------------------
+
+/// Outlines of one patch have so many sides at most: rounder ones have corners enough.
+constexpr int kOverlapSides = 32;
+/// In rounding of both surfaces: the walk along an edge is this far inside of it.
+constexpr btScalar kWalkInside = 16;
+
 // --- Selection of samples --------------------------------------------------------------------------------
 
 /// This is the number of directions in which the outermost spheres of a patch are samples: an octagon spans

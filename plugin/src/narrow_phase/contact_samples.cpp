@@ -151,7 +151,9 @@ class PatchContactPoints {
         separation_(separation),
         scratch_(scratch),
         found_(found),
-        first_(found.size()) {}
+        first_(found.size()) {
+    scratch_.overlaps.clear();
+  }
 
   void addSample(const ProbedSample& sample, const btVector3& normal) {
     const OpposedPoints& points = sample.points;
@@ -162,8 +164,8 @@ class PatchContactPoints {
     if (rises_a != rises_b) probe_.corners(sample.index, points, normal, rises_a, scratch_.vertices, corners);
     EdgeContact crossing;
     const bool lie = points.normal_a.dot(points.normal_b) > kAlignedOnFacesCosine;
-    const bool crosses = points.areFlat() && !lie && addCrossing(points, Kind::crossing, crossing);
-    if (points.areFlat() && lie && probe_.crossesOnFaces(points)) addCrossing(points, Kind::corner, crossing);
+    const bool crosses = points.areFlat() && !lie && addCrossing(points, crossing);
+    if (points.areFlat() && lie) addOverlap(points, normal);
     if (crosses && crossing.is_alone) corners.clear();
     for (const EdgeContact& corner : corners) addCorner(corner, rises_a);
     bool has_corners = !corners.empty();
@@ -180,8 +182,7 @@ class PatchContactPoints {
   /// For a sample whose line leaves A by its side: an edge or a corner of A beside it bears.
   void addBeside(const ProbedSample& sample) {
     EdgeContact crossing;
-    if (!sample.points.areFlat() || !addCrossing(sample.points, Kind::crossing, crossing))
-      addPeaks(sample, true);
+    if (!sample.points.areFlat() || !addCrossing(sample.points, crossing)) addPeaks(sample, true);
   }
 
   /// For the same, where A is through a mesh.
@@ -191,9 +192,10 @@ class PatchContactPoints {
     for (const EdgeContact& tip : scratch_.corners) addCorner(tip, true);
   }
 
-  bool addCrossing(const OpposedPoints& points, WeightedPoint::Kind kind, EdgeContact& crossing) {
+  bool addCrossing(const OpposedPoints& points, EdgeContact& crossing) {
     return probe_.crossing(points, patch_.normal, crossing) &&
-           (isFound(crossing.id) || add(crossing.points, crossing.points.normal_a, crossing.id, kind));
+           (isFound(crossing.id) ||
+            add(crossing.points, crossing.points.normal_a, crossing.id, Kind::crossing));
   }
 
   /// Each point stands for an equal part of the patch.
@@ -235,6 +237,20 @@ class PatchContactPoints {
   bool addCorner(const EdgeContact& corner, bool of_a) {
     return !isFound(corner.id) && add(corner.points, of_a ? corner.points.normal_b : corner.points.normal_a,
                                       corner.id, corner.is_peak ? Kind::corner : Kind::edge);
+  }
+
+  /// Where edges of two faces cross that lie on each other: with the corners they span what both share.
+  void addOverlap(const OpposedPoints& points, const btVector3& normal) {
+    FaceOverlaps& overlaps = scratch_.overlaps;
+    if (!overlaps.hasRoom() || !(points.depthAlong(normal) > -separation_) ||
+        overlaps.covers(points.on_b, normal))
+      return;
+    std::vector<EdgeContact>& crossings = scratch_.peaks;
+    crossings.clear();
+    probe_.overlap(points, normal, overlaps, crossings);
+    for (const EdgeContact& crossing : crossings) {
+      if (!isFound(crossing.id)) add(crossing.points, normal, crossing.id, Kind::corner);
+    }
   }
 
   /// Corners that reach furthest out of the other face. True if one was added.

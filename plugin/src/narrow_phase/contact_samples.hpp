@@ -48,6 +48,7 @@ struct SampleScratch {
   std::vector<ProbedSample> sideways;   ///< those whose line leaves A by its side
   std::vector<EdgeContact> corners;     ///< at one sample
   std::vector<EdgeContact> peaks;       ///< the same for corners that neither face lies flat at
+  FaceOverlaps overlaps;                ///< of the patch, as far as known
   std::vector<std::uint32_t> vertices;  ///< see EdgeProbe
 };
 

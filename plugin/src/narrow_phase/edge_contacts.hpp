@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/contact_tolerances.hpp"
 #include "narrow_phase/surface_probe.hpp"
 
 namespace innersphere {
@@ -20,6 +21,28 @@ struct EdgeContact {
 constexpr std::uint64_t kCornerId = std::uint64_t(1) << 62;
 constexpr std::uint64_t kCrossingId = std::uint64_t(1) << 61;
 
+/// Names the crossing of two edges by their ids.
+inline std::uint64_t crossingId(std::uint32_t edge_a, std::uint32_t edge_b) {
+  return kCrossingId + (std::uint64_t(edge_a) << 30) + edge_b;
+}
+
+/// Holds the outlines of what faces that lie on each other have in common, in one patch.
+struct FaceOverlaps {
+  struct Side {
+    btVector3 from, to;
+  };
+  std::vector<Side> sides;
+  int sides_left = 0;  ///< that may be looked for
+
+  void clear() {
+    sides.clear();
+    sides_left = kOverlapSides;
+  }
+  bool hasRoom() const { return sides_left > 0; }
+  /// Returns true if an outline is around a place, seen along `normal`.
+  bool covers(const btVector3& place, const btVector3& normal) const;
+};
+
 /// Finds contacts at corners and edges near opposed points of the surfaces.
 class EdgeProbe {
  public:
@@ -34,9 +57,10 @@ class EdgeProbe {
   /// `direction` is about that in which the solids are in contact, from A to B.
   virtual bool crossing(const OpposedPoints& points, const btVector3& direction,
                         EdgeContact& crossing) const = 0;
-  /// Returns true if crossings are looked for where faces lie on each other, too: where a solid is thin.
-  /// Faces that lean are deepest where one ends; there the ends are long, and points on faces not near them.
-  virtual bool crossesOnFaces(const OpposedPoints&) const { return false; }
+  /// Follows the outline of what two flat faces that lie on each other have in common, from opposed points of
+  /// them: see followOverlap(). Appends where edges of both cross.
+  virtual void overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
+                       std::vector<EdgeContact>& crossings) const = 0;
   /// Returns false if the point on B is known to lie on an edge, seen along no normal of its faces.
   virtual bool isOnFaceOfB(const OpposedPoints&) const { return true; }
 };

@@ -61,7 +61,7 @@ class EdgePair {
     crossing.points.on_a = on_a() + normal_ * a_.margin;
     crossing.points.on_b = on_b() - normal_ * b_.margin;
     crossing.points.normal_a = crossing.points.normal_b = normal_;
-    crossing.id = kCrossingId + (std::uint64_t(faces_a_.id) << 30) + faces_b_.id;
+    crossing.id = crossingId(faces_a_.id, faces_b_.id);
   }
 
  private:

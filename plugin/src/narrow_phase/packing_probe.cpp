@@ -4,6 +4,7 @@
 
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
+#include "narrow_phase/face_overlap.hpp"
 #include "narrow_phase/surface_rays.hpp"
 
 namespace innersphere {
@@ -143,7 +144,12 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
   }
 }
 
-bool PackingProbe::crossesOnFaces(const OpposedPoints& points) const {
+void PackingProbe::overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
+                           std::vector<EdgeContact>& crossings) const {
+  followOverlap({a_, {0, 0, 0}}, {b_, apart()}, points, normal, overlaps, crossings);
+}
+
+bool PackingProbe::isThinAt(const OpposedPoints& points) const {
   const auto isThin = [](const PlacedPacking& body, std::size_t triangle, const btVector3& place,
                          const btVector3& normal) {
     const btMatrix3x3& axes = body.world.getBasis();
@@ -157,7 +163,7 @@ bool PackingProbe::crossesOnFaces(const OpposedPoints& points) const {
 
 bool PackingProbe::crossing(const OpposedPoints& points, const btVector3& direction,
                             EdgeContact& crossing) const {
-  const auto is_thin = [&] { return crossesOnFaces(points); };
+  const auto is_thin = [&] { return isThinAt(points); };
   return crossEdges({a_, {0, 0, 0}}, {b_, apart()}, points, direction, crossing, is_thin);
 }
 

@@ -50,7 +50,8 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
-  bool crossesOnFaces(const OpposedPoints& points) const override;
+  void overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
+               std::vector<EdgeContact>& crossings) const override;
   EdgeDistances edgeDistances(const OpposedPoints& points, const btVector3& towards) const override;
   std::uint64_t id(std::size_t index) const override;
   Protrusion protrusion(std::size_t index, const btVector3& normal) const override;
@@ -59,6 +60,8 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
   }
 
  private:
+  /// Returns true if one of the solids is thin there.
+  bool isThinAt(const OpposedPoints& points) const;
   btVector3 apart() const { return b_.origin() - a_.origin(); }
   /// Returns how far away the solid of a contact's sphere may end [m].
   btScalar surfaceDistance(std::size_t index) const {

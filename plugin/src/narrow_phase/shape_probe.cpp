@@ -4,6 +4,7 @@
 
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
+#include "narrow_phase/face_overlap.hpp"
 #include "narrow_phase/surface_rays.hpp"
 
 namespace innersphere {
@@ -215,6 +216,17 @@ bool ShapeProbe::crossing(const OpposedPoints& points, const btVector3& directio
   if (!faceOfB(points, b, start.triangle_b)) return false;
   crossing.is_alone = btFabs(b.face(start.triangle_b).dot(points.normal_b)) < kSameFaceCosine;
   return crossEdges({a_, {0, 0, 0}}, b, start, direction, crossing);
+}
+
+void ShapeProbe::overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
+                         std::vector<EdgeContact>& crossings) const {
+  SharpEdges b;
+  OpposedPoints start = points;
+  if (!faceOfB(points, b, start.triangle_b)) {
+    overlaps.sides_left = 0;
+    return;
+  }
+  followOverlap({a_, {0, 0, 0}}, b, start, normal, overlaps, crossings);
 }
 
 bool ShapeProbe::faceOfB(const OpposedPoints& points, SharpEdges& b, std::size_t& triangle) const {

@@ -8,10 +8,27 @@ bool SharpEdges::edgeTowards(std::size_t triangle, const btVector3& point, const
   const SmoothNormals& normals = surface->normals();
   edge.where = normals.untilSharpEdge(triangle, ((point - origin) * axes) / scale, towards * axes);
   if (!edge.where.found()) return false;
-  const SmoothNormals::Ends ends = normals.endsOf(edge.where);
+  place(edge);
+  return true;
+}
+
+void SharpEdges::place(Edge& edge) const {
+  const SmoothNormals::Ends ends = surface->normals().endsOf(edge.where);
   edge.from = origin + axes * ends.from * scale;
   edge.along = axes * (ends.to - ends.from) * scale;
-  return true;
+}
+
+bool SharpEdges::walk(std::size_t triangle, const btVector3& point, const btVector3& way, btScalar most,
+                      SmoothNormals::Walked& walked) const {
+  return surface->normals().walk(triangle, ((point - origin) * axes) / scale, (way * axes) / scale, most,
+                                 walked);
+}
+
+SharpEdges::Edge SharpEdges::edgeOf(const SmoothNormals::Walked& walked) const {
+  Edge edge;
+  edge.where = {0, walked.triangle, walked.edge};
+  place(edge);
+  return edge;
 }
 
 SharpEdges::Faces SharpEdges::facesOf(const Edge& edge) const {

@@ -27,6 +27,11 @@ struct SharpEdges {
   /// Finds the sharp edge that is met from a point of a triangle in a direction. Returns false if there is
   /// none near.
   bool edgeTowards(std::size_t triangle, const btVector3& point, const btVector3& towards, Edge& edge) const;
+  /// Walks over the faces from a point of a triangle along `way`: see SmoothNormals::walk().
+  bool walk(std::size_t triangle, const btVector3& point, const btVector3& way, btScalar most,
+            SmoothNormals::Walked& walked) const;
+  /// Returns the edge that a walk met.
+  Edge edgeOf(const SmoothNormals::Walked& walked) const;
   /// Says how the faces of an edge lie.
   struct Faces {
     btVector3 inwards[2];  ///< unit: along them, from the edge
@@ -48,6 +53,8 @@ struct SharpEdges {
   bool nearestTriangle(const btVector3& place, std::size_t& triangle) const;
   /// Finds how far away from the faces a place is, on either side [m]. Returns false if there are none.
   bool distanceOf(const btVector3& place, btScalar& distance) const;
+
+  void place(Edge& edge) const;
 
   const SurfaceQueries* surface = nullptr;
   btMatrix3x3 axes = btMatrix3x3::getIdentity();

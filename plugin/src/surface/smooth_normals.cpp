@@ -30,6 +30,8 @@ constexpr std::uint32_t kSharp = std::uint32_t(1) << 31, kSeam = kSharp - 1;
 /// Edges that are crossed to look for one, for the bulge of a triangle and for where a face ends.
 constexpr std::uint32_t kCrossed = 4;
 constexpr std::uint32_t kCrossedFar = 12;
+/// Triangles that are walked over at most.
+constexpr int kWalkedOver = 64;
 /// Triangles that are looked at on the way to the one that a line meets.
 constexpr int kNearby = 8;
 /// In sizes of the surface: a triangle is a sliver that is no higher than what rounding of its corners makes.
@@ -373,6 +375,18 @@ bool SmoothNormals::isPastSharpEdge(std::size_t t, const btVector3& point) const
   return false;
 }
 
+/// By which a line along a triangle leaves it.
+SmoothNormals::Exit SmoothNormals::exitOf(const Facet& facet, const btVector3& at, const btVector3& along) {
+  Exit exit{3, BT_LARGE_FLOAT};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const btScalar speed = -along.dot(facet.inwards[k]);
+    if (!(speed > 0)) continue;
+    const btScalar time = btMax(btScalar(0), (at - facet.corners[k]).dot(facet.inwards[k]) / speed);
+    if (time < exit.time) exit = {k, time};
+  }
+  return exit;
+}
+
 SmoothNormals::Ending SmoothNormals::untilSharpEdge(std::size_t t, const btVector3& point,
                                                     const btVector3& towards) const {
   btVector3 at = point;
@@ -380,18 +394,7 @@ SmoothNormals::Ending SmoothNormals::untilSharpEdge(std::size_t t, const btVecto
   for (std::uint32_t i = 0; i + facets_[t].to_sharp <= kCrossedFar; ++i) {
     const Facet& facet = facets_[t];
     const btVector3 along = towards - facet.face * towards.dot(facet.face);
-    // The edge by which the line along the triangle leaves it.
-    std::size_t edge = 3;
-    btScalar nearest = BT_LARGE_FLOAT;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const btScalar speed = -along.dot(facet.inwards[k]);
-      if (!(speed > 0)) continue;
-      const btScalar time = btMax(btScalar(0), (at - facet.corners[k]).dot(facet.inwards[k]) / speed);
-      if (time < nearest) {
-        nearest = time;
-        edge = k;
-      }
-    }
+    const auto [edge, nearest] = exitOf(facet, at, along);
     if (edge == 3) break;
     way += nearest * along.length();
     at += along * nearest;
@@ -401,6 +404,32 @@ SmoothNormals::Ending SmoothNormals::untilSharpEdge(std::size_t t, const btVecto
     if (t == kSeam) break;
   }
   return {};
+}
+
+bool SmoothNormals::walk(std::size_t t, const btVector3& point, const btVector3& way, btScalar most,
+                         Walked& walked) const {
+  btVector3 at = point;
+  btScalar gone = 0;
+  for (int i = 0; i < kWalkedOver; ++i) {
+    const Facet& facet = facets_[t];
+    const btVector3 along = way - facet.face * way.dot(facet.face);
+    const auto [edge, nearest] = exitOf(facet, at, along);
+    if (gone + nearest >= most) {
+      walked = {most, static_cast<std::uint32_t>(t), kNoEdge};
+      return true;
+    }
+    if (edge == 3) return false;
+    gone += nearest;
+    at += along * nearest;
+    const std::uint32_t across = facet.across[edge];
+    if (across >= kSharp) {
+      walked = {gone, static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(edge)};
+      return true;
+    }
+    if (across == kSeam) return false;
+    t = across;
+  }
+  return false;
 }
 
 SmoothNormals::Ends SmoothNormals::endsOf(const Ending& ending) const {

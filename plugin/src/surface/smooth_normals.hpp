@@ -66,6 +66,18 @@ class SmoothNormals {
   /// Returns the sharp edge that is met from a point of a triangle in a direction, no further than some
   /// triangles away.
   Ending untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const;
+  /// Says where a walk over the surface ends.
+  struct Walked {
+    btScalar share;          ///< of the way
+    std::uint32_t triangle;  ///< that it ends in
+    std::uint32_t edge;      ///< of the triangle's: the sharp one that is met; kNoEdge if none is
+  };
+  static constexpr std::uint32_t kNoEdge = 3;
+  /// Walks from a point of a triangle along `way`, to its end or to a sharp edge. Returns false where the
+  /// surface is not known, or if there are many triangles on the way. `most`: of the way, more than 1 if it
+  /// goes on.
+  bool walk(std::size_t triangle, const btVector3& point, const btVector3& way, btScalar most,
+            Walked& walked) const;
   struct Ends {
     const btVector3& from;
     const btVector3& to;
@@ -112,6 +124,11 @@ class SmoothNormals {
   std::vector<std::uint32_t> fanOf(std::uint32_t triangle, const std::vector<std::uint32_t>& around) const;
   void setNormals(const Surface& surface, const Around& around);
   void countToSharp();
+  struct Exit {
+    std::size_t edge;  ///< 3 if there is none
+    btScalar time;     ///< of the way
+  };
+  static Exit exitOf(const Facet& facet, const btVector3& at, const btVector3& along);
   static bool crossPlane(const Facet& facet, const btVector3& from, const btVector3& direction,
                          Crossing& crossing);
 
