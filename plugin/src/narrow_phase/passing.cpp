@@ -9,7 +9,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// Whether a point that goes along `way` meets A, or B, and does not only glide along beside an edge of it,
-/// no deeper than `graze`. What it glides along lies across `normal`, that of the contact.
+/// no deeper than `graze`. What it glides along is not the face that has the contact's own `normal`.
 bool meets(const SurfaceProbe& probe, bool of_a, const btVector3& from, const btVector3& way,
            const btVector3& normal, btScalar graze) {
   const btScalar part = probe.meets(of_a, from, way);
@@ -22,20 +22,20 @@ bool meets(const SurfaceProbe& probe, bool of_a, const btVector3& from, const bt
   };
   const bool glides = isShallow(from + way * part + direction * (2 * graze)) &&
                       btFabs(wall.normal.dot(direction)) < kBesideCosine &&
-                      btFabs(wall.normal.dot(normal)) < kBesideCosine && isShallow(from + way);
+                      btFabs(wall.normal.dot(normal)) < kSameManifoldCosine && isShallow(from + way);
   return !glides;
 }
 
 bool passes(const SurfaceProbe& probe, const StepAhead& step, const WeightedPoint& found) {
   const ContactPoint& point = found.point;
   const btScalar graze = kGrazing * step.size;
-  if (!(point.depth < graze) || found.bends || found.kind == WeightedPoint::Kind::crossing) return false;
+  if (!(point.depth < graze) || found.is_round || found.kind == WeightedPoint::Kind::crossing) return false;
   const btVector3 velocity = step.motion.velocityAt(point.on_b);
   const btScalar approach = velocity.dot(point.normal), ahead = kPassingSteps * step.time_step;
   const bool touches = point.depth >= 0;
   if (!(approach * ahead > (touches ? graze : -point.depth))) return false;
-  // Ways begin outside.
-  const btScalar back = touches ? (point.depth + graze) / approach : btScalar(0);
+  // Ways begin outside, further than by rounding.
+  const btScalar back = btMax(btScalar(0), (point.depth + graze) / approach);
   const btVector3 before = velocity * -back, way = velocity * (back + ahead);
   const btVector3 on_a = point.on_b + point.normal * point.depth + found.across;
   return !meets(probe, false, on_a + before, way, point.normal, graze) &&

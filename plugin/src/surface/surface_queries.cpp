@@ -253,7 +253,7 @@ btScalar NearestTriangle::distance() const {
 }
 
 btVector3 NearestTriangle::normal() const {
-  return btSqrt(best2_) > SIMD_EPSILON ? offset_ / distance() : face_;
+  return btSqrt(best2_) > btScalar(rounding_) ? offset_ / distance() : face_;
 }
 
 bool NearestTriangle::beside() const {

@@ -6,10 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include "innersphere/mesh.hpp"
 #include "innersphere/solids.hpp"
 #include "innersphere/substep_solver.hpp"
 #include "named_packings.hpp"
 #include "test_world.hpp"
+#include "outline_meshes.hpp"
 
 namespace innersphere::test {
 namespace {
@@ -106,6 +108,28 @@ TEST(Passing, ACubeIsHeldByTheEdgeOfALedge) {
           world.add(cube(true, kCube), 1, btVector3((kTile + kCube) / 2 - over, 0, kCube / 2 + 1));
       world.run(0.6, 1 / rate);
       EXPECT_GT(body.getAngularVelocity().y(), 1) << substeps << rate;  // it tips off
+    }
+  }
+}
+
+/// The far side of a hole is no wall for what slides over it: flat faces, and such that bend hollow.
+TEST(Passing, ABoxSlidesOverAHole) {
+  constexpr double kHole = 0.08, kThick = 0.1, kHalf = 0.05, kSpeed = 1.2;
+  const auto box = makePackedShape(*makeBox({0.3, 0.3, 2 * kHalf}), 256);
+  for (const int sides : {4, 8, 16}) {
+    const Mesh mesh = turnedMesh({{kHole, -kThick}, {1, -kThick}, {1, 0}, {kHole, 0}}, sides);
+    const auto plate = makePackedShape(*makeSolid(mesh, "plate"), 256);
+    for (const bool substeps : {false, true}) {
+      for (const double rate : {60.0, 240.0}) {
+        World world(substeps);
+        world.add(plate, 0, plate->bodyTransform(btTransform::getIdentity()).getOrigin()).setFriction(0);
+        btRigidBody& body = world.add(box, 1, btVector3(btScalar(-0.5), btScalar(0.003), btScalar(kHalf)));
+        body.setFriction(0);
+        body.setLinearVelocity(btVector3(btScalar(kSpeed), 0, 0));
+        world.run(1 / kSpeed, 1 / rate);
+        EXPECT_NEAR(body.getLinearVelocity().x(), kSpeed, 0.01 * kSpeed) << sides << substeps << rate;
+        EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kHalf, 0.001) << sides << substeps << rate;
+      }
     }
   }
 }
