@@ -140,6 +140,8 @@ constexpr btScalar kLessDeep = 2;
 
 /// In sizes of the smaller body: what would be met by less than this beside an edge is passed.
 constexpr btScalar kGrazing = btScalar(1e-3);
+/// In depths at rest: the same, of what is so small, or steps so long, that it lies deeper.
+constexpr btScalar kGrazingAtRest = 2;
 /// Cosine, 60 degrees: a nearest way out of a face that is closer to its normal is not beside its edge.
 constexpr btScalar kBesideCosine = btScalar(0.5);
 /// In steps: contacts are carried along into the next one.

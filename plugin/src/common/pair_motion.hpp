@@ -62,6 +62,8 @@ struct StepAhead {
   btScalar needed = 0;
   /// The size of the smaller body [m].
   btScalar size = 0;
+  /// How deep either body lies in what it rests on [m].
+  btScalar sunk = 0;
 
   /// Returns how deep two points of the surfaces, `depth` [m] deep in each other along `normal` (from A to B)
   /// at `place`, would be at the end of the step if nothing stopped the bodies.

@@ -289,10 +289,7 @@ class PatchContactPoints {
       bends.a = surfaces_.bends(points, turned(axes, point.point.normal, points.normal_a)).a;
       bends.b = surfaces_.bends(points, turned(axes, point.point.normal, points.normal_b)).b;
     }
-    const auto isRound = [](btScalar curvature, const Bend& bend) {
-      return curvature != 0 && !bend.isHollow();
-    };
-    point.is_round = isRound(points.curvature_a, bends.a) || isRound(points.curvature_b, bends.b);
+    point.both_bend = points.curvature_a != 0 && points.curvature_b != 0;
     point.point.bend_a = bends.a;
     point.point.bend_b = bends.b;
     point.point.bend_x = axes.x;

@@ -9,35 +9,52 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
 /// Whether a point that goes along `way` meets A, or B, and does not only glide along beside an edge of it,
-/// no deeper than `graze`. What it glides along is not the face that has the contact's own `normal`.
+/// no deeper than `graze`. What it glides along is not the face that has the contact's own `normal`, and is
+/// looked for until the side by which it came in, which may bend, is further away.
 bool meets(const SurfaceProbe& probe, bool of_a, const btVector3& from, const btVector3& way,
            const btVector3& normal, btScalar graze) {
   const btScalar part = probe.meets(of_a, from, way);
   if (part > 1) return false;
   if (part < 0) return true;
-  const btVector3 direction = way.normalized();
+  const btScalar length = way.length();
+  const btVector3 direction = way / length;
   SurfaceQueries::Nearest wall;
   const auto isShallow = [&](const btVector3& place) {
-    return probe.nearestWall(of_a, place, way.length(), wall) && wall.distance > -graze;
+    return probe.nearestWall(of_a, place, length, wall) && wall.distance > -graze;
   };
-  const bool glides = isShallow(from + way * part + direction * (2 * graze)) &&
-                      btFabs(wall.normal.dot(direction)) < kBesideCosine &&
-                      btFabs(wall.normal.dot(normal)) < kSameManifoldCosine && isShallow(from + way);
-  return !glides;
+  for (btScalar in = 2 * graze; part * length + in < length; in *= 2) {
+    if (!isShallow(from + direction * (part * length + in))) return true;
+    if (btFabs(wall.normal.dot(direction)) < kBesideCosine)
+      return btFabs(wall.normal.dot(normal)) > kSameManifoldCosine || !isShallow(from + way);
+  }
+  return true;
+}
+
+/// Whether a place in A, or B, is no deeper than `graze` beside the side that it goes along.
+bool isBeside(const SurfaceProbe& probe, bool of_a, const btVector3& place, const btVector3& direction,
+              btScalar graze) {
+  SurfaceQueries::Nearest wall;
+  return probe.nearestWall(of_a, place, graze, wall) && wall.distance > -graze &&
+         btFabs(wall.normal.dot(direction)) < kBesideCosine;
 }
 
 bool passes(const SurfaceProbe& probe, const StepAhead& step, const WeightedPoint& found) {
   const ContactPoint& point = found.point;
-  const btScalar graze = kGrazing * step.size;
-  if (!(point.depth < graze) || found.is_round || found.kind == WeightedPoint::Kind::crossing) return false;
+  const btScalar graze = btMax(kGrazing * step.size, kGrazingAtRest * step.sunk);
+  if (found.both_bend || found.kind == WeightedPoint::Kind::crossing) return false;
   const btVector3 velocity = step.motion.velocityAt(point.on_b);
   const btScalar approach = velocity.dot(point.normal), ahead = kPassingSteps * step.time_step;
   const bool touches = point.depth >= 0;
   if (!(approach * ahead > (touches ? graze : -point.depth))) return false;
+  const btVector3 on_a = point.on_b + point.normal * point.depth + found.across;
+  if (!(point.depth < graze)) {
+    const btVector3 direction = velocity.normalized();
+    return isBeside(probe, false, on_a, direction, graze) &&
+           isBeside(probe, true, point.on_b, direction, graze);
+  }
   // Ways begin outside, further than by rounding.
   const btScalar back = btMax(btScalar(0), (point.depth + graze) / approach);
   const btVector3 before = velocity * -back, way = velocity * (back + ahead);
-  const btVector3 on_a = point.on_b + point.normal * point.depth + found.across;
   return !meets(probe, false, on_a + before, way, point.normal, graze) &&
          !meets(probe, true, point.on_b - before, -way, point.normal, graze);
 }

@@ -4,6 +4,7 @@
 #include "common/parallel.hpp"
 #include "innersphere/error.hpp"
 #include "pair_cache/pair_table.hpp"
+#include "response/contact_law.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
@@ -40,7 +41,8 @@ StepAhead stepAheadOf(const ContactPair& pair, const BodySnapshot& a, const Body
            isSwept(a.motion(), b.motion(), time_step)},
           time_step,
           neededSeparation(pair, a, b, time_step),
-          btMin(a.motion().size, b.motion().size)};
+          btMin(a.motion().size, b.motion().size),
+          btMax(depthAtRest(*a.object(), time_step), depthAtRest(*b.object(), time_step))};
 }
 
 /// The first pass of a search that needs queries.

@@ -183,6 +183,12 @@ btScalar ContactLaw::OfPatch::slipUndoneBy(btScalar impulse) const {
   return undone > 0 ? impulse * law_->time_step_ / (undone * law_->mass_) : btScalar(0);
 }
 
+btScalar depthAtRest(const btCollisionObject& object, btScalar time_step) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  const bool falls = body != nullptr && !body->isStaticOrKinematicObject();
+  return falls ? body->getGravity().length() * time_step * time_step / kStiffness : btScalar(0);
+}
+
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b) {
   const btScalar inverse = inverseMass(a) + inverseMass(b);
   return inverse > 0 ? 1 / inverse : btScalar(0);

@@ -107,6 +107,10 @@ class ContactLaw {
 /// Returns 1 / (1/m_a + 1/m_b) [kg], static and kinematic bodies counting as infinitely heavy; 0 if both are.
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b);
 
+/// Returns how deep a body sinks into a fixed one under its own weight, by the default law [m]; 0 if it has
+/// no weight, or none of its own.
+btScalar depthAtRest(const btCollisionObject& object, btScalar time_step);
+
 /// Returns true if a solver does something about contacts of these bodies: both respond to them, and one of
 /// the two can be moved. Those of sensors, of ghosts and characters on what stands still, and of bodies in a
 /// world without dynamics are only read.
