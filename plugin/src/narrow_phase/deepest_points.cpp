@@ -129,7 +129,15 @@ void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shif
   // There is no top where faces are flat, or fit together.
   if (fitTogether(sample.points.curvature_a, sample.points.curvature_b) || here.slope.length() > steepest)
     return;
-  const btScalar fall = hillAt(probe, sample).fall(0);
+  const Hill hill = hillAt(probe, sample);
+  const btScalar fall = hill.fall(0);
+  // Along a ridge there is no top: what slope there is, is rounding, and would lead off its end.
+  const auto uphill = [&](const btVector3& slope) {
+    if (hill.hasTop(0) == hill.hasTop(1)) return slope;
+    const btVector3& across = hill.axis(hill.hasTop(0) ? 0 : 1);
+    return across * slope.dot(across);
+  };
+  here.slope = uphill(here.slope);
   Falls falls(sample.direction, fall > 0 ? fall : sample.points.curvature_a + sample.points.curvature_b);
   const auto goesOn = [&](int i) {
     const btScalar slope = here.slope.length();
@@ -146,11 +154,12 @@ void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shif
         shift = *from_there;
         continue;
       }
-      if (!over_edges) return;
+      if (!over_edges) break;
       falls.shorten();
       continue;
     }
-    const Hillside next = hillsideAt(points, sample.direction);
+    Hillside next = hillsideAt(points, sample.direction);
+    next.slope = uphill(next.slope);
     const btScalar gain = next.depth - here.depth, promised = here.slope.dot(step);
     const bool climbs = gain > kClimbs * promised, sinks = gain < -kSinks * promised;
     if ((over_edges && next.slope.length() > steepest) ||
