@@ -22,7 +22,7 @@ bool meets(const SurfaceProbe& probe, bool of_a, const btVector3& from, const bt
   const auto isShallow = [&](const btVector3& place) {
     return probe.nearestWall(of_a, place, length, wall) && wall.distance > -graze;
   };
-  for (btScalar in = 2 * graze; part * length + in < length; in *= 2) {
+  for (btScalar in = 2 * graze; in > 0 && part * length + in < length; in *= 2) {
     if (!isShallow(from + direction * (part * length + in))) return true;
     if (btFabs(wall.normal.dot(direction)) < kBesideCosine)
       return btFabs(wall.normal.dot(normal)) > kSameManifoldCosine || !isShallow(from + way);
