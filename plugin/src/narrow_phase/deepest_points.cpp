@@ -133,7 +133,7 @@ void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shif
   const btScalar fall = hill.fall(0);
   // Along a ridge there is no top: what slope there is, is rounding, and would lead off its end.
   const auto uphill = [&](const btVector3& slope) {
-    if (hill.hasTop(0) == hill.hasTop(1)) return slope;
+    if (over_edges || hill.hasTop(0) == hill.hasTop(1)) return slope;
     const btVector3& across = hill.axis(hill.hasTop(0) ? 0 : 1);
     return across * slope.dot(across);
   };
