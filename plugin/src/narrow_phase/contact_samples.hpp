@@ -29,7 +29,7 @@ struct WeightedPoint {
   btScalar radius = 0;        ///< mean distance of the patch's area from there [m]
   bool is_top = false;        ///< see ProbedSample
   bool bends = false;         ///< between curved surfaces
-  bool both_bend = false;     ///< and both are curved
+  bool both_bend = false;     ///< neither of them is flat
   btVector3 slope{0, 0, 0};   ///< B's normal less A's
   btVector3 moved{0, 0, 0};   ///< the point on B, from where that was measured
   btVector3 across{0, 0, 0};  ///< how far A's point is beside B's, across the normal

@@ -60,7 +60,8 @@ class SurfaceQueries {
 
   struct Nearest {
     btScalar distance;  ///< [m], negative inside the solid
-    btVector3 normal;   ///< unit, out of the solid, along the line from the nearest point, or of the face if it is that near
+    /// Unit, out of the solid, along the line from the nearest point; of the face within rounding of that.
+    btVector3 normal;
     std::size_t triangle;
     bool beside;  ///< the nearest point is on an edge, which the triangle shares with another face
   };

@@ -71,9 +71,6 @@ TEST(Rolling, ASpinningBallIsBrakedByItsContact) {
   EXPECT_LT(ball.getLinearVelocity().length(), 1e-3);
 }
 
-// A disc that slides down a packed slope, and spins up as it does, moves by g (sin - mu cos). Of what is near
-// ahead of the step, the flat road bears it: a normal of the disc's own, which spins past, has a speed that
-// nothing approaches with, and throws it up.
 /// A disc that rolls on a flat packed floor keeps its speed. Ascents to the line that it lies on ran off its
 /// end, so that it had no top, and places ahead of it bore it: 0.71 m/s were left of 1 at 60 steps/s.
 TEST(Rolling, ADiscOnAPackedFloorIsHardlyBraked) {
@@ -103,6 +100,9 @@ TEST(Rolling, ADiscOnAPackedFloorIsHardlyBraked) {
   }
 }
 
+// A disc that slides down a packed slope, and spins up as it does, moves by g (sin - mu cos). Of what is near
+// ahead of the step, the flat road bears it: a normal of the disc's own, which spins past, has a speed that
+// nothing approaches with, and throws it up.
 TEST(Rolling, ADiscSlidesDownAPackedSlope) {
   constexpr double kOuter = 0.3, kSlope = 0.9, kFriction = 0.2, kSeconds = 1.2;
   const Mesh disc = turnedMesh({{0, -0.05}, {kOuter, -0.05}, {kOuter, 0.05}, {0, 0.05}}, 128);
