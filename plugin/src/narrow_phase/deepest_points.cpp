@@ -117,15 +117,6 @@ std::optional<btVector3> startNearer(const LineStarts& lines, const btVector3& s
   return shift;
 }
 
-/// Whether neither surface bends along `axis` by more than `least` [1/m].
-bool isStraight(const SurfaceProbe& probe, const ProbedSample& sample, const btVector3& axis,
-                btScalar least) {
-  const Across axes(sample.direction);
-  const SurfaceProbe::Bends bends = probe.bends(sample.points, axes);
-  return btFabs(bends.a.turn(axis, axes).dot(axis)) <= least &&
-         btFabs(bends.b.turn(axis, axes).dot(axis)) <= least;
-}
-
 /// Moves a sample uphill along lines beside that from `shift` beside its sphere; not where slopes above
 /// `steepest` say that the top is far. Notes whether it got there. What is out of reach of its sphere is
 /// probed from another one. Over edges the slope may fall suddenly, so a step which loses the surface there
@@ -141,11 +132,9 @@ void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shif
   const Hill hill = hillAt(probe, sample);
   const btScalar fall = hill.fall(0);
   // Along a straight ridge there is no top: what slope there is, is rounding, and would lead off its end.
-  const int ridge = hill.hasTop(0) ? 1 : 0;
-  const bool straight = !over_edges && hill.hasTop(0) != hill.hasTop(1) &&
-                        isStraight(probe, sample, hill.axis(ridge), kLevel * fall);
+  const bool on_ridge = !over_edges && hill.isStraightRidge();
   const auto uphill = [&](const btVector3& slope) {
-    return straight ? slope - hill.axis(ridge) * slope.dot(hill.axis(ridge)) : slope;
+    return on_ridge ? hill.axis(0) * slope.dot(hill.axis(0)) : slope;
   };
   here.slope = uphill(here.slope);
   Falls falls(sample.direction, fall > 0 ? fall : sample.points.curvature_a + sample.points.curvature_b);
@@ -164,7 +153,7 @@ void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shif
         shift = *from_there;
         continue;
       }
-      if (!over_edges) break;
+      if (!over_edges) return;
       falls.shorten();
       continue;
     }

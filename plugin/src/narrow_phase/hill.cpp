@@ -9,6 +9,9 @@ namespace {
 /// Ratio: along a ridge, what is left of how fast the slope falls across it is less than this part, and so is
 /// what is left of two curvatures where one surface lies in the other.
 constexpr btScalar kRounding = 64 * SIMD_EPSILON;
+/// Ratio: a surface that bends by no more than this part of what it does across is straight. Normals of meshes
+/// are not right to the last digit.
+constexpr btScalar kStraight = btScalar(1e-5);
 
 }  // namespace
 
@@ -29,9 +32,14 @@ Hill::Hill(const Bend& a, const Bend& b, btScalar depth, const Across& axes) {
   axis_[1] = axes.x * -axis_[0].dot(axes.y) + axes.y * axis_[0].dot(axes.x);
   fall_[0] = middle + spread;
   fall_[1] = middle - spread;
-  for (int i = 0; i < 2; ++i)
-    has_top_[i] = fall_[i] > kRounding * fall_[0] &&
-                  !fitTogether(a.turn(axis_[i], axes).dot(axis_[i]), b.turn(axis_[i], axes).dot(axis_[i]));
+  const auto bendAlong = [&](const Bend& bend, int i) { return bend.turn(axis_[i], axes).dot(axis_[i]); };
+  btScalar bent[2];
+  for (int i = 0; i < 2; ++i) {
+    const btScalar of_a = bendAlong(a, i), of_b = bendAlong(b, i);
+    has_top_[i] = fall_[i] > kRounding * fall_[0] && !fitTogether(of_a, of_b);
+    bent[i] = btFabs(of_a) + btFabs(of_b);
+  }
+  straight_ridge_ = has_top_[0] && !has_top_[1] && bent[1] <= kStraight * bent[0];
 }
 
 btVector3 Hill::toTop(const btVector3& slope) const {

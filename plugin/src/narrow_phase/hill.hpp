@@ -50,6 +50,8 @@ class Hill {
   btScalar fall(int i) const { return fall_[i]; }
   /// Returns false if surfaces are flat along an axis, or one lies in the other, so that there is no top.
   bool hasTop(int i) const { return has_top_[i]; }
+  /// Returns true if there is a top along the first axis only, and neither surface bends along the second one.
+  bool isStraightRidge() const { return straight_ridge_; }
   /// Returns the way from where the slope is this to the top, as far as there is one [m].
   btVector3 toTop(const btVector3& slope) const;
 
@@ -57,6 +59,7 @@ class Hill {
   btVector3 axis_[2];
   btScalar fall_[2] = {0, 0};
   bool has_top_[2] = {false, false};
+  bool straight_ridge_ = false;
 };
 
 /// Returns true if surfaces that touch are flat, or curved so that one lies in the other: their curvatures

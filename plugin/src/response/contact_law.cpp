@@ -157,13 +157,19 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     return spring > 0 ? spring / (spring + law.damping) / law_->time_step_ : btScalar(0);
   };
   if (law_->defaultSpring()) {
-    // What is held back must not be softer: under a load that it cannot bear it would sink on and on.
+    const auto hold = [&] {
+      if (law.depth * rate() > fastest) law.depth = fastest / rate();
+    };
+    law.depth = btMin(depth, law_->solver_.deepest_spring);
+    hold();
+    // What is held back must not be softer: under a load that it cannot bear it would sink on and on. That does
+    // not go for walls on both sides of what is deep in both: they would be pressed on it.
+    const btScalar bearing = btMax(law.depth, btMin(depth, leaving_ / kLeaving));
     const btScalar doubled = (in_chain_ ? kChainStiffening : kStiffening) * law_->size_;
-    const btScalar stiffening = 1 + btMax(depth, btScalar(0)) / doubled;
+    const btScalar stiffening = 1 + btMax(bearing, btScalar(0)) / doubled;
     law.stiffness *= stiffening;
     law.damping *= btSqrt(stiffening);
-    law.depth = btMin(depth, law_->solver_.deepest_spring);
-    if (law.depth * rate() > fastest) law.depth = fastest / rate();
+    hold();
     const bool heavy = in_chain_ && stiffening > kHeavy;
     law.starts = heavy && law.depth == depth;
     law.tilting = heavy ? law_->size_ : btScalar(0);

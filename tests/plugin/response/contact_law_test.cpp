@@ -1,6 +1,7 @@
 // How hard contacts push.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -86,22 +87,38 @@ TEST(ContactLaw, BodiesThatStartInsideEachOtherPartGently) {
   }
 }
 
-/// Bodies that are deep in each other part no faster than half of their size in a second, but bear more the
-/// deeper they are: else what cannot bear its load sinks on and on.
+/// Bodies that are deep in each other part no faster than half of their size in a second, or three times their
+/// depth, but bear more the deeper they are: else what cannot bear its load sinks on and on.
 TEST(ContactLaw, WhatIsHeldBackBearsMoreWithItsDepth) {
   ContactPatch patch;
   patch.normal = btVector3(0, 0, 1);
   patch.area = 1;
   patch.count = 1;
   const ContactLaw pair({}, 1, btScalar(1) / 60, 1);
-  const ContactLaw::OfPatch law = pair.of({patch}, 0);
   btScalar bears = 0;
   for (const double depth : {0.005, 0.01, 0.02, 0.05, 0.2, 1.0}) {
-    const PointLaw at = law.at(btScalar(depth));
-    EXPECT_LE(at.push, 0.5 + 1e-5) << depth;
+    patch.points[0].depth = btScalar(depth);
+    const PointLaw at = pair.of({patch}, 0).at(btScalar(depth));
+    EXPECT_LE(at.push, std::max(0.5, 3 * depth) + 1e-5) << depth;
     EXPECT_GT(at.bears, 1.2 * bears) << depth;
     bears = at.bears;
   }
+}
+
+/// What is deep in walls on both sides leaves by the way by which it is deeper in. The other wall does not bear
+/// more for that: both would be pressed on it, and any change between them would throw it.
+TEST(ContactLaw, WallsOnBothSidesDoNotPress) {
+  std::vector<ContactPatch> walls(2);
+  for (int i = 0; i < 2; ++i) {
+    walls[std::size_t(i)].normal = btVector3(0, 0, btScalar(i == 0 ? 1 : -1));
+    walls[std::size_t(i)].area = 1;
+    walls[std::size_t(i)].count = 1;
+    walls[std::size_t(i)].points[0].depth = btScalar(i == 0 ? 0.4 : 0.3);
+  }
+  const ContactLaw pair({}, 1, btScalar(1) / 60, 1);
+  const ContactLaw::OfPatch out = pair.of(walls, 0), back = pair.of(walls, 1);
+  EXPECT_GT(out.at(btScalar(0.4)).bears, 1.2 * out.at(btScalar(0.3)).bears);
+  EXPECT_FLOAT_EQ(float(back.at(btScalar(0.3)).bears), float(back.at(btScalar(0.1)).bears));
 }
 
 TEST(ContactLaw, UsersOwnStiffnessIsKept) {
