@@ -9,8 +9,8 @@ namespace {
 /// Ratio: along a ridge, what is left of how fast the slope falls across it is less than this part, and so is
 /// what is left of two curvatures where one surface lies in the other.
 constexpr btScalar kRounding = 64 * SIMD_EPSILON;
-/// Ratio: a surface that bends by no more than this part of what it does across is straight. Normals of meshes
-/// are not right to the last digit.
+/// Ratio: a surface that bends by no more than this part of what it does across is straight. Normals of
+/// meshes are not right to the last digit.
 constexpr btScalar kStraight = btScalar(1e-5);
 
 }  // namespace
