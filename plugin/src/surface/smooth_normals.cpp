@@ -20,6 +20,10 @@ constexpr btScalar kMuchFurther = 4;
 /// Ratio: a curve that was cut into facets does not turn this much more at one side of a facet than at the
 /// other.
 constexpr btScalar kUneven = 8;
+/// Ratio: triangles around a corner of a curve that was cut turn by no more than this times what one does
+/// from the next: at a tip of ten and more facets they do. Where they stay smooth with each other it is a
+/// flat one, or the pole of a ball.
+constexpr btScalar kTurnsFar = 3;
 /// Ratio: where normals lean further than this times the angle at an edge, it is other edges that turn them.
 constexpr btScalar kOwn = 2;
 /// How far beyond an edge, in weights, a line still meets a triangle, and a point is still over it: no
@@ -262,12 +266,34 @@ std::vector<std::uint32_t> SmoothNormals::fanOf(std::uint32_t t,
   return fan;
 }
 
+/// Whether the triangles around a corner of one, across no sharp edge, turn far from it, each by little.
+bool SmoothNormals::isTip(std::uint32_t t, const std::vector<std::uint32_t>& around) const {
+  const auto turn2 = [&](std::uint32_t a, std::uint32_t b) {
+    return (facets_[a].face - facets_[b].face).length2();
+  };
+  const auto isRough = [&](std::uint32_t other) { return !isSmooth(facets_[t], facets_[other]); };
+  if (std::none_of(around.begin(), around.end(), isRough)) return false;
+  const std::vector<std::uint32_t> fan = fanOf(t, around);
+  if (std::none_of(fan.begin(), fan.end(), isRough)) return false;
+  btScalar furthest2 = 0, step2 = 0;
+  for (const std::uint32_t a : fan) {
+    furthest2 = btMax(furthest2, turn2(a, t));
+    for (const std::uint32_t b : facets_[a].across) {
+      if (std::find(fan.begin(), fan.end(), b) != fan.end()) step2 = btMax(step2, turn2(a, b));
+    }
+  }
+  return furthest2 > kTurnsFar * kTurnsFar * step2;
+}
+
 void SmoothNormals::setNormals(const Surface& surface, const Around& around) {
   setAcross(surface, around);
   for (std::size_t t = 0; t < facets_.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = surface.triangles[t][k];
-      facets_[t].normals[k] = normalAt(surface, around[v], v, facets_[t]);
+      // The lines of a cone are straight up to its tip, and have the normal of their own facet there.
+      facets_[t].normals[k] = isTip(static_cast<std::uint32_t>(t), around[v])
+                                  ? facets_[t].face
+                                  : normalAt(surface, around[v], v, facets_[t]);
     }
   }
   findFolds(surface, around);

@@ -122,6 +122,7 @@ class SmoothNormals {
   Bend bendBeyond(std::size_t triangle, std::size_t edge) const;
   void findFolds(const Surface& surface, const Around& around);
   std::vector<std::uint32_t> fanOf(std::uint32_t triangle, const std::vector<std::uint32_t>& around) const;
+  bool isTip(std::uint32_t triangle, const std::vector<std::uint32_t>& around) const;
   void setNormals(const Surface& surface, const Around& around);
   void countToSharp();
   struct Exit {

@@ -119,5 +119,29 @@ INSTANTIATE_TEST_SUITE_P(
                      testing::Values("plane", "packing")),
     [](const auto& info) { return std::get<0>(info.param) + "_on_" + std::get<1>(info.param); });
 
+/// Lines of a cone are straight up to its tip, however many facets it has: with normals that lean to the axis
+/// there it was felt as a barrel, 1.4 to 2.6 mm outside of itself.
+TEST(Cone, LiesOnItsSide) {
+  constexpr double kSide = 0.4, kRate = 240;
+  constexpr int kFacets = 96;
+  for (const double degrees : {30, 60}) {
+    const double angle = degrees * M_PI / 180, radius = kSide * std::sin(angle),
+                 height = kSide * std::cos(angle);
+    const auto shape = makePackedShape(
+        *makeSolid(turnedMesh({{0, 0}, {radius, height}, {0, height}}, kFacets), "cone"), 256);
+    TestWorld world;
+    PackingCollisionAlgorithm::prepareWorld(world.world);
+    world.addFloor();
+    const btQuaternion turned(btVector3(0, 1, 0), btScalar(M_PI / 2 - angle));
+    const btTransform start = shape->bodyTransform(btTransform(turned, btVector3(0, 0, 0)));
+    const btRigidBody& body = world.add(shape, 2, start.getOrigin(), start.getRotation());
+    world.run(3, 1 / kRate);
+    // The centre of mass is at three quarters of the height; faces are nearer than edges by the second
+    // number.
+    const double at = 0.75 * height * std::sin(angle), facet = at * (1 - std::cos(M_PI / kFacets));
+    EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), at, facet + 5e-5) << degrees;
+  }
+}
+
 }  // namespace
 }  // namespace innersphere::test
