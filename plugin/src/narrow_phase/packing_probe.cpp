@@ -22,11 +22,13 @@ bool PackingProbe::probe(const btVector3& patch_normal, btScalar separation, Pro
   if (!nearest(sample.index, to_nearest, start)) return false;
   bool found = probeAlong(to_nearest);
   if (found && sample.isFarFromBend(separation)) return true;
-  // A patch may hold a ledge beside its wall: spheres that are pushed to the ledge go there.
+  // A patch may hold a ledge beside its wall: spheres that are pushed to the ledge go there. Not through all
+  // of a plate: small spheres at the rim of a thin one are pushed any way, also to the side of what stands on
+  // it.
   const btVector3 pushed = toBullet(contacts_[sample.index].area);
   const bool fits = found && opposed(sample.points) &&
                     (to_nearest.dot(patch_normal) > kPatchCosine ||
-                     to_nearest.dot(pushed) > kPatchCosine * pushed.length());
+                     (to_nearest.dot(pushed) > kPatchCosine * pushed.length() && leavesNear(sample)));
   if (!fits) found = probeAlong(patch_normal);
   if (found) align(sample);
   return found;

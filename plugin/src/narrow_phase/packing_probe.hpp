@@ -75,6 +75,12 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
     if (foretold_ == 0) return length;
     return surfaceDistance(index) - (index < count_a_ ? foretold_ : btScalar(0));
   }
+  /// Returns true if the line of a sample leaves the solid of its sphere no further away than that may end.
+  bool leavesNear(const ProbedSample& sample) const {
+    const btVector3& left = sample.index < count_a_ ? sample.points.on_a : sample.points.on_b;
+    const btScalar most = surfaceDistance(sample.index);
+    return left.distance2(lineStart(sample.index)) <= most * most;
+  }
   /// Draws the line again along the normal that the surfaces show.
   void align(ProbedSample& sample) const;
 
