@@ -156,6 +156,47 @@ std::size_t groupFor(const ContactPoint& point, const ReductionScratch& scratch,
   return best;
 }
 
+/// The hill of a top. If it is a straight ridge, it goes on as far as there are tops on its crest. Not in a
+/// hollow, whose sides are touched as soon as what lies in it moves.
+class TopHill {
+ public:
+  TopHill(const WeightedPoint& top, btScalar separation, const std::vector<WeightedPoint>& found)
+      : top_(top.point.on_b),
+        hill_(top.point.bend_a, top.point.bend_b, top.point.depth, Across(top.point.normal)),
+        separation_(separation),
+        has_sides_(hill_.isStraightRidge() && !top.point.bend_a.isHollow() && !top.point.bend_b.isHollow()) {
+    for (std::size_t i = 0; i < found.size() && found[i].is_top && has_sides_; ++i) {
+      const btVector3 way = found[i].point.on_b - found[i].moved - top_;
+      const btScalar along = way.dot(hill_.axis(1));
+      if (!isOnCrest(way)) continue;
+      begin_ = btMin(begin_, along);
+      end_ = btMax(end_, along);
+    }
+  }
+
+  bool includes(const WeightedPoint& p) const {
+    const btVector3 way = p.point.on_b - p.moved - top_;
+    return p.bends && (isOnHill(way, p.slope, hill_, separation_) || isOnSideOfRidge(way, p.slope));
+  }
+
+ private:
+  bool isOnCrest(const btVector3& way) const {
+    return btFabs(way.dot(hill_.axis(0))) < kSameTop * separation_;
+  }
+  bool isOnSideOfRidge(const btVector3& way, const btVector3& slope) const {
+    if (!has_sides_ || isOnCrest(way)) return false;
+    const btScalar along = way.dot(hill_.axis(1)), across = btFabs(way.dot(hill_.axis(0)));
+    return along > begin_ - across && along < end_ + across &&
+           isOnHill(way - hill_.axis(1) * along, slope, hill_, separation_);
+  }
+
+  btVector3 top_;
+  Hill hill_;
+  btScalar separation_;
+  bool has_sides_;
+  btScalar begin_ = 0, end_ = 0;  ///< of the crest, from the top [m]
+};
+
 }  // namespace
 
 ReductionScratch::ReductionScratch() {
@@ -182,10 +223,8 @@ void keepTops(btScalar separation, const StepAhead& step, std::vector<WeightedPo
   });
   for (std::size_t i = 0; i < found.size() && found[i].is_top; ++i) {
     const ContactPoint top = found[i].point;
-    const Hill hill(top.bend_a, top.bend_b, top.depth, Across(top.normal));
-    const auto isBeside = [&](const WeightedPoint& p) {
-      return p.bends && isOnHill(p.point.on_b - p.moved - top.on_b, p.slope, hill, separation);
-    };
+    const TopHill hill(found[i], separation, found);
+    const auto isBeside = [&](const WeightedPoint& p) { return hill.includes(p); };
     const bool alone = i == 0 && std::all_of(found.begin() + 1, found.end(), isBeside);
     const bool sunk_in = alone ? step.depthAtEnd(top.on_b, top.normal, top.depth) > kDrivenIn * step.size
                                : top.depth > kSunkIn * step.size;

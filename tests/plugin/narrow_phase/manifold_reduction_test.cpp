@@ -246,6 +246,15 @@ TEST(Tops, OfALineLeaveItsEndsAlone) {
   EXPECT_EQ(idsKept(found), (std::set<std::uint64_t>{1, 2}));
 }
 
+TEST(Tops, OfALineDropItsSidesAsFarAsTheyReach) {
+  // Tops at both ends; places beside it are between them, or beyond: one not by more than it is beside, and
+  // one by far.
+  const std::vector<WeightedPoint> found{
+      onHill(0, -0.5, 0.01, 4, 0, 1), onHill(0, 0.5, 0.01, 4, 0, 2), onHill(0.05, 0.2, 0.01, 4, 0, 3),
+      onHill(-0.05, -0.52, 0.01, 4, 0, 4), onHill(0.05, 0.7, 0.01, 4, 0, 5)};
+  EXPECT_EQ(idsKept(found), (std::set<std::uint64_t>{1, 2, 5}));
+}
+
 TEST(Tops, OfSeveralHillsBearWithTheirSidesWhereBodiesHaveSunkIn) {
   StepAhead step;
   step.size = 2;  // the depth is 0.5 % of it

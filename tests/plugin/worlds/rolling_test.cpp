@@ -72,7 +72,8 @@ TEST(Rolling, ASpinningBallIsBrakedByItsContact) {
 }
 
 /// A disc that rolls on a flat packed floor keeps its speed. Ascents to the line that it lies on ran off its
-/// end, so that it had no top, and places ahead of it bore it: 0.71 m/s were left of 1 at 60 steps/s.
+/// end, so that it had no top, and places ahead of it bore it: 0.71 m/s were left of 1 at 60 steps/s. With
+/// tops at both ends of the line, those beside the rest of it bore still: 0.93.
 TEST(Rolling, ADiscOnAPackedFloorIsHardlyBraked) {
   constexpr double kOuter = 0.3, kSpeed = 1;
   const Mesh disc = turnedMesh({{0, -0.04}, {kOuter, -0.04}, {kOuter, 0.04}, {0, 0.04}}, 96);
@@ -92,7 +93,7 @@ TEST(Rolling, ADiscOnAPackedFloorIsHardlyBraked) {
       body.setLinearVelocity(btVector3(btScalar(kSpeed), 0, 0));
       body.setAngularVelocity(btVector3(0, btScalar(kSpeed / kOuter), 0));
       world.run(2, 1 / rate);
-      const double lost = rate < 100 && !substeps ? 0.1 : 0.04;
+      const double lost = rate < 100 && !substeps ? 0.05 : 0.04;
       EXPECT_GT(body.getLinearVelocity().x(), (1 - lost) * kSpeed) << substeps << rate;
       EXPECT_LT(body.getLinearVelocity().x(), 1.001 * kSpeed) << substeps << rate;
       world.world.setConstraintSolver(&world.solver);
