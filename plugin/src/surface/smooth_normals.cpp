@@ -50,6 +50,10 @@ constexpr std::size_t next(std::size_t k) {
   return k == 2 ? 0 : k + 1;
 }
 
+std::size_t placeOf(std::uint32_t corner, const std::array<std::uint32_t, 3>& triangle) {
+  return triangle[0] == corner ? 0 : triangle[1] == corner ? 1 : 2;
+}
+
 struct LongestEdge {
   std::size_t edge = 0;
   btScalar length = 0;
@@ -133,8 +137,7 @@ btVector3 SmoothNormals::normalAt(const Surface& surface, const std::vector<std:
   const auto forEach = [&](const auto& visit) {
     for (const std::uint32_t other : around) {
       if (!isSmooth(facet, facets_[other])) continue;
-      const auto& triangle = surface.triangles[other];
-      const std::size_t at = triangle[0] == corner ? 0 : triangle[1] == corner ? 1 : 2;
+      const std::size_t at = placeOf(corner, surface.triangles[other]);
       const btVector3* const corners = facets_[other].corners;
       visit(corners[next(at)] - corners[at], corners[next(next(at))] - corners[at]);
     }
@@ -267,22 +270,31 @@ std::vector<std::uint32_t> SmoothNormals::fanOf(std::uint32_t t,
 }
 
 /// Whether the triangles around a corner of one, across no sharp edge, turn far from it, each by little.
-bool SmoothNormals::isTip(std::uint32_t t, const std::vector<std::uint32_t>& around) const {
+bool SmoothNormals::isTip(const Surface& surface, const std::vector<std::uint32_t>& around, std::uint32_t t,
+                          std::size_t k) const {
   const auto turn2 = [&](std::uint32_t a, std::uint32_t b) {
     return (facets_[a].face - facets_[b].face).length2();
   };
   const auto isRough = [&](std::uint32_t other) { return !isSmooth(facets_[t], facets_[other]); };
   if (std::none_of(around.begin(), around.end(), isRough)) return false;
-  const std::vector<std::uint32_t> fan = fanOf(t, around);
-  if (std::none_of(fan.begin(), fan.end(), isRough)) return false;
+  const std::uint32_t corner = surface.triangles[t][k];
   btScalar furthest2 = 0, step2 = 0;
-  for (const std::uint32_t a : fan) {
-    furthest2 = btMax(furthest2, turn2(a, t));
-    for (const std::uint32_t b : facets_[a].across) {
-      if (std::find(fan.begin(), fan.end(), b) != fan.end()) step2 = btMax(step2, turn2(a, b));
+  bool rough = false;
+  for (const bool onwards : {true, false}) {
+    // From one to the next, not by fanOf(): a corner may have thousands.
+    std::uint32_t here = t;
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      const std::size_t at = placeOf(corner, surface.triangles[here]);
+      const std::uint32_t other = facets_[here].across[onwards ? at : next(next(at))];
+      if (other >= kSeam) break;
+      step2 = btMax(step2, turn2(here, other));
+      if (other == t) break;
+      furthest2 = btMax(furthest2, turn2(other, t));
+      rough = rough || isRough(other);
+      here = other;
     }
   }
-  return furthest2 > kTurnsFar * kTurnsFar * step2;
+  return rough && furthest2 > kTurnsFar * kTurnsFar * step2;
 }
 
 void SmoothNormals::setNormals(const Surface& surface, const Around& around) {
@@ -291,7 +303,7 @@ void SmoothNormals::setNormals(const Surface& surface, const Around& around) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = surface.triangles[t][k];
       // The lines of a cone are straight up to its tip, and have the normal of their own facet there.
-      facets_[t].normals[k] = isTip(static_cast<std::uint32_t>(t), around[v])
+      facets_[t].normals[k] = isTip(surface, around[v], static_cast<std::uint32_t>(t), k)
                                   ? facets_[t].face
                                   : normalAt(surface, around[v], v, facets_[t]);
     }

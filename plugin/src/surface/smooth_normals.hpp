@@ -122,7 +122,8 @@ class SmoothNormals {
   Bend bendBeyond(std::size_t triangle, std::size_t edge) const;
   void findFolds(const Surface& surface, const Around& around);
   std::vector<std::uint32_t> fanOf(std::uint32_t triangle, const std::vector<std::uint32_t>& around) const;
-  bool isTip(std::uint32_t triangle, const std::vector<std::uint32_t>& around) const;
+  bool isTip(const Surface& surface, const std::vector<std::uint32_t>& around, std::uint32_t triangle,
+             std::size_t corner) const;
   void setNormals(const Surface& surface, const Around& around);
   void countToSharp();
   struct Exit {
