@@ -1,11 +1,11 @@
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "innersphere/mesh.hpp"
 #include "named_packings.hpp"
+#include "packing/mesh_shapes.hpp"
 #include "test_world.hpp"
 
 namespace innersphere::test {
@@ -33,26 +33,14 @@ TEST_P(Stack, OfThreeBoxesStands) {
   }
 }
 
-void addBox(const Vec3d& from, const Vec3d& to, Mesh& mesh) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices.push_back({(i & 1 ? to : from)[0], (i & 2 ? to : from)[1], (i & 4 ? to : from)[2]});
-  constexpr std::uint32_t kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                          {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  for (const auto& q : kQuads) {
-    mesh.triangles.push_back({first + q[0], first + q[1], first + q[2]});
-    mesh.triangles.push_back({first + q[0], first + q[2], first + q[3]});
-  }
-}
-
 /// Feet stand near the rims of thin tops, beside the legs below. Small spheres of a foot were pushed to the
 /// side of the top, all the way through it, and drove the tables apart: at 60 steps/s the stack fell.
 TEST(Tables, StandOnEachOther) {
   constexpr double kHeight = 0.5, kTop = 0.04;
-  Mesh mesh;
-  addBox({-0.4, -0.3, kHeight - kTop}, {0.4, 0.3, kHeight}, mesh);
+  Mesh mesh = boxMesh({-0.4, -0.3, kHeight - kTop}, {0.4, 0.3, kHeight});
   for (const double x : {-0.38, 0.34}) {
-    for (const double y : {-0.28, 0.24}) addBox({x, y, 0}, {x + 0.04, y + 0.04, kHeight - kTop}, mesh);
+    for (const double y : {-0.28, 0.24})
+      append(mesh, boxMesh({x, y, 0}, {x + 0.04, y + 0.04, kHeight - kTop}));
   }
   const auto shape = makePackedShape(*makeSolid(mesh, "table"), 256);
   for (const double aside : {0.01, 0.015, 0.02}) {
