@@ -134,11 +134,31 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.pair[lane] < 0) continue;
     const TouchingPair& pair = pairs_[static_cast<std::size_t>(block.pair[lane])];
+    PointLanes* const points = points_.data() + block.begin;
     for (int i = 0; i < pair.count; ++i) {
       const btManifoldPoint& point = *sources_[static_cast<std::size_t>(pair.begin + i)].point;
-      fillSoftness(points_[static_cast<std::size_t>(block.begin + i)], lane, point, pair, bodies);
+      fillSoftness(points[i], lane, point, pair, bodies);
     }
+    fillLoads(points, pair.count, lane);
   }
+}
+
+/// Points that are so deep that they are driven apart more slowly than their spring would do it bear a load
+/// all the same, unless points of the pair press against each other. Those would load themselves, and throw
+/// the bodies where one side lets go. What something holds aslant is no load.
+void ContactRows::fillLoads(PointLanes* points, int count, int lane) {
+  const auto isHeldBack = [&](int i) {
+    return points[i].gap[lane] * points[i].rate[lane] < -points[i].fastest[lane];
+  };
+  const auto pressesAgainst = [&](int i, int k) {
+    return points[k].gap[lane] < 0 && points[i].normal.get(lane).dot(points[k].normal.get(lane)) < 0;
+  };
+  for (int i = 0; i < count; ++i) {
+    if (!isHeldBack(i)) continue;
+    for (int k = 0; k < count; ++k)
+      if (pressesAgainst(i, k)) return;
+  }
+  for (int i = 0; i < count; ++i) points[i].loaded[lane] = points[i].kept[lane];
 }
 
 /// Where the bodies touch, and what they have borne there.

@@ -310,11 +310,14 @@ void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneB
   const auto open = gap > none;
   const auto bounces = point.bounce > none;
   // Apart, they may come as near as they are; in each other, they are driven apart.
-  Lanes bias = gap * inAll(1 / substep_), mass = one, impulse = none, acts = one;
+  Lanes bias = gap * inAll(1 / substep_), mass = one, give = none, acts = one;
   if (pass == Pass::push) {
-    bias = open ? bias : larger(gap * point.rate, point.fastest * inAll(-1));
+    const Lanes wanted = gap * point.rate, driven = larger(wanted, point.fastest * inAll(-1));
+    // No faster than that, but a load is borne as without that bound, or bodies would sink on under it.
+    const Lanes borne = point.loaded * point.mass * point.soft_mass * (driven - wanted);
+    bias = open ? bias : driven;
     mass = open ? one : point.soft_mass;
-    impulse = open ? none : point.soft_impulse;
+    give = open ? none : larger(point.soft_impulse * point.impulse - borne, none);
   } else {
     bias = open ? bias : none;
     acts = open ? one : one - point.spring;  // a spring of the user's is no error to be given back
@@ -323,9 +326,9 @@ void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneB
   acts = speed * point.restitution < inAll(-bounce_threshold_) * point.restitution ? none : acts;
   bias = bounces ? point.bounce * inAll(-1) : bias;
   mass = bounces ? one : mass;
-  impulse = bounces ? none : impulse;
+  give = bounces ? none : give;
   acts = bounces ? one : acts;
-  const Lanes change = acts * (none - point.mass * mass * (speed + bias) - impulse * point.impulse);
+  const Lanes change = acts * (none - point.mass * mass * (speed + bias) - give);
   const Lanes total = larger(point.impulse + change, none);
   const Lanes added = total - point.impulse;
   const Lanes3 push = point.normal * added;

@@ -102,6 +102,7 @@ class ContactRows {
     Lanes rate, soft_mass, soft_impulse;  ///< of the spring that drives bodies apart
     Lanes spring;                         ///< 1: it is the user's, and acts in all passes
     Lanes fastest;                        ///< that bodies are driven apart [m/s]
+    Lanes loaded;                         ///< share that it bears of a load for which that is too slow
     Lanes friction, rolling, spinning;
     Lanes mass_rolling, mass_spinning;    ///< [kg m^2]
     Lanes belt_1, belt_2;                 ///< speeds of the surface [m/s]
@@ -154,6 +155,7 @@ class ContactRows {
   void remember(const TouchingPair& pair, int lane, const PointLanes* points);
   void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                     const SolverBodies& bodies) const;
+  static void fillLoads(PointLanes* points, int count, int lane);
   // Position-independent code inlines what is declared so.
   inline void renewMassesOf(const Block& block, const std::vector<BodyState>& states);
   inline void carryBlock(const Block& block, std::vector<BodyState>& states);
