@@ -13,6 +13,10 @@ constexpr btScalar kAcross = btScalar(0.5);
 /// Mean distance from the middle of a line, of that of its ends. Few spheres may tell less of an area.
 constexpr btScalar kLine = btScalar(0.5);
 
+/// In inverse sizes of the smaller body: what bends less against each other lies flat, and does not roll. A
+/// milliradian would take the place across all of the body. What is less by far is rounding.
+constexpr btScalar kFlatTogether = btScalar(1e-3);
+
 bool held(const btManifoldPoint& point) {
   const btScalar most = point.m_combinedFriction * point.m_appliedImpulse;
   const btScalar first = point.m_appliedImpulseLateral1, second = point.m_appliedImpulseLateral2;
@@ -88,7 +92,7 @@ btScalar rockingSpeed(const ContactPoint& point, const btVector3& place, const P
                  height_b = (motion.originB() - place).dot(point.normal);
   btScalar work = 0;
   for (int i = 0; i < 2; ++i) {
-    if (!hill.hasTop(i)) continue;
+    if (!hill.hasTop(i) || !(hill.fall(i) * size > kFlatTogether)) continue;
     const btVector3& axis = hill.axis(i);
     const auto past = [&](const btCollisionObject& body, btScalar height, const Bend& bend) {
       return body.isStaticOrKinematicObject() ? BT_LARGE_FLOAT : 1 - height * bend.turn(axis, axes).dot(axis);
