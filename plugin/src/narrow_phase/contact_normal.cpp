@@ -32,6 +32,11 @@ bool isOnEdge(const OpposedPoints& points) {
   return btMin(a, b) > 0 && btMax(a, b) > kEdgeBends * btMin(a, b);
 }
 
+/// Whether a hollow bears the ends of a flat face, wherever between them it is seen.
+bool isHollowUnderFlat(btScalar hollow, btScalar flat) {
+  return hollow < 0 && flat == 0;
+}
+
 /// The deepest contact of two faces that are tilted against each other; null if there is none.
 const ProbedSample* deepestTilted(const std::vector<ProbedSample>& samples) {
   const ProbedSample* deepest = nullptr;
@@ -86,7 +91,10 @@ ContactNormal::ContactNormal(const std::vector<ProbedSample>& samples, const Fac
 btVector3 ContactNormal::at(const ProbedSample& sample) const {
   const btVector3 &a = sample.points.normal_a, &b = sample.points.normal_b;
   // Both lean the same way. That of a ball leads through its centre, wherever it is taken.
-  if (extents_ == nullptr && sample.points.curvature_a < 0 && sample.points.curvature_b > 0) return b;
+  const btScalar bend_a = sample.points.curvature_a, bend_b = sample.points.curvature_b;
+  if (extents_ == nullptr && bend_a < 0 && bend_b > 0) return b;
+  if (isHollowUnderFlat(bend_a, bend_b)) return a;
+  if (isHollowUnderFlat(bend_b, bend_a)) return b;
   if (opposed(sample.points) || isOnEdge(sample.points)) return mean(sample.points, face_a_);
   const bool one_is_flat = flat_a_ != flat_b_;
   if (one_is_flat && extents_ == nullptr) return flat_a_ ? a : b;

@@ -176,7 +176,7 @@ class PatchContactPoints {
     // A face that lies flat on another ends in corners, which bear it better than what spheres are over.
     if (points.areFlat() && !rises_a && !rises_b && !crosses) addEnds(sample, normal);
     // Beside them the face is less deep, or, where it ends in an arc, not there.
-    if (!has_corners && !crosses) addFace(sample, normal);
+    if (!has_corners && !crosses && !addOverEdge(sample)) addFace(sample, normal);
   }
 
   /// For a sample whose line leaves A by its side: an edge or a corner of A beside it bears.
@@ -270,6 +270,42 @@ class PatchContactPoints {
       probe_.corners(sample.index, sample.points, normal, of_a, scratch_.vertices, scratch_.corners);
       for (const EdgeContact& corner : scratch_.corners) addCorner(corner, of_a);
     }
+  }
+
+  /// What is round may lie on the edge in which a flat face ends, before the place on it that would be
+  /// deepest. True if it does.
+  bool addOverEdge(const ProbedSample& sample) {
+    const OpposedPoints& points = sample.points;
+    const bool of_a = points.curvature_a == 0;
+    const btScalar round = of_a ? points.curvature_b : points.curvature_a;
+    if (sample.is_top || !(round > 0) || (of_a ? points.curvature_a : points.curvature_b) != 0) return false;
+    const btVector3& face = of_a ? points.normal_a : points.normal_b;
+    const btVector3 slope = points.normal_b - points.normal_a;
+    const Across axes(face);
+    const SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
+    EdgeContact edge;
+    if (!probe_.overEdge(points, of_a, Hill(bends.a, bends.b, points.depthAlong(face), axes).toTop(slope),
+                         edge))
+      return false;
+    const btVector3& normal = edge.points.normal_a;
+    const auto isSame = [&](const WeightedPoint& f) {
+      return f.kind == Kind::edge &&
+             f.point.on_b.distance2(edge.points.on_b) < kSameTop * kSameTop * separation_ * separation_;
+    };
+    if (std::any_of(found_.begin() + std::ptrdiff_t(first_), found_.end(), isSame)) return true;
+    if (!add(edge.points, normal, sample.id, Kind::edge)) return true;
+    WeightedPoint& point = found_.back();
+    point.is_top = point.bends = true;
+    const Across axes_there(normal);
+    const btVector3& seen = of_a ? points.normal_b : points.normal_a;
+    const SurfaceProbe::Bends there = surfaces_.bends(points, turned(axes_there, normal, seen));
+    (of_a ? point.point.bend_b : point.point.bend_a) = of_a ? there.b : there.a;
+    // The place stays on the edge, and its normal is that of the round surface.
+    const btVector3 across = normal.cross(edge.along);
+    const btScalar x = across.dot(axes_there.x), y = across.dot(axes_there.y), sharp = kSharp * round;
+    (of_a ? point.point.bend_a : point.point.bend_b) = {sharp * x * x, sharp * x * y, sharp * y * y};
+    point.point.bend_x = axes_there.x;
+    return true;
   }
 
   void addFace(const ProbedSample& sample, const btVector3& normal) {

@@ -12,9 +12,10 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// This is a corner over a face, or two edges that cross.
 struct EdgeContact {
   OpposedPoints points;
-  std::uint64_t id = 0;   ///< no sphere has it
-  bool is_peak = true;    ///< the surface does not rise on from the corner
-  bool is_alone = false;  ///< the crossing was found from an edge of B: its corners are over no face
+  std::uint64_t id = 0;      ///< no sphere has it
+  bool is_peak = true;       ///< the surface does not rise on from the corner
+  btVector3 along{0, 0, 0};  ///< unit, of an edge that what is round lies on
+  bool is_alone = false;     ///< the crossing was found from an edge of B: its corners are over no face
 };
 
 /// Ids of corners and of crossings begin here; those of spheres are smaller.
@@ -61,6 +62,10 @@ class EdgeProbe {
   /// them: see followOverlap(). Appends where edges of both cross.
   virtual void overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
                        std::vector<EdgeContact>& crossings) const = 0;
+  /// Finds where a sharp edge of the one solid, A or else B, is deepest in the other one, which bends: that
+  /// edge in which the flat face at opposed points ends before the way across it `to_top`, where the contact
+  /// would be deepest. Returns false if there is none, by default.
+  virtual bool overEdge(const OpposedPoints&, bool, const btVector3&, EdgeContact&) const { return false; }
   /// Returns false if the point on B is known to lie on an edge, seen along no normal of its faces.
   virtual bool isOnFaceOfB(const OpposedPoints&) const { return true; }
 };

@@ -5,6 +5,7 @@
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
 #include "narrow_phase/face_overlap.hpp"
+#include "narrow_phase/over_edge.hpp"
 #include "narrow_phase/surface_rays.hpp"
 
 namespace innersphere {
@@ -167,6 +168,26 @@ bool PackingProbe::crossing(const OpposedPoints& points, const btVector3& direct
                             EdgeContact& crossing) const {
   const auto is_thin = [&] { return isThinAt(points); };
   return crossEdges({a_, {0, 0, 0}}, {b_, apart()}, points, direction, crossing, is_thin);
+}
+
+bool PackingProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
+                            EdgeContact& edge) const {
+  const PlacedPacking& round = of_a ? b_ : a_;
+  const btVector3 offset = of_a ? apart() : btVector3(0, 0, 0);
+  const btScalar far = to_top.length() + btFabs(points.depthAlong(points.normal_a));
+  const auto nearest_round = [&](const btVector3& place, RoundPoint& found) {
+    SurfaceQueries::Nearest nearest;
+    if (!round.nearest(place - offset, far, nearest)) return false;
+    SurfacePoint left;
+    const btScalar back = far + round.margin;
+    if (!leaveSolid(round, place - offset - nearest.normal * (nearest.distance + back), nearest.normal,
+                    2 * back, nearest.triangle, left))
+      return false;
+    found = {left.at + offset, left.normal};
+    return true;
+  };
+  return of_a ? lieOverEdge({a_, {0, 0, 0}}, true, nearest_round, points, to_top, edge)
+              : lieOverEdge({b_, apart()}, false, nearest_round, points, to_top, edge);
 }
 
 FaceExtents::EdgeDistances PackingProbe::edgeDistances(const OpposedPoints& points,

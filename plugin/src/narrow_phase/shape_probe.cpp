@@ -5,6 +5,7 @@
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
 #include "narrow_phase/face_overlap.hpp"
+#include "narrow_phase/over_edge.hpp"
 #include "narrow_phase/surface_rays.hpp"
 
 namespace innersphere {
@@ -216,6 +217,19 @@ bool ShapeProbe::crossing(const OpposedPoints& points, const btVector3& directio
   if (!faceOfB(points, b, start.triangle_b)) return false;
   crossing.is_alone = btFabs(b.face(start.triangle_b).dot(points.normal_b)) < kSameFaceCosine;
   return crossEdges({a_, {0, 0, 0}}, b, start, direction, crossing);
+}
+
+bool ShapeProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
+                          EdgeContact& edge) const {
+  if (!of_a) return false;
+  const btScalar far = to_top.length() + btFabs(points.depthAlong(points.normal_a));
+  const auto nearest_round = [&](const btVector3& place, RoundPoint& found) {
+    SurfaceQueries::Nearest nearest;
+    if (!nearestOfB(place, far, nearest)) return false;
+    found = {place - nearest.normal * nearest.distance, nearest.normal};
+    return true;
+  };
+  return lieOverEdge({a_, {0, 0, 0}}, true, nearest_round, points, to_top, edge);
 }
 
 void ShapeProbe::overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,

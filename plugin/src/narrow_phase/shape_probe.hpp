@@ -59,6 +59,8 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
             std::vector<EdgeContact>& tips) const;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
+  bool overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
+                EdgeContact& edge) const override;
   void overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
                std::vector<EdgeContact>& crossings) const override;
   bool hasEdges() const override { return other_.isFaceted(); }

@@ -1,0 +1,189 @@
+// What is round lies on the edges of solids, and what turns or rocks on edges is not braked by them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "innersphere/mesh.hpp"
+#include "innersphere/solids.hpp"
+#include "innersphere/substep_solver.hpp"
+#include "named_packings.hpp"
+#include "outline_meshes.hpp"
+#include "test_world.hpp"
+
+namespace innersphere::test {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+/// With Bullet's solver, or with a SubstepSolver, at a number of steps a second.
+class Edges : public testing::TestWithParam<std::tuple<bool, double>> {
+ protected:
+  Edges() {
+    if (std::get<0>(GetParam())) world.world.setConstraintSolver(&substeps_);
+    PackingCollisionAlgorithm::prepareWorld(world.world);
+  }
+  ~Edges() override { world.world.setConstraintSolver(&world.solver); }
+  void run(double seconds) { world.run(seconds, 1 / std::get<1>(GetParam())); }
+
+  /// Two rails along y, whose upper edges at these places of x are at z = 0.
+  void addRails(double half_gap) {
+    constexpr double kWide = 0.1, kLong = 2;
+    for (const double side : {-1.0, 1.0})
+      world.add(makePackedShape(*makeBox({kWide, kLong, kWide}), 256), 0,
+                btVector3(btScalar(side * (half_gap + kWide / 2)), 0, btScalar(-kWide / 2)));
+  }
+  void bearABall(bool packing);
+  void letABallRoll(bool packing);
+
+ private:
+  SubstepSolver substeps_;
+
+ protected:
+  TestWorld world;
+};
+
+constexpr double kBall = 0.1, kHalfGap = 0.06, kHeight = 0.08;  // 0.06^2 + 0.08^2 = 0.1^2
+
+std::shared_ptr<btCollisionShape> ball(bool packing) {
+  if (packing) return makeFineBallShape(kBall, 256);
+  return std::make_shared<btSphereShape>(btScalar(kBall));
+}
+
+void Edges::bearABall(bool packing) {
+  addRails(kHalfGap);
+  const btRigidBody& body = world.add(ball(packing), 1, btVector3(0, 0, btScalar(kHeight + 0.002)));
+  run(2);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kHeight, 2e-4);
+  EXPECT_LT(body.getLinearVelocity().length(), 2e-3);
+}
+
+TEST_P(Edges, BearABall) {
+  bearABall(false);
+}
+TEST_P(Edges, BearAPackedBall) {
+  bearABall(true);
+}
+
+// It rolls on a radius of 0.08 m, so that it speeds up by g sin a / (1 + 0.4 (0.1 / 0.08)^2).
+void Edges::letABallRoll(bool packing) {
+  constexpr double kSlope = 10 * M_PI / 180, kSeconds = 1.2;
+  addRails(kHalfGap);
+  btRigidBody& body = world.add(ball(packing), 1, btVector3(0, btScalar(-0.8), btScalar(kHeight)));
+  body.setGravity(
+      btVector3(0, btScalar(kGravity * std::sin(kSlope)), btScalar(-kGravity * std::cos(kSlope))));
+  run(kSeconds);
+  const double speed = kSeconds * kGravity * std::sin(kSlope) / (1 + 0.4 * std::pow(kBall / kHeight, 2));
+  EXPECT_NEAR(body.getLinearVelocity().y(), speed, 0.01 * speed);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().x(), 0, 0.002);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kHeight, 0.002);
+}
+
+TEST_P(Edges, LetABallRoll) {
+  letABallRoll(false);
+}
+TEST_P(Edges, LetAPackedBallRoll) {
+  letABallRoll(true);
+}
+
+TEST_P(Edges, BearACylinderThatLiesAlongThem) {
+  addRails(kHalfGap);
+  const btQuaternion along(btVector3(1, 0, 0), SIMD_HALF_PI);
+  const btRigidBody& body =
+      world.add(makeFineCylinderShape(kBall, 0.3, 256), 1, btVector3(0, 0, btScalar(kHeight + 0.002)), along);
+  run(2);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kHeight, 2e-4);
+  EXPECT_LT(body.getLinearVelocity().length(), 2e-3);
+}
+
+/// A wheel about y, 0.1 m wide, with a round bore.
+Mesh wheelMesh(double bore, double radius) {
+  constexpr std::uint32_t kSides = 96;
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double angle = 2 * M_PI * i / kSides;
+    for (const double r : {bore / std::cos(M_PI / kSides), radius})
+      for (const double y : {-0.05, 0.05})
+        mesh.vertices.push_back({r * std::sin(angle), y, r * std::cos(angle)});
+  }
+  // Around the cross section: bore at y = -0.05, rim there, rim at 0.05, bore there.
+  constexpr std::array<std::uint32_t, 4> kAround{0, 2, 3, 1};
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const std::uint32_t here = 4 * i, next = 4 * ((i + 1) % kSides);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::uint32_t from = kAround[k], to = kAround[(k + 1) % 4];
+      mesh.triangles.push_back({here + from, next + from, next + to});
+      mesh.triangles.push_back({here + from, next + to, here + to});
+    }
+  }
+  return mesh;
+}
+
+std::unique_ptr<btTriangleMesh> trianglesOf(const Mesh& mesh) {
+  auto triangles = std::make_unique<btTriangleMesh>();
+  const auto corner = [&](std::uint32_t i) {
+    const Vec3d& v = mesh.vertices[i];
+    return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
+  };
+  for (const auto& t : mesh.triangles) triangles->addTriangle(corner(t[0]), corner(t[1]), corner(t[2]));
+  return triangles;
+}
+
+/// It hangs on the two upper edges of a pin with six sides. Whatever the pin's faces do, each push of a round
+/// bore leads through its middle.
+TEST_P(Edges, TurnAWheelOnASixSidedPin) {
+  constexpr double kBore = 0.031, kPin = 0.03, kWheel = 0.2, kSpin = 10;
+  std::vector<std::array<double, 2>> outline;
+  for (int i = 0; i < 6; ++i)
+    outline.push_back({kPin * std::sin(M_PI / 6 - i * M_PI / 3), kPin * std::cos(M_PI / 6 - i * M_PI / 3)});
+  const std::unique_ptr<btTriangleMesh> triangles = trianglesOf(prismMesh(outline));
+  btRigidBody& pin =
+      world.add(std::make_shared<btBvhTriangleMeshShape>(triangles.get(), true), 0, btVector3(0, 0, 0));
+  pin.setFriction(1);
+  const double hangs = kPin * std::cos(M_PI / 6) - std::sqrt(kBore * kBore - kPin * kPin / 4);
+  const auto wheel = makePackedShape(*makeSolid(wheelMesh(kBore, kWheel), "wheel"), 256);
+  for (const double friction : {0.0, 0.2}) {
+    btRigidBody& body = world.add(wheel, 1, btVector3(0, 0, btScalar(hangs)));
+    body.setFriction(btScalar(friction));
+    body.setAngularVelocity(btVector3(0, kSpin, 0));
+    run(1);
+    // Both edges press, 30 degrees beside the weight, and rub; the sum of all holds it.
+    const double inertia = 0.5 * (kWheel * kWheel + kBore * kBore), edge = kPin / (2 * kBore),
+                 presses = kGravity / (std::sqrt(1 - edge * edge) * (1 + friction * friction)),
+                 lost = friction * presses * kBore / inertia;
+    const double off = std::get<1>(GetParam()) < 100 ? 0.2 : 0.1;
+    EXPECT_NEAR(body.getAngularVelocity().y(), kSpin - lost, friction > 0 ? off * lost : 0.01 * kSpin)
+        << friction;
+    world.world.removeRigidBody(&body);
+  }
+}
+
+// Corners of both plates end in the same two planes. That is not passing each other by.
+TEST_P(Edges, OfPlatesInOnePlaneMeet) {
+  constexpr double kSide = 0.2, kSpeed = 0.4, kGap = 0.0015;
+  world.world.setGravity(btVector3(0, 0, 0));
+  const auto plate = makePackedShape(*makeBox({kSide, kSide, 0.06}), 256);
+  world.add(plate, 0, btVector3(0, 0, 0));
+  const double start = kSide / 2 + kSide / std::sqrt(2.0) + kGap;
+  btRigidBody& body =
+      world.add(plate, 1, btVector3(btScalar(start), 0, 0), btQuaternion(btVector3(0, 0, 1), SIMD_PI / 4));
+  body.setLinearVelocity(btVector3(btScalar(-kSpeed), btScalar(0.1), 0));
+  double deepest = start;
+  for (int i = 0; i < 12; ++i) {
+    run(1 / std::get<1>(GetParam()));
+    deepest = std::min(deepest, double(body.getWorldTransform().getOrigin().x()));
+  }
+  EXPECT_GT(deepest, start - kGap - 2e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Edges, testing::Combine(testing::Bool(), testing::Values(60.0, 240.0)),
+                         [](const auto& info) {
+                           return std::string(std::get<0>(info.param) ? "Substeps" : "Bullet") +
+                                  std::to_string(int(std::get<1>(info.param)));
+                         });
+
+}  // namespace
+}  // namespace innersphere::test
