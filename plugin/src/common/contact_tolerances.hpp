@@ -53,8 +53,6 @@ constexpr btScalar kOpposedCosine = btScalar(0.94);
 constexpr btScalar kBearingFaceCosine = btScalar(0.866);
 /// Ratio: where one of two surfaces bends this much more than the other, it is an edge.
 constexpr btScalar kEdgeBends = 10;
-/// Ratio: what lies on a sharp edge sees it bend this much more than itself.
-constexpr btScalar kSharp = 1000;
 /// Ratio: a face that ends this much sooner than the other one has its edge on the other.
 constexpr btScalar kEndsSooner = btScalar(0.5);
 /// [rad]: normals whose root mean square deviation is less are those of one flat face, but for rounding.

@@ -288,23 +288,17 @@ class PatchContactPoints {
                          edge))
       return false;
     const btVector3& normal = edge.points.normal_a;
+    // A hollow along the edge is deepest beside there.
+    const Across axes_there(normal);
+    const SurfaceProbe::Bends there =
+        surfaces_.bends(points, turned(axes_there, normal, of_a ? points.normal_b : points.normal_a));
+    if ((of_a ? there.b : there.a).turn(edge.along, axes_there).dot(edge.along) < 0) return false;
     const auto isSame = [&](const WeightedPoint& f) {
       return f.kind == Kind::edge &&
              f.point.on_b.distance2(edge.points.on_b) < kSameTop * kSameTop * separation_ * separation_;
     };
     if (std::any_of(found_.begin() + std::ptrdiff_t(first_), found_.end(), isSame)) return true;
-    if (!add(edge.points, normal, sample.id, Kind::edge)) return true;
-    WeightedPoint& point = found_.back();
-    point.is_top = point.bends = true;
-    const Across axes_there(normal);
-    const btVector3& seen = of_a ? points.normal_b : points.normal_a;
-    const SurfaceProbe::Bends there = surfaces_.bends(points, turned(axes_there, normal, seen));
-    (of_a ? point.point.bend_b : point.point.bend_a) = of_a ? there.b : there.a;
-    // The place stays on the edge, and its normal is that of the round surface.
-    const btVector3 across = normal.cross(edge.along);
-    const btScalar x = across.dot(axes_there.x), y = across.dot(axes_there.y), sharp = kSharp * round;
-    (of_a ? point.point.bend_a : point.point.bend_b) = {sharp * x * x, sharp * x * y, sharp * y * y};
-    point.point.bend_x = axes_there.x;
+    add(edge.points, normal, sample.id, Kind::edge);
     return true;
   }
 
