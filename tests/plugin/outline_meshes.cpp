@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <BulletCollision/CollisionShapes/btTriangleMesh.h>
+
 namespace innersphere::test {
 
 Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile, std::uint32_t around) {
@@ -54,6 +56,14 @@ Surface surfaceOf(const Mesh& mesh) {
         {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])});
   surface.triangles = mesh.triangles;
   return surface;
+}
+
+void addTriangles(const Mesh& mesh, btTriangleMesh& triangles) {
+  const auto corner = [&](std::uint32_t i) {
+    const Vec3d& v = mesh.vertices[i];
+    return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
+  };
+  for (const auto& t : mesh.triangles) triangles.addTriangle(corner(t[0]), corner(t[1]), corner(t[2]));
 }
 
 }  // namespace innersphere::test

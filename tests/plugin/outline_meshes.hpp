@@ -7,6 +7,8 @@
 
 #include "innersphere/geometry.hpp"
 
+class btTriangleMesh;
+
 namespace innersphere::test {
 
 /// A body of revolution about z: (distance from the axis, z) from one place on the axis to another,
@@ -17,5 +19,7 @@ Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile, std::uint32_t
 Mesh prismMesh(const std::vector<std::array<double, 2>>& outline);
 /// The same in single precision.
 Surface surfaceOf(const Mesh& mesh);
+/// Adds all triangles of a mesh to one of Bullet's.
+void addTriangles(const Mesh& mesh, btTriangleMesh& triangles);
 
 }  // namespace innersphere::test

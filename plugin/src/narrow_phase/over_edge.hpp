@@ -14,7 +14,7 @@ struct RoundPoint {
   btVector3 at{0, 0, 0};
   btVector3 normal{0, 0, 0};  ///< unit, out of the solid
 };
-/// Finds it. Returns false if it is not near.
+/// Finds it. Returns false if it is not near. Samples are many: hand a std::cref(), which needs no memory.
 using NearestRound = std::function<bool(const btVector3& place, RoundPoint& nearest)>;
 
 /// Does what EdgeProbe::overEdge() says, for a solid with sharp edges, A or else B, and a surface that bends.

@@ -186,8 +186,8 @@ bool PackingProbe::overEdge(const OpposedPoints& points, bool of_a, const btVect
     found = {left.at + offset, left.normal};
     return true;
   };
-  return of_a ? lieOverEdge({a_, {0, 0, 0}}, true, nearest_round, points, to_top, edge)
-              : lieOverEdge({b_, apart()}, false, nearest_round, points, to_top, edge);
+  return of_a ? lieOverEdge({a_, {0, 0, 0}}, true, std::cref(nearest_round), points, to_top, edge)
+              : lieOverEdge({b_, apart()}, false, std::cref(nearest_round), points, to_top, edge);
 }
 
 FaceExtents::EdgeDistances PackingProbe::edgeDistances(const OpposedPoints& points,

@@ -229,7 +229,7 @@ bool ShapeProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector
     found = {place - nearest.normal * nearest.distance, nearest.normal};
     return true;
   };
-  return lieOverEdge({a_, {0, 0, 0}}, true, nearest_round, points, to_top, edge);
+  return lieOverEdge({a_, {0, 0, 0}}, true, std::cref(nearest_round), points, to_top, edge);
 }
 
 void ShapeProbe::overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,

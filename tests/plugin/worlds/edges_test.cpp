@@ -122,16 +122,6 @@ Mesh wheelMesh(double bore, double radius) {
   return mesh;
 }
 
-std::unique_ptr<btTriangleMesh> trianglesOf(const Mesh& mesh) {
-  auto triangles = std::make_unique<btTriangleMesh>();
-  const auto corner = [&](std::uint32_t i) {
-    const Vec3d& v = mesh.vertices[i];
-    return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
-  };
-  for (const auto& t : mesh.triangles) triangles->addTriangle(corner(t[0]), corner(t[1]), corner(t[2]));
-  return triangles;
-}
-
 /// It hangs on the two upper edges of a pin with six sides. Whatever the pin's faces do, each push of a round
 /// bore leads through its middle.
 TEST_P(Edges, TurnAWheelOnASixSidedPin) {
@@ -139,9 +129,10 @@ TEST_P(Edges, TurnAWheelOnASixSidedPin) {
   std::vector<std::array<double, 2>> outline;
   for (int i = 0; i < 6; ++i)
     outline.push_back({kPin * std::sin(M_PI / 6 - i * M_PI / 3), kPin * std::cos(M_PI / 6 - i * M_PI / 3)});
-  const std::unique_ptr<btTriangleMesh> triangles = trianglesOf(prismMesh(outline));
+  btTriangleMesh triangles;
+  addTriangles(prismMesh(outline), triangles);
   btRigidBody& pin =
-      world.add(std::make_shared<btBvhTriangleMeshShape>(triangles.get(), true), 0, btVector3(0, 0, 0));
+      world.add(std::make_shared<btBvhTriangleMeshShape>(&triangles, true), 0, btVector3(0, 0, 0));
   pin.setFriction(1);
   const double hangs = kPin * std::cos(M_PI / 6) - std::sqrt(kBore * kBore - kPin * kPin / 4);
   const auto wheel = makePackedShape(*makeSolid(wheelMesh(kBore, kWheel), "wheel"), 256);

@@ -13,6 +13,7 @@
 #include "innersphere/solids.hpp"
 #include "innersphere/substep_solver.hpp"
 #include "named_packings.hpp"
+#include "outline_meshes.hpp"
 #include "packing/mesh_shapes.hpp"
 #include "test_world.hpp"
 #include "thin_meshes.hpp"
@@ -69,13 +70,7 @@ std::shared_ptr<btCollisionShape> makePlate(const std::string& kind, const btVec
     hull->setMargin(0);
     return hull;
   }
-  for (const auto& t : mesh.triangles) {
-    const auto corner = [&](int i) {
-      const Vec3d& v = mesh.vertices[t[i]];
-      return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
-    };
-    triangles.addTriangle(corner(0), corner(1), corner(2));
-  }
+  addTriangles(mesh, triangles);
   return std::make_shared<btBvhTriangleMeshShape>(&triangles, true);
 }
 

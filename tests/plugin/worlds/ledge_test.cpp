@@ -58,13 +58,7 @@ TEST_P(Ledge, BearsTheHeadOfAPin) {
   PackingCollisionAlgorithm::prepareWorld(world.world);
   btTriangleMesh triangles;
   const Mesh hole = counterbore();
-  for (const auto& t : hole.triangles) {
-    const auto at = [&](int k) {
-      const auto& v = hole.vertices[t[k]];
-      return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
-    };
-    triangles.addTriangle(at(0), at(1), at(2));
-  }
+  addTriangles(hole, triangles);
   if (c.of_triangles) {
     world.add(std::make_shared<btBvhTriangleMeshShape>(&triangles, true), 0, btVector3(0, 0, 0));
   } else {
