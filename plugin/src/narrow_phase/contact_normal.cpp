@@ -95,8 +95,11 @@ btVector3 ContactNormal::at(const ProbedSample& sample) const {
   if (extents_ == nullptr && bend_a < 0 && bend_b > 0) return b;
   if (isHollowUnderFlat(bend_a, bend_b)) return a;
   if (isHollowUnderFlat(bend_b, bend_a)) return b;
-  if (opposed(sample.points) || isOnEdge(sample.points)) return mean(sample.points, face_a_);
   const bool one_is_flat = flat_a_ != flat_b_;
+  if (one_is_flat && extents_ != nullptr && sample.points.areFlat() && a.distance(b) > kOneNormal) {
+    if (const std::optional<bool> on_a = isFaceOfA(sample.points, extents_)) return *on_a ? a : b;
+  }
+  if (opposed(sample.points) || isOnEdge(sample.points)) return mean(sample.points, face_a_);
   if (one_is_flat && extents_ == nullptr) return flat_a_ ? a : b;
   if (const std::optional<bool> on_a = isFaceOfA(sample.points, extents_)) return *on_a ? a : b;
   if (one_is_flat) return flat_a_ ? a : b;

@@ -56,6 +56,9 @@ void probeAll(const PackingProbe& probe, const PatchSamples& of, btScalar separa
   } else {
     for (std::size_t i = 0; i < tried.size(); ++i) probeOne(i);
   }
+  // A steep ridge in a valley: no line along the patch's normal leaves it by its faces.
+  if (std::any_of(tried.begin(), tried.end(), [](const auto& t) { return t.found; })) return;
+  for (auto& [sample, found] : tried) found = probe.probeNearest(of.patch.normal, sample);
 }
 
 /// By one thread: shapes that are no packings remember what they were asked last.
@@ -169,6 +172,8 @@ class PatchContactPoints {
     if (crosses && crossing.is_alone) corners.clear();
     for (const EdgeContact& corner : corners) addCorner(corner, rises_a);
     bool has_corners = !corners.empty();
+    if (points.areFlat() && !lie && !crosses && rises_a != rises_b && !has_corners)
+      has_corners = addEdge(points, rises_a, normal);
     // Where neither face lies flat, a corner of the one may be deep in the other all the same.
     if (rises_a && rises_b && !crosses) {
       for (const bool of_a : {true, false}) has_corners = addPeaks(sample, of_a) || has_corners;
@@ -251,6 +256,17 @@ class PatchContactPoints {
     for (const EdgeContact& crossing : crossings) {
       if (!isFound(crossing.id)) add(crossing.points, normal, crossing.id, Kind::corner);
     }
+  }
+
+  /// An edge that goes on beyond the face which it lies on. True if it does so both ways.
+  bool addEdge(const OpposedPoints& points, bool of_a, const btVector3& normal) {
+    std::vector<EdgeContact>& ends = scratch_.peaks;
+    ends.clear();
+    const bool both = probe_.edgeOnFace(points, of_a, normal, ends);
+    for (const EdgeContact& end : ends) {
+      if (!isFound(end.id)) add(end.points, end.points.normal_a, end.id, Kind::corner);
+    }
+    return both;
   }
 
   /// Corners that reach furthest out of the other face. True if one was added.
@@ -413,7 +429,7 @@ void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separati
   appendDeepestPoints(lines, separation, scratch.tops, tops_of_patch, scratch.probed);
   ascendBeside(lines, count, scratch.probed);
   keepAscents(scratch, samples);
-  const ContactNormal normals(scratch.probed, nullptr);
+  const ContactNormal normals(scratch.probed, probe.extents());
   PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
   for (std::size_t i = 0; i < scratch.probed.size(); ++i) {
     const std::size_t before = found.size();

@@ -62,6 +62,10 @@ class EdgeProbe {
   /// them: see followOverlap(). Appends where edges of both cross.
   virtual void overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
                        std::vector<EdgeContact>& crossings) const = 0;
+  /// Finds where a sharp edge of A, or else B, ends on the flat face of the other solid, because that ends:
+  /// see layEdgeOnFace(). Returns true if it does so both ways.
+  virtual bool edgeOnFace(const OpposedPoints& points, bool of_a, const btVector3& normal,
+                          std::vector<EdgeContact>& ends) const = 0;
   /// Finds where a sharp edge of the one solid, A or else B, is deepest in the other one, which bends: that
   /// edge in which the flat face at opposed points ends before the way across it `to_top`, where the contact
   /// would be deepest. Returns false if there is none, by default.

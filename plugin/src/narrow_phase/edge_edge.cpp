@@ -80,14 +80,11 @@ class EdgePair {
   btVector3 on_b() const { return edge_b_.from + edge_b_.along * share_b_; }
 
   bool cross() {
-    const btVector3 across = edge_a_.along.cross(edge_b_.along);
-    const btScalar across2 = across.length2();
-    if (!(across2 > kCrossingSine * kCrossingSine * edge_a_.along.length2() * edge_b_.along.length2()))
-      return false;
-    const btVector3 apart = edge_b_.from - edge_a_.from;
-    share_a_ = apart.cross(edge_b_.along).dot(across) / across2;
-    share_b_ = apart.cross(edge_a_.along).dot(across) / across2;
-    normal_ = across / std::copysign(btSqrt(across2), across.dot(out_of_a_));
+    LineCrossing crossing;
+    if (!crossLines(edge_a_, edge_b_, crossing)) return false;
+    share_a_ = crossing.share_first;
+    share_b_ = crossing.share_second;
+    normal_ = crossing.across.dot(out_of_a_) < 0 ? -crossing.across : crossing.across;
     return true;
   }
 
@@ -119,6 +116,18 @@ class EdgePair {
 };
 
 }  // namespace
+
+bool crossLines(const SharpEdges::Edge& first, const SharpEdges::Edge& second, LineCrossing& crossing) {
+  const btVector3 across = first.along.cross(second.along);
+  const btScalar across2 = across.length2();
+  if (!(across2 > kCrossingSine * kCrossingSine * first.along.length2() * second.along.length2()))
+    return false;
+  const btVector3 apart = second.from - first.from;
+  crossing.share_first = apart.cross(second.along).dot(across) / across2;
+  crossing.share_second = apart.cross(first.along).dot(across) / across2;
+  crossing.across = across / btSqrt(across2);
+  return true;
+}
 
 bool crossEdges(const SharpEdges& a, const SharpEdges& b, const OpposedPoints& points,
                 const btVector3& direction, EdgeContact& crossing, const IsThin& is_thin) {

@@ -43,8 +43,7 @@ class Walk {
     side.of_a = in_b.edge == SmoothNormals::kNoEdge;
     const SharpEdges& own = side.of_a ? a_ : b_;
     const Walked& met = side.of_a ? in_a : in_b;
-    // The walk may have gone on over a bend: what it met there is no side of the flat face.
-    if (!(btFabs(own.face(met.triangle).dot(normal_)) > kSameFaceCosine)) return false;
+    if (!isFlat(own, met)) return false;
     side.edge = own.edgeOf(met);
     side.faces = own.facesOf(side.edge);
     const btVector3& in = side.faces.inwards[0];
@@ -52,7 +51,8 @@ class Walk {
     const btScalar towards = -side.inwards.dot(way);
     const btScalar stop = in_b.share - inset_ / btMax(towards, SIMD_EPSILON);
     if (!(stop > 0)) return true;
-    if (!a_.walk(triangle_a_, place_, way, stop, in_a) || !b_.walk(triangle_b_, place_, way, stop, in_b))
+    if (!a_.walk(triangle_a_, place_, way, stop, in_a) || !b_.walk(triangle_b_, place_, way, stop, in_b) ||
+        !isFlat(a_, in_a) || !isFlat(b_, in_b))
       return false;
     triangle_a_ = in_a.triangle;
     triangle_b_ = in_b.triangle;
@@ -85,6 +85,11 @@ class Walk {
   }
 
  private:
+  /// Whether a walk ended on the flat face that it began on. It may have gone on over a bend.
+  bool isFlat(const SharpEdges& solid, const Walked& walked) const {
+    return btFabs(solid.face(walked.triangle).dot(normal_)) > kSameFaceCosine;
+  }
+
   const SharpEdges& a_;
   const SharpEdges& b_;
   const OpposedPoints& points_;

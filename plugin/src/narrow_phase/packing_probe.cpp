@@ -4,6 +4,7 @@
 
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
+#include "narrow_phase/edge_face.hpp"
 #include "narrow_phase/face_overlap.hpp"
 #include "narrow_phase/over_edge.hpp"
 #include "narrow_phase/surface_rays.hpp"
@@ -31,8 +32,17 @@ bool PackingProbe::probe(const btVector3& patch_normal, btScalar separation, Pro
                     (to_nearest.dot(patch_normal) > kPatchCosine ||
                      (to_nearest.dot(pushed) > kPatchCosine * pushed.length() && leavesNear(sample)));
   if (!fits) found = probeAlong(patch_normal);
-  if (found) align(sample);
-  return found;
+  if (!found) return false;
+  align(sample);
+  return !isPastValley(sample);
+}
+
+bool PackingProbe::probeNearest(const btVector3& patch_normal, ProbedSample& sample) const {
+  sample.points = OpposedPoints();
+  return nearest(sample.index, sample.direction, sample.points) &&
+         sample.direction.dot(patch_normal) > kPatchCosine &&
+         probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points) &&
+         sample.points.areFlat() && !isPastValley(sample);
 }
 
 bool PackingProbe::probeAgain(const btVector3& patch_normal, btScalar separation, const Samples::Line& line,
@@ -45,7 +55,15 @@ bool PackingProbe::probeAgain(const btVector3& patch_normal, btScalar separation
   if (!probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points))
     return probe(patch_normal, separation, sample);
   align(sample);
-  return true;
+  return !isPastValley(sample) || probe(patch_normal, separation, sample);
+}
+
+bool PackingProbe::isPastValley(const ProbedSample& sample) const {
+  const OpposedPoints& points = sample.points;
+  if (opposed(points)) return false;
+  const btScalar depth = points.depthAlong(sample.direction);
+  return sample.index < count_a_ ? innersphere::isPastValley(a_, points.on_b, depth)
+                                 : innersphere::isPastValley(b_, points.on_a - apart(), depth);
 }
 
 void PackingProbe::align(ProbedSample& sample) const {
@@ -170,11 +188,18 @@ bool PackingProbe::crossing(const OpposedPoints& points, const btVector3& direct
   return crossEdges({a_, {0, 0, 0}}, {b_, apart()}, points, direction, crossing, is_thin);
 }
 
+bool PackingProbe::edgeOnFace(const OpposedPoints& points, bool of_a, const btVector3& normal,
+                              std::vector<EdgeContact>& ends) const {
+  return layEdgeOnFace({a_, {0, 0, 0}}, {b_, apart()}, of_a, points, normal, ends);
+}
+
 bool PackingProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
                             EdgeContact& edge) const {
   const PlacedPacking& round = of_a ? b_ : a_;
   const btVector3 offset = of_a ? apart() : btVector3(0, 0, 0);
-  const btScalar far = to_top.length() + btFabs(points.depthAlong(points.normal_a));
+  // Along a cylinder rounding alone makes the fall to the top, and the top any way off.
+  const btScalar far =
+      btMin(to_top.length() + btFabs(points.depthAlong(points.normal_a)), round.shape().size);
   const auto nearest_round = [&](const btVector3& place, RoundPoint& found) {
     SurfaceQueries::Nearest nearest;
     if (!round.nearest(place - offset, far, nearest)) return false;
@@ -192,13 +217,8 @@ bool PackingProbe::overEdge(const OpposedPoints& points, bool of_a, const btVect
 
 FaceExtents::EdgeDistances PackingProbe::edgeDistances(const OpposedPoints& points,
                                                        const btVector3& towards) const {
-  const auto distance = [&](const PlacedPacking& body, std::size_t triangle, const btVector3& at) {
-    const btMatrix3x3& axes = body.world.getBasis();
-    return body.scale() *
-           body.shape().surfaceQueries().untilSharpEdge(triangle, (at * axes) / body.scale(), towards * axes);
-  };
-  return {distance(a_, points.triangle_a, points.on_a),
-          distance(b_, points.triangle_b, points.on_b - apart())};
+  return {SharpEdges(a_, {0, 0, 0}).untilEdge(points.triangle_a, points.on_a, towards),
+          SharpEdges(b_, apart()).untilEdge(points.triangle_b, points.on_b, towards)};
 }
 
 std::uint64_t PackingProbe::id(std::size_t index) const {

@@ -26,6 +26,9 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
   /// point is further than `separation` [m] from where the line leaves its own solid, so is all of the other
   /// surface: no other line is drawn. Returns false if the line met no surfaces.
   bool probe(const btVector3& patch_normal, btScalar separation, ProbedSample& sample) const;
+  /// Probes a sample towards the nearest point of the other surface alone, between flat faces. Returns false
+  /// as probe() does, or if that lies aside of the patch.
+  bool probeNearest(const btVector3& patch_normal, ProbedSample& sample) const;
   /// Probes a sample where it was probed before, or, where that line misses the surfaces now, anew. Returns
   /// false as probe() does.
   bool probeAgain(const btVector3& patch_normal, btScalar separation, const Samples::Line& line,
@@ -52,6 +55,8 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
                 EdgeContact& crossing) const override;
   void overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
                std::vector<EdgeContact>& crossings) const override;
+  bool edgeOnFace(const OpposedPoints& points, bool of_a, const btVector3& normal,
+                  std::vector<EdgeContact>& ends) const override;
   bool overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
                 EdgeContact& edge) const override;
   EdgeDistances edgeDistances(const OpposedPoints& points, const btVector3& towards) const override;
@@ -83,6 +88,9 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
     const btScalar most = surfaceDistance(sample.index);
     return left.distance2(lineStart(sample.index)) <= most * most;
   }
+  /// Returns true if the line of a sample went on through the solid of its sphere from a valley: see
+  /// isPastValley().
+  bool isPastValley(const ProbedSample& sample) const;
   /// Draws the line again along the normal that the surfaces show.
   void align(ProbedSample& sample) const;
 

@@ -4,6 +4,7 @@
 
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
+#include "narrow_phase/edge_face.hpp"
 #include "narrow_phase/face_overlap.hpp"
 #include "narrow_phase/over_edge.hpp"
 #include "narrow_phase/surface_rays.hpp"
@@ -13,7 +14,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 bool ShapeProbe::probe(ProbedSample& sample) const {
   nearest(sample.index, sample.direction, sample.points);
-  return probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points);
+  return probeDirectly(sample);
 }
 
 bool ShapeProbe::probeAgain(const Samples::Line& line, ProbedSample& sample) const {
@@ -21,7 +22,15 @@ bool ShapeProbe::probeAgain(const Samples::Line& line, ProbedSample& sample) con
   nearest(sample.index, sample.direction, sample.points);
   sample.points.triangle_a = line.triangle_a;
   sample.points.triangle_b = line.triangle_b;
-  return probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points);
+  return probeDirectly(sample);
+}
+
+bool ShapeProbe::probeDirectly(ProbedSample& sample) const {
+  const bool found = probeLine(sample.index, sample.direction, btVector3(0, 0, 0), sample.points);
+  const bool past = found && !opposed(sample.points) &&
+                    isPastValley(a_, sample.points.on_b, sample.points.depthAlong(sample.direction));
+  if (past) sample.points.triangle_a = OpposedPoints::kNone;
+  return found && !past;
 }
 
 bool ShapeProbe::probeLine(std::size_t index, const btVector3& direction, const btVector3& shift,
@@ -217,6 +226,26 @@ bool ShapeProbe::crossing(const OpposedPoints& points, const btVector3& directio
   if (!faceOfB(points, b, start.triangle_b)) return false;
   crossing.is_alone = btFabs(b.face(start.triangle_b).dot(points.normal_b)) < kSameFaceCosine;
   return crossEdges({a_, {0, 0, 0}}, b, start, direction, crossing);
+}
+
+bool ShapeProbe::edgeOnFace(const OpposedPoints& points, bool of_a, const btVector3& normal,
+                            std::vector<EdgeContact>& ends) const {
+  SharpEdges b;
+  OpposedPoints start = points;
+  return faceOfB(points, b, start.triangle_b) && layEdgeOnFace({a_, {0, 0, 0}}, b, of_a, start, normal, ends);
+}
+
+FaceExtents::EdgeDistances ShapeProbe::edgeDistances(const OpposedPoints& points,
+                                                     const btVector3& towards) const {
+  SharpEdges b;
+  std::size_t triangle_b;
+  btScalar until_b = BT_LARGE_FLOAT;
+  if (faceOfB(points, b, triangle_b)) {
+    // Else the nearest point of B is on an edge, and its normal that of no face.
+    const bool on_face = btFabs(b.face(triangle_b).dot(points.normal_b)) > 1 - kLeaning * kLeaning;
+    until_b = on_face ? b.untilEdge(triangle_b, points.on_b, towards) : btScalar(0);
+  }
+  return {SharpEdges(a_, {0, 0, 0}).untilEdge(points.triangle_a, points.on_a, towards), until_b};
 }
 
 bool ShapeProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "narrow_phase/contact_normal.hpp"
 #include "narrow_phase/edge_contacts.hpp"
 #include "narrow_phase/sample_selection.hpp"
 #include "narrow_phase/shapes/shape_surface.hpp"
@@ -15,7 +16,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Probes a packing, A, and another shape. Of the other shape, B, only the nearest point of each sphere is
 /// known, with a normal that does not come from triangles. `near_spheres` are parallel to the contacts.
-class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSpheres {
+class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public FaceExtents, public ContactSpheres {
  public:
   /// Takes what it probes, all of which must outlive it. `world` is where the other shape is.
   ShapeProbe(const PlacedPacking& a, ShapeSurface& other, const btTransform& world,
@@ -59,10 +60,18 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
             std::vector<EdgeContact>& tips) const;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
+  bool edgeOnFace(const OpposedPoints& points, bool of_a, const btVector3& normal,
+                  std::vector<EdgeContact>& ends) const override;
   bool overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
                 EdgeContact& edge) const override;
   void overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
                std::vector<EdgeContact>& crossings) const override;
+  /// Returns what tells where faces end, or null where B's faces are not known.
+  const FaceExtents* extents() const {
+    SharpEdges b;
+    return other_.facets(a_, world_, b) ? this : nullptr;
+  }
+  EdgeDistances edgeDistances(const OpposedPoints& points, const btVector3& towards) const override;
   bool hasEdges() const override { return other_.isFaceted(); }
   btVector3 toMiddleOfBend(const ProbedSample& sample) const override;
   bool isOnFaceOfB(const OpposedPoints& points) const override;
@@ -76,6 +85,8 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public ContactSp
   }
 
  private:
+  /// Probes along the line to the nearest point. Returns false if that goes on through A from a valley.
+  bool probeDirectly(ProbedSample& sample) const;
   /// Finds the same of B where that knows the nearest point of any place.
   bool nearestOfB(const btVector3& place, btScalar max_distance, SurfaceQueries::Nearest& nearest) const {
     NearSphere seen;

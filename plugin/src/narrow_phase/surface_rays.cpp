@@ -87,6 +87,11 @@ bool enterSolid(const PlacedPacking& body, const btVector3& from, const btVector
   return true;
 }
 
+bool isPastValley(const PlacedPacking& body, const btVector3& met, btScalar length) {
+  SurfaceQueries::Nearest nearest;
+  return length > 0 && body.nearest(met, kSunk * length, nearest);
+}
+
 btScalar meetSolid(const PlacedPacking& body, const btVector3& from, const btVector3& way) {
   const btScalar length = way.length();
   if (!(length > 0)) return 2;

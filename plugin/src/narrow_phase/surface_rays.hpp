@@ -32,6 +32,11 @@ bool leaveSolid(const PlacedPacking& body, const btVector3& from, const btVector
 bool enterSolid(const PlacedPacking& body, const btVector3& from, const btVector3& direction, btScalar length,
                 std::size_t known, const btVector3& opposed, SurfacePoint& point);
 
+/// Returns true if a line that goes on in the solid for a length [m] from the place where it met the other
+/// one began at its surface: it passed the bottom of a valley, to some face beyond that says nothing of this
+/// place.
+bool isPastValley(const PlacedPacking& body, const btVector3& met, btScalar length);
+
 /// Finds where a point that goes along `way` [m] comes from outside to the solid, without its margin: the
 /// part of the way, 0 to 1; 2 if it does not.
 btScalar meetSolid(const PlacedPacking& body, const btVector3& from, const btVector3& way);

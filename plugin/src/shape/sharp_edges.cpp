@@ -12,6 +12,12 @@ bool SharpEdges::edgeTowards(std::size_t triangle, const btVector3& point, const
   return true;
 }
 
+btScalar SharpEdges::untilEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const {
+  Edge edge;
+  if (!edgeTowards(triangle, point, towards, edge) || isValley(edge)) return BT_LARGE_FLOAT;
+  return edge.where.distance * scale;
+}
+
 void SharpEdges::place(Edge& edge) const {
   const SmoothNormals::Ends ends = surface->normals().endsOf(edge.where);
   edge.from = origin + axes * ends.from * scale;
@@ -33,7 +39,11 @@ SharpEdges::Edge SharpEdges::edgeOf(const SmoothNormals::Walked& walked) const {
 
 SharpEdges::Faces SharpEdges::facesOf(const Edge& edge) const {
   const SmoothNormals::EdgeFaces found = surface->normals().facesOf(edge.where);
-  return {{axes * found.inwards[0], axes * found.inwards[1]}, found.id};
+  return {{axes * found.inwards[0], axes * found.inwards[1]}, found.id, found.across};
+}
+
+bool SharpEdges::isValley(const Edge& edge) const {
+  return surface->normals().isValley(edge.where) != inside_out;
 }
 
 bool SharpEdges::nearestFace(const btVector3& place, btScalar max_distance,

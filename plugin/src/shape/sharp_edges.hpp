@@ -27,6 +27,9 @@ struct SharpEdges {
   /// Finds the sharp edge that is met from a point of a triangle in a direction. Returns false if there is
   /// none near.
   bool edgeTowards(std::size_t triangle, const btVector3& point, const btVector3& towards, Edge& edge) const;
+  /// Returns how far the surface goes on from a point of a triangle in a direction until it ends in a sharp
+  /// edge [m]. It is BT_LARGE_FLOAT if no edge is near, or that is a valley: the solid goes on beyond.
+  btScalar untilEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const;
   /// Walks over the faces from a point of a triangle along `way`: see SmoothNormals::walk().
   bool walk(std::size_t triangle, const btVector3& point, const btVector3& way, btScalar most,
             SmoothNormals::Walked& walked) const;
@@ -34,10 +37,13 @@ struct SharpEdges {
   Edge edgeOf(const SmoothNormals::Walked& walked) const;
   /// Says how the faces of an edge lie.
   struct Faces {
-    btVector3 inwards[2];  ///< unit: along them, from the edge
-    std::uint32_t id = 0;  ///< of the edge, the same from both
+    btVector3 inwards[2];      ///< unit: along them, from the edge
+    std::uint32_t id = 0;      ///< of the edge, the same from both
+    std::uint32_t across = 0;  ///< the triangle beyond the edge
   };
   Faces facesOf(const Edge& edge) const;
+  /// Returns true if the solid is hollow at an edge.
+  bool isValley(const Edge& edge) const;
   /// Returns where the middle of a triangle is.
   btVector3 middle(std::size_t triangle) const {
     return origin + axes * surface->normals().middle(triangle) * scale;

@@ -475,6 +475,11 @@ SmoothNormals::Ends SmoothNormals::endsOf(const Ending& ending) const {
   return {corners[ending.edge], corners[next(ending.edge)]};
 }
 
+bool SmoothNormals::isValley(const Ending& ending) const {
+  const Facet& facet = facets_[ending.triangle];
+  return facesOf(ending).inwards[1].dot(facet.face) > 0;
+}
+
 SmoothNormals::EdgeFaces SmoothNormals::facesOf(const Ending& ending) const {
   const Facet& facet = facets_[ending.triangle];
   const std::uint32_t across = facet.across[ending.edge] - kSharp;
@@ -482,7 +487,8 @@ SmoothNormals::EdgeFaces SmoothNormals::facesOf(const Ending& ending) const {
   std::size_t back = 0;
   while (back < 2 && other.across[back] != kSharp + ending.triangle) ++back;
   return {{unit(facet.inwards[ending.edge]), unit(other.inwards[back])},
-          std::min(3 * ending.triangle + ending.edge, 3 * across + static_cast<std::uint32_t>(back))};
+          std::min(3 * ending.triangle + ending.edge, 3 * across + static_cast<std::uint32_t>(back)),
+          across};
 }
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -84,9 +84,12 @@ class SmoothNormals {
   };
   /// Returns the ends of a sharp edge that was found.
   Ends endsOf(const Ending& ending) const;
+  /// Returns true if the solid is hollow at a sharp edge that was found.
+  bool isValley(const Ending& ending) const;
   struct EdgeFaces {
-    btVector3 inwards[2];  ///< unit: along both faces, from the edge
-    std::uint32_t id = 0;  ///< of the edge, the same from both
+    btVector3 inwards[2];      ///< unit: along both faces, from the edge
+    std::uint32_t id = 0;      ///< of the edge, the same from both
+    std::uint32_t across = 0;  ///< the triangle beyond the edge
   };
   /// Returns how the faces of a sharp edge lie that was found.
   EdgeFaces facesOf(const Ending& ending) const;

@@ -355,11 +355,6 @@ bool SurfaceQueries::isOpposedBelow(btScalar thickness, std::size_t triangle) co
   return opposed;
 }
 
-btScalar SurfaceQueries::untilSharpEdge(std::size_t triangle, const btVector3& point,
-                                        const btVector3& towards) const {
-  return normals().untilSharpEdge(triangle, point, towards).distance;
-}
-
 bool SurfaceQueries::nearest(const btVector3& point, btScalar max_distance, Nearest& result) const {
   NearestTriangle search(normals(), point, max_distance, tree_.rounding());
   tree_.search(search.farthest2(), search, [&](std::uint32_t t) { return search.test(t); });

@@ -46,9 +46,6 @@ class SurfaceQueries {
   /// `from`: the distance is negative behind it. Nothing in between is looked at.
   bool castNear(std::size_t triangle, const btVector3& from, const btVector3& direction, btScalar length,
                 Hit& hit) const;
-  /// Returns the distance to the sharp edge of SmoothNormals::untilSharpEdge() [m]; BT_LARGE_FLOAT if there
-  /// is none.
-  btScalar untilSharpEdge(std::size_t triangle, const btVector3& point, const btVector3& towards) const;
 
   /// Whether the solid is thinner than this [m] below a place of its surface: the normal, drawn inwards,
   /// comes out of a face that looks the other way.

@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -170,11 +172,189 @@ TEST_P(Edges, OfPlatesInOnePlaneMeet) {
   EXPECT_GT(deepest, start - kGap - 2e-4);
 }
 
+using Outline = std::vector<std::array<double, 2>>;
+
+/// A prism along y of this width with this outline in x and z, about y = 0.
+Mesh barMesh(const Outline& outline, double width) {
+  Mesh mesh = prismMesh(outline);
+  double middle = 0;
+  for (const auto& v : mesh.vertices) middle += v[1] / double(mesh.vertices.size());
+  for (auto& v : mesh.vertices) v[1] = (v[1] - middle) * width;
+  return mesh;
+}
+
+/// What a plate of 1 kg/m^2 with this outline is like, by sums over triangles from (0, 0).
+struct Plate {
+  explicit Plate(const Outline& outline) {
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const auto &p = outline[i], &q = outline[(i + 1) % outline.size()];
+      const double twice = p[0] * q[1] - q[0] * p[1];
+      mass += twice / 2;
+      moment += twice * (p[1] + q[1]) / 6;
+      for (int k = 0; k < 2; ++k) inertia += twice * (p[k] * p[k] + p[k] * q[k] + q[k] * q[k]) / 12;
+    }
+  }
+  double mass = 0;     ///< [kg]
+  double moment = 0;   ///< along z [kg m]
+  double inertia = 0;  ///< about (0, 0) [kg m^2]
+};
+
+/// A roof with a notch under its ridge swings on the edge of a knife.
+class Notch : public Edges {
+ protected:
+  static constexpr double kDeep = 0.04, kTilt = 5 * M_PI / 180;
+
+  static Outline knife() { return {{-0.25, -0.36}, {0.25, -0.36}, {0, kDeep}}; }
+  void swing(double half_width, btRigidBody& knife);
+};
+
+void Notch::swing(double half_width, btRigidBody& knife) {
+  const Outline beam{{0, 0.14},  {-0.5, -0.3},    {-0.4, -0.3}, {-half_width, 0},
+                     {0, kDeep}, {half_width, 0}, {0.4, -0.3},  {0.5, -0.3}};
+  Outline about_edge = beam;
+  for (auto& place : about_edge) place[1] -= kDeep;
+  const Plate plate(about_edge);
+  const double quarter = M_PI / 2 * std::sqrt(plate.inertia / (kGravity * -plate.moment));
+
+  knife.setFriction(1);
+  const auto shape = makePackedShape(*makeSolid(barMesh(beam, 0.1), "beam"), 256);
+  const btTransform turn(btQuaternion(btVector3(0, 1, 0), btScalar(kTilt)));
+  const btTransform edge(btMatrix3x3::getIdentity(), btVector3(0, 0, btScalar(kDeep)));
+  btRigidBody& body = world.add(shape, 1, btVector3(0, 0, 0));
+  body.setFriction(btScalar(0.6));
+  body.setActivationState(DISABLE_DEACTIVATION);
+  body.setWorldTransform(shape->bodyTransform(edge * turn * edge.inverse()));
+  body.setInterpolationWorldTransform(body.getWorldTransform());
+
+  const double step = 1 / std::get<1>(GetParam());
+  double before = kTilt, crossed = 0, slipped = 0;
+  int crossings = 0;
+  for (double time = step; crossings < 4 && time < 20 * quarter; time += step) {
+    run(step);
+    const btTransform mesh = shape->meshTransform(body.getWorldTransform());
+    const double tilt = std::asin(double(mesh.getBasis()[0][2]));
+    slipped = std::max(slipped, double((mesh(edge.getOrigin()) - edge.getOrigin()).length()));
+    if ((tilt > 0) != (before > 0)) {
+      ++crossings;
+      crossed = time - step * tilt / (tilt - before);
+    }
+    before = tilt;
+  }
+  EXPECT_EQ(crossings, 4);
+  // A quarter of the swing to the first, then half a swing each.
+  EXPECT_NEAR(crossed, 7 * quarter, 0.01 * 7 * quarter);
+  EXPECT_LT(slipped, 1e-3);
+}
+
+TEST_P(Notch, SwingsOnAPackedKnife) {
+  const auto shape = makePackedShape(*makeSolid(barMesh(knife(), 0.2), "knife"), 256);
+  btRigidBody& body = world.add(shape, 0, btVector3(0, 0, 0));
+  body.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
+  swing(0.04, body);
+}
+TEST_P(Notch, WideSwingsOnAPackedKnife) {
+  const auto shape = makePackedShape(*makeSolid(barMesh(knife(), 0.2), "knife"), 256);
+  btRigidBody& body = world.add(shape, 0, btVector3(0, 0, 0));
+  body.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
+  swing(0.08, body);
+}
+TEST_P(Notch, SwingsOnAKnifeOfTriangles) {
+  btTriangleMesh triangles;
+  addTriangles(barMesh(knife(), 0.2), triangles);
+  swing(0.08, world.add(std::make_shared<btBvhTriangleMeshShape>(&triangles, true), 0, btVector3(0, 0, 0)));
+}
+TEST_P(Notch, SwingsOnAKnifeThatIsAHull) {
+  const auto hull = std::make_shared<btConvexHullShape>();
+  hull->setMargin(0);
+  for (const auto& v : barMesh(knife(), 0.2).vertices)
+    hull->addPoint(btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2])));
+  swing(0.08, world.add(hull, 0, btVector3(0, 0, 0)));
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, Edges, testing::Combine(testing::Bool(), testing::Values(60.0, 240.0)),
                          [](const auto& info) {
                            return std::string(std::get<0>(info.param) ? "Substeps" : "Bullet") +
                                   std::to_string(int(std::get<1>(info.param)));
                          });
+INSTANTIATE_TEST_SUITE_P(Of, Notch, testing::Combine(testing::Bool(), testing::Values(60.0, 240.0)),
+                         [](const auto& info) {
+                           return std::string(std::get<0>(info.param) ? "Substeps" : "Bullet") +
+                                  std::to_string(int(std::get<1>(info.param)));
+                         });
+
+/// All points of contact of two bodies.
+struct AllPoints : btCollisionWorld::ContactResultCallback {
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    points.push_back(point);
+    return 0;
+  }
+  std::vector<btManifoldPoint> points;
+};
+
+// The fall of a cylinder along its axis is rounding: no top lies there, however far off it is reckoned.
+TEST(BesideAnEdge, NoRoundBodyIsDeeperThanItIs) {
+  constexpr double kRadius = 0.2, kLift = 0.002;
+  TestWorld world;
+  btRigidBody& tile =
+      world.add(makePackedShape(*makeBox({1, 1, 0.2}), 256), 0, btVector3(0, 0, btScalar(-0.1)));
+  btRigidBody& body = world.add(makeFineCylinderShape(kRadius, 0.3, 256), 1, btVector3(0, 0, 1));
+  std::mt19937 rng(1);
+  std::uniform_real_distribution<double> random(-1, 1);
+  int touching = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double lean = 0.03 * random(rng), lift = kLift * random(rng);
+    btTransform place(btQuaternion(btVector3(0, 0, 1), btScalar(0.03 * random(rng))) *
+                          btQuaternion(btVector3(1, 0, 0), btScalar(M_PI / 2 + lean)) *
+                          btQuaternion(btVector3(0, 0, 1), btScalar(M_PI * random(rng))),
+                      btVector3(btScalar(-0.5 + 0.05 * random(rng)), btScalar(0.02 * random(rng)),
+                                btScalar(kRadius + lift)));
+    body.setWorldTransform(place);
+    AllPoints found;
+    world.world.contactPairTest(&tile, &body, found);
+    for (const btManifoldPoint& point : found.points)
+      EXPECT_GT(point.getDistance(), -(kLift + 0.15 * std::fabs(std::sin(lean)) + 1e-3));
+    touching += found.points.empty() ? 0 : 1;
+  }
+  EXPECT_GT(touching, 1000);
+}
+
+// A walk over smooth facets of a hull leaves the face that lies flat.
+TEST(BesideAnEdge, NoHullTouchesWhereItIsNot) {
+  constexpr double kRadius = 0.2, kHalf = 0.15;
+  constexpr int kSides = 32;
+  TestWorld world;
+  btRigidBody& tile =
+      world.add(makePackedShape(*makeBox({1, 1, 0.2}), 256), 0, btVector3(0, 0, btScalar(-0.1)));
+  const auto hull = std::make_shared<btConvexHullShape>();
+  hull->setMargin(0);
+  for (int k = 0; k < kSides; ++k) {
+    const double angle = 2 * M_PI * k / kSides;
+    for (const double y : {-kHalf, kHalf})
+      hull->addPoint(
+          btVector3(btScalar(kRadius * std::cos(angle)), btScalar(y), btScalar(kRadius * std::sin(angle))));
+  }
+  btRigidBody& body = world.add(hull, 1, btVector3(0, 0, 1));
+  std::mt19937 rng(1);
+  std::uniform_real_distribution<double> random(-1, 1);
+  for (int i = 0; i < 1000; ++i) {
+    const double x = 0.2 * random(rng);
+    btTransform place(btQuaternion(btVector3(1, 0, 0), btScalar(0.001 * random(rng))) *
+                          btQuaternion(btVector3(0, 1, 0), btScalar(M_PI * random(rng))),
+                      btVector3(btScalar(x), 0, 0));
+    btVector3 low, high;
+    hull->getAabb(place, low, high);
+    place.getOrigin().setZ(-low.z() - btScalar(0.0005 * (1 + random(rng))));
+    body.setWorldTransform(place);
+    AllPoints found;
+    world.world.contactPairTest(&tile, &body, found);
+    for (const btManifoldPoint& point : found.points) {
+      if (point.getDistance() > 0) continue;
+      EXPECT_LT(std::fabs(point.getPositionWorldOnA().x() - x), kRadius + 0.01);
+      EXPECT_LT(std::fabs(point.getPositionWorldOnB().x() - x), kRadius + 0.01);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace innersphere::test
