@@ -1,7 +1,6 @@
 #include "narrow_phase/edge_edge.hpp"
 
 #include <array>
-#include <cmath>
 #include <optional>
 
 #include "common/contact_tolerances.hpp"

@@ -18,7 +18,7 @@ struct LineCrossing {
   btScalar share_second;  ///< of the second
   btVector3 across;       ///< unit, of both
 };
-/// Finds it. Returns false if they are parallel.
+/// Finds it. Returns false if they are parallel, but for 5 degrees.
 bool crossLines(const SharpEdges::Edge& first, const SharpEdges::Edge& second, LineCrossing& crossing);
 
 /// Does what EdgeProbe::crossing() says. Positions are relative to A's origin, axes are those of the world.

@@ -89,11 +89,11 @@ class LyingEdge {
     if (speed == 0 || length2 == 0) return false;
     const btVector3 met = start + uphill * ((edge_.from - start).dot(outwards) / speed);
     top_ = edge_.from + edge_.along * ((met - edge_.from).dot(edge_.along) / length2);
-    uphill_ = uphill;
+    uphill_ = uphill * (btSqrt(length2) / uphill.length());
     return true;
   }
 
-  const btVector3& top() const { return top_; }
+  /// Returns a way up to the edge, as long as the edge is.
   const btVector3& uphill() const { return uphill_; }
 
   /// Appends where the edge leaves a face. Returns how often it does; -1 if it is not over the face.
