@@ -120,24 +120,53 @@ class _Ray:
             self._ray.shutdown()
 
 
-def _dask(client: Any, workers: int | None) -> _Executor:
-    """Dask does lost blocks again itself."""
-    return _Executor(client.get_executor(pure=False), workers or sum(client.nthreads().values()) or 1)
+class _Dask:
+    """A cluster of the user's, or one that is closed in the end. Dask does lost blocks again itself. Its own executor
+    takes a result whose worker dies just then for an error."""
+
+    def __init__(self, client: Any, workers: int | None, close: Callable[[], object] | None = None) -> None:
+        self.workers = workers or sum(client.nthreads().values()) or 1
+        self._client = client
+        self._close = close
+        self._pending: dict[Future[Any], Any] = {}
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        task = self._client.submit(function, *arguments, pure=False)
+        future: Future[Any] = Future()
+        self._pending[future] = task
+        task.add_done_callback(functools.partial(self._settle, future))
+        return future
+
+    def _settle(self, future: Future[Any], task: Any) -> None:
+        self._pending.pop(future, None)
+        try:
+            result = task.result()  # if it is lost by now, of another worker
+        except BaseException as error:
+            future.set_exception(error)
+        else:
+            future.set_result(result)
+
+    def renew(self) -> bool:
+        return False
+
+    def close(self) -> None:
+        for task in list(self._pending.values()):
+            task.cancel()
+        if self._close is not None:
+            self._close()
 
 
-def _local_dask(workers: int | None) -> _Executor:
+def _local_dask(workers: int | None) -> _Dask:
     from distributed import Client, LocalCluster
 
     cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")  # any free port
     client = Client(cluster)
-    engine = _dask(client, None)
 
     def close() -> None:
         client.close()
         cluster.close()
 
-    engine._close = close
-    return engine
+    return _Dask(client, None, close)
 
 
 def _mpi(workers: int | None) -> _Executor:
@@ -162,7 +191,7 @@ def make_engine(engine: Any, workers: int | None, tries: int) -> Engine:
             raise ValueError(f"engine is {engine!r}; it must be one of {', '.join(map(repr, makers))}, or an executor")
         return makers[engine]()
     if hasattr(engine, "get_executor"):
-        return _dask(engine, workers)
+        return _Dask(engine, workers)
     if hasattr(engine, "submit"):
         return _Executor(engine, workers or getattr(engine, "_max_workers", None) or os.cpu_count() or 1)
     raise TypeError(
