@@ -189,12 +189,10 @@ struct Plate {
     for (std::size_t i = 0; i < outline.size(); ++i) {
       const auto &p = outline[i], &q = outline[(i + 1) % outline.size()];
       const double twice = p[0] * q[1] - q[0] * p[1];
-      mass += twice / 2;
       moment += twice * (p[1] + q[1]) / 6;
       for (int k = 0; k < 2; ++k) inertia += twice * (p[k] * p[k] + p[k] * q[k] + q[k] * q[k]) / 12;
     }
   }
-  double mass = 0;     ///< [kg]
   double moment = 0;   ///< along z [kg m]
   double inertia = 0;  ///< about (0, 0) [kg m^2]
 };
@@ -204,7 +202,13 @@ class Notch : public Edges {
  protected:
   static constexpr double kDeep = 0.04, kTilt = 5 * M_PI / 180;
 
-  static Outline knife() { return {{-0.25, -0.36}, {0.25, -0.36}, {0, kDeep}}; }
+  static Mesh knife() { return barMesh({{-0.25, -0.36}, {0.25, -0.36}, {0, kDeep}}, 0.2); }
+  btRigidBody& addPackedKnife() {
+    const auto shape = makePackedShape(*makeSolid(knife(), "knife"), 256);
+    btRigidBody& body = world.add(shape, 0, btVector3(0, 0, 0));
+    body.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
+    return body;
+  }
   void swing(double half_width, btRigidBody& knife);
 };
 
@@ -247,40 +251,32 @@ void Notch::swing(double half_width, btRigidBody& knife) {
 }
 
 TEST_P(Notch, SwingsOnAPackedKnife) {
-  const auto shape = makePackedShape(*makeSolid(barMesh(knife(), 0.2), "knife"), 256);
-  btRigidBody& body = world.add(shape, 0, btVector3(0, 0, 0));
-  body.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
-  swing(0.04, body);
+  swing(0.04, addPackedKnife());
 }
 TEST_P(Notch, WideSwingsOnAPackedKnife) {
-  const auto shape = makePackedShape(*makeSolid(barMesh(knife(), 0.2), "knife"), 256);
-  btRigidBody& body = world.add(shape, 0, btVector3(0, 0, 0));
-  body.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
-  swing(0.08, body);
+  swing(0.08, addPackedKnife());
 }
 TEST_P(Notch, SwingsOnAKnifeOfTriangles) {
   btTriangleMesh triangles;
-  addTriangles(barMesh(knife(), 0.2), triangles);
+  addTriangles(knife(), triangles);
   swing(0.08, world.add(std::make_shared<btBvhTriangleMeshShape>(&triangles, true), 0, btVector3(0, 0, 0)));
 }
 TEST_P(Notch, SwingsOnAKnifeThatIsAHull) {
   const auto hull = std::make_shared<btConvexHullShape>();
   hull->setMargin(0);
-  for (const auto& v : barMesh(knife(), 0.2).vertices)
+  const Mesh mesh = knife();
+  for (const auto& v : mesh.vertices)
     hull->addPoint(btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2])));
   swing(0.08, world.add(hull, 0, btVector3(0, 0, 0)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Edges, testing::Combine(testing::Bool(), testing::Values(60.0, 240.0)),
-                         [](const auto& info) {
-                           return std::string(std::get<0>(info.param) ? "Substeps" : "Bullet") +
-                                  std::to_string(int(std::get<1>(info.param)));
-                         });
-INSTANTIATE_TEST_SUITE_P(Of, Notch, testing::Combine(testing::Bool(), testing::Values(60.0, 240.0)),
-                         [](const auto& info) {
-                           return std::string(std::get<0>(info.param) ? "Substeps" : "Bullet") +
-                                  std::to_string(int(std::get<1>(info.param)));
-                         });
+std::string nameOf(const testing::TestParamInfo<Edges::ParamType>& info) {
+  return std::string(std::get<0>(info.param) ? "Substeps" : "Bullet") +
+         std::to_string(int(std::get<1>(info.param)));
+}
+const auto kAll = testing::Combine(testing::Bool(), testing::Values(60.0, 240.0));
+INSTANTIATE_TEST_SUITE_P(Of, Edges, kAll, nameOf);
+INSTANTIATE_TEST_SUITE_P(Of, Notch, kAll, nameOf);
 
 /// All points of contact of two bodies.
 struct AllPoints : btCollisionWorld::ContactResultCallback {
