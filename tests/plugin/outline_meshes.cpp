@@ -31,6 +31,25 @@ Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile, std::uint32_t
   return mesh;
 }
 
+Mesh ringMesh(const std::vector<std::array<double, 2>>& section, std::uint32_t around) {
+  Mesh mesh;
+  const auto rings = static_cast<std::uint32_t>(section.size());
+  for (const auto& place : section) {
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const double angle = 2 * M_PI * i / around;
+      mesh.vertices.push_back({place[0] * std::cos(angle), place[0] * std::sin(angle), place[1]});
+    }
+  }
+  for (std::uint32_t k = 0; k < rings; ++k) {
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const std::uint32_t next = (i + 1) % around, low = k * around, high = (k + 1) % rings * around;
+      mesh.triangles.push_back({low + i, low + next, high + next});
+      mesh.triangles.push_back({low + i, high + next, high + i});
+    }
+  }
+  return mesh;
+}
+
 Mesh prismMesh(const std::vector<std::array<double, 2>>& outline) {
   Mesh mesh;
   for (const double y : {-0.5, 0.5}) {

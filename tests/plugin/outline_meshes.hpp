@@ -14,6 +14,8 @@ namespace innersphere::test {
 /// A body of revolution about z: (distance from the axis, z) from one place on the axis to another,
 /// counter-clockwise around the cross section.
 Mesh turnedMesh(const std::vector<std::array<double, 2>>& profile, std::uint32_t around = 48);
+/// The same of a closed cross section beside the axis: a ring.
+Mesh ringMesh(const std::vector<std::array<double, 2>>& section, std::uint32_t around);
 /// A prism along y, 1 m long, with this outline in x and z, counter-clockwise seen from y = -infinity, and
 /// seen as a whole from its first place. Its sides, two triangles each, come first.
 Mesh prismMesh(const std::vector<std::array<double, 2>>& outline);

@@ -202,6 +202,7 @@ bool refine(Samples& samples, const Probe& probe, const ContactSettings& setting
   if (first_time) dropUnprobed(samples);
   const bool near = std::any_of(found.begin(), found.end(),
                                 [&](const WeightedPoint& p) { return p.point.depth > -settings.spacing; });
+  dropBeyondEnds(found);
   dropPassing(probe, step, found);
   keepLeastWaysOut(settings.spacing, scratch.reduction, found);
   keepTops(settings.separation, step, found);

@@ -160,6 +160,7 @@ class PatchContactPoints {
 
   void addSample(const ProbedSample& sample, const btVector3& normal) {
     const OpposedPoints& points = sample.points;
+    addLineEnds(points);
     const bool rises_a = rises(points.normal_a, points.curvature_a, normal),
                rises_b = rises(points.normal_b, points.curvature_b, normal);
     std::vector<EdgeContact>& corners = scratch_.corners;
@@ -181,7 +182,20 @@ class PatchContactPoints {
     // A face that lies flat on another ends in corners, which bear it better than what spheres are over.
     if (points.areFlat() && !rises_a && !rises_b && !crosses) addEnds(sample, normal);
     // Beside them the face is less deep, or, where it ends in an arc, not there.
-    if (!has_corners && !crosses && !addOverEdge(sample)) addFace(sample, normal);
+    if (has_corners || crosses) return;
+    btVector3 to_top(0, 0, 0);
+    switch (addOverEdge(sample, to_top)) {
+      case FaceEnd::in_edge:
+        break;
+      case FaceEnd::on_face:
+        addFace(sample, points.curvature_a == 0 ? points.normal_a : points.normal_b);
+        break;
+      case FaceEnd::beyond:
+        if (addFace(sample, normal)) found_.back().beyond_end = to_top.length();
+        break;
+      case FaceEnd::unknown:
+        addFace(sample, normal);
+    }
   }
 
   /// For a sample whose line leaves A by its side: an edge or a corner of A beside it bears.
@@ -217,6 +231,7 @@ class PatchContactPoints {
 
  private:
   using Kind = WeightedPoint::Kind;
+  using FaceEnd = EdgeProbe::FaceEnd;
 
   bool isFound(std::uint64_t id) const {
     return std::any_of(found_.begin(), found_.end(),
@@ -240,8 +255,57 @@ class PatchContactPoints {
 
   /// Along the normal of the face that the corner is over.
   bool addCorner(const EdgeContact& corner, bool of_a) {
-    return !isFound(corner.id) && add(corner.points, of_a ? corner.points.normal_b : corner.points.normal_a,
-                                      corner.id, corner.is_peak ? Kind::corner : Kind::edge);
+    const OpposedPoints& points = corner.points;
+    if (corner.is_beside || isFound(corner.id) ||
+        !add(points, of_a ? points.normal_b : points.normal_a, corner.id,
+             corner.is_peak ? Kind::corner : Kind::edge))
+      return false;
+    const bool is_on_rim = (of_a ? points.curvature_a : points.curvature_b) > 0,
+               is_over_flat = (of_a ? points.curvature_b : points.curvature_a) == 0;
+    if (is_on_rim && is_over_flat) layOnHill(points, found_.back());
+    return true;
+  }
+
+  void addLineEnds(const OpposedPoints& points) {
+    std::vector<EdgeContact>& ends = scratch_.peaks;
+    ends.clear();
+    probe_.lineEnds(points, ends);
+    for (const EdgeContact& end : ends) {
+      const auto isSame = [&](const WeightedPoint& f) {
+        return f.point.id == end.id && f.point.normal.dot(end.points.normal_a) > kAlignedOnFacesCosine;
+      };
+      if (std::none_of(found_.begin(), found_.end(), isSame) &&
+          add(end.points, end.points.normal_a, end.id, Kind::edge))
+        layOnHill(end.points, found_.back());
+    }
+  }
+
+  /// Notes how the surfaces bend where a point was found, and where the top of its hill is.
+  void layOnHill(const OpposedPoints& points, WeightedPoint& point) {
+    const Across axes(point.point.normal);
+    const SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
+    point.bends = true;
+    point.slope = points.normal_b - points.normal_a;
+    point.point.bend_a = bends.a;
+    point.point.bend_b = bends.b;
+    point.point.bend_x = axes.x;
+    const Hill hill(bends.a, bends.b, point.point.depth, axes);
+    point.point.to_top = hill.toTop(point.slope);
+    point.point.below_top = point.slope.dot(point.point.to_top) / 2;
+    if (hill.isStraightRidge()) goToCrest(points, axes, point);
+  }
+
+  /// Along a straight ridge contacts are a line, of which the ends bear. What is all but on the crest is
+  /// taken there: beside it, it would brake what rolls.
+  void goToCrest(const OpposedPoints& points, const Across& axes, WeightedPoint& point) {
+    ContactPoint& p = point.point;
+    if (p.to_top.length() > kSameTop * separation_) return;
+    p.on_b += p.to_top;
+    p.depth += p.below_top;
+    p.normal = (points.normal_b - p.bend_b.turn(p.to_top, axes)).normalized();
+    p.to_top.setZero();
+    p.below_top = 0;
+    point.slope.setZero();
   }
 
   /// Where edges of two faces cross that lie on each other: with the corners they span what both share.
@@ -289,40 +353,53 @@ class PatchContactPoints {
   }
 
   /// What is round may lie on the edge in which a flat face ends, before the place on it that would be
-  /// deepest. True if it does.
-  bool addOverEdge(const ProbedSample& sample) {
+  /// deepest: `to_top`, from the sample's.
+  FaceEnd addOverEdge(const ProbedSample& sample, btVector3& to_top) {
     const OpposedPoints& points = sample.points;
     const bool of_a = points.curvature_a == 0;
     const btScalar round = of_a ? points.curvature_b : points.curvature_a;
-    if (sample.is_top || !(round > 0) || (of_a ? points.curvature_a : points.curvature_b) != 0) return false;
+    if (sample.is_top || round == 0 || (of_a ? points.curvature_a : points.curvature_b) != 0)
+      return FaceEnd::unknown;
+    // From the place on the face to below that where the round surface has its normal.
     const btVector3& face = of_a ? points.normal_a : points.normal_b;
-    const btVector3 slope = points.normal_b - points.normal_a;
     const Across axes(face);
-    const SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
+    const SurfaceProbe::Bends bends =
+        surfaces_.bends(points, turned(axes, face, of_a ? points.normal_b : points.normal_a));
+    const btVector3 lean = points.normal_b - points.normal_a,
+                    across = of_a ? points.on_b - points.on_a : points.on_a - points.on_b;
+    to_top = Hill(of_a ? bends.b : bends.a, Bend(), 0, axes).toTop(lean) + across;
+    to_top -= face * face.dot(to_top);
+    // In a hollow it lies with its ends, wherever it leans to.
+    if (round < 0) to_top = (lean - face * face.dot(lean)) * (-1 / (round * lean.length() + SIMD_EPSILON));
     EdgeContact edge;
-    if (!probe_.overEdge(points, of_a, Hill(bends.a, bends.b, points.depthAlong(face), axes).toTop(slope),
-                         edge))
-      return false;
+    const FaceEnd end = probe_.overEdge(points, of_a, to_top, edge);
+    if (end != FaceEnd::in_edge) return round < 0 ? FaceEnd::unknown : end;
     const btVector3& normal = edge.points.normal_a;
     // A hollow along the edge is deepest beside there.
     const Across axes_there(normal);
-    const SurfaceProbe::Bends there =
+    SurfaceProbe::Bends there =
         surfaces_.bends(points, turned(axes_there, normal, of_a ? points.normal_b : points.normal_a));
-    if ((of_a ? there.b : there.a).turn(edge.along, axes_there).dot(edge.along) < 0) return false;
+    if ((of_a ? there.b : there.a).turn(edge.along, axes_there).dot(edge.along) < -kConvex * btFabs(round))
+      return FaceEnd::unknown;
+    (of_a ? there.a : there.b) = Bend::about(edge.along, axes_there, kEdgeSharpness * btFabs(round));
     const auto isSame = [&](const WeightedPoint& f) {
       return f.kind == Kind::edge &&
              f.point.on_b.distance2(edge.points.on_b) < kSameTop * kSameTop * separation_ * separation_;
     };
-    if (std::any_of(found_.begin() + std::ptrdiff_t(first_), found_.end(), isSame)) return true;
-    add(edge.points, normal, sample.id, Kind::edge);
-    return true;
+    if (std::any_of(found_.begin() + std::ptrdiff_t(first_), found_.end(), isSame)) return end;
+    if (!add(edge.points, normal, sample.id, Kind::edge)) return end;
+    ContactPoint& point = found_.back().point;
+    point.bend_a = there.a;
+    point.bend_b = there.b;
+    point.bend_x = axes_there.x;
+    return end;
   }
 
-  void addFace(const ProbedSample& sample, const btVector3& normal) {
+  bool addFace(const ProbedSample& sample, const btVector3& normal) {
     const OpposedPoints& points = sample.points;
     const bool faces = !points.areFlat() || points.normal_a.dot(points.normal_b) > kAlignedOnFacesCosine;
     const Kind kind = faces ? Kind::faces : probe_.isOnFaceOfB(points) ? Kind::edge : Kind::line;
-    if (!add(points, normal, sample.id, kind)) return;
+    if (!add(points, normal, sample.id, kind)) return false;
     WeightedPoint& point = found_.back();
     point.bends = !points.areFlat();
     point.slope = points.normal_b - points.normal_a;
@@ -336,14 +413,26 @@ class PatchContactPoints {
       bends.b = surfaces_.bends(points, turned(axes, point.point.normal, points.normal_b)).b;
     }
     point.both_bend = points.curvature_a != 0 && points.curvature_b != 0;
+    // What is flat lies in a hollow with its ends.
+    if (points.curvature_a < 0 && points.curvature_b == 0)
+      bends.b = Bend::round(-kEdgeSharpness * points.curvature_a);
+    if (points.curvature_b < 0 && points.curvature_a == 0)
+      bends.a = Bend::round(-kEdgeSharpness * points.curvature_b);
     point.point.bend_a = bends.a;
     point.point.bend_b = bends.b;
     point.point.bend_x = axes.x;
     const Hill hill(bends.a, bends.b, point.point.depth, axes);
-    point.point.to_top = hill.toTop(point.slope);
-    point.point.below_top = point.slope.dot(point.point.to_top) / 2;
+    if (!point.is_top) {
+      point.point.to_top = hill.toTop(point.slope);
+      point.point.below_top = point.slope.dot(point.point.to_top) / 2;
+      if (hill.isStraightRidge() && !in_hollow) goToCrest(points, axes, point);
+    }
     // The hollow says no more than the plane, however the bodies move on.
     if (in_hollow) (bends.a.isHollow() ? point.point.bend_a : point.point.bend_b) = Bend();
+    // Along a rim another place is deepest.
+    if (points.along_straight_b > 0 && points.curvature_a == 0)
+      point.beyond_end = 2 * btFabs(point.slope.dot(points.straight_b)) / points.along_straight_b;
+    return true;
   }
 
   /// What is round stays within the planes that touch a hollow around it. Other planes say nothing about

@@ -14,6 +14,7 @@ struct EdgeContact {
   OpposedPoints points;
   std::uint64_t id = 0;      ///< no sphere has it
   bool is_peak = true;       ///< the surface does not rise on from the corner
+  bool is_beside = false;    ///< it lies in a rim that goes on to deeper corners: it bears nothing
   btVector3 along{0, 0, 0};  ///< unit, of an edge that what is round lies on
   bool is_alone = false;     ///< the crossing was found from an edge of B: its corners are over no face
 };
@@ -66,10 +67,22 @@ class EdgeProbe {
   /// see layEdgeOnFace(). Returns true if it does so both ways.
   virtual bool edgeOnFace(const OpposedPoints& points, bool of_a, const btVector3& normal,
                           std::vector<EdgeContact>& ends) const = 0;
+  /// Says where a face bears.
+  enum class FaceEnd {
+    unknown,
+    on_face,  ///< where both normals agree
+    beyond,   ///< not there: it ends before, in an edge
+    in_edge,  ///< in that edge
+  };
   /// Finds where a sharp edge of the one solid, A or else B, is deepest in the other one, which bends: that
   /// edge in which the flat face at opposed points ends before the way across it `to_top`, where the contact
-  /// would be deepest. Returns false if there is none, by default.
-  virtual bool overEdge(const OpposedPoints&, bool, const btVector3&, EdgeContact&) const { return false; }
+  /// would be deepest. By default it is not known.
+  virtual FaceEnd overEdge(const OpposedPoints&, bool, const btVector3&, EdgeContact&) const {
+    return FaceEnd::unknown;
+  }
+  /// Appends the ends of the line in which B, which bends one way only, lies on the flat face of A at opposed
+  /// points, as far as that face is there. By default they are not known.
+  virtual void lineEnds(const OpposedPoints&, std::vector<EdgeContact>&) const {}
   /// Returns false if the point on B is known to lie on an edge, seen along no normal of its faces.
   virtual bool isOnFaceOfB(const OpposedPoints&) const { return true; }
 };

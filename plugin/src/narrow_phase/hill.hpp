@@ -21,6 +21,11 @@ struct Bend {
   btScalar xx = 0, xy = 0, yy = 0;
 
   static Bend round(btScalar curvature) { return {curvature, 0, curvature}; }
+  /// Straight along an axis across the normal (unit), as an edge or a cylinder.
+  static Bend about(const btVector3& axis, const Across& axes, btScalar curvature) {
+    const btScalar x = axis.dot(axes.x), y = axis.dot(axes.y);
+    return {curvature * y * y, -curvature * x * y, curvature * x * x};
+  }
   btScalar mean() const { return (xx + yy) / 2; }
   /// Returns true if it is hollow, at least along one axis, and along none convex, but for rounding.
   bool isHollow() const;

@@ -1,6 +1,7 @@
 #include "narrow_phase/manifold_reduction.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "narrow_phase/deepest_points.hpp"
 
@@ -213,6 +214,20 @@ void keepLeastWaysOut(btScalar spacing, ReductionScratch& scratch, std::vector<W
                        [&](const WeightedPoint& other) { return isFreedBy(other, p, spacing); });
   };
   found.erase(std::remove_if(found.begin(), found.end(), isFreed), found.end());
+}
+
+void dropBeyondEnds(std::vector<WeightedPoint>& found) {
+  const auto bearsInstead = [](const WeightedPoint& other, const WeightedPoint& p) {
+    return other.beyond_end == 0 && other.point.depth > p.point.depth &&
+           other.point.on_b.distance(p.point.on_b) < p.beyond_end;
+  };
+  const auto ends = [](const WeightedPoint& p) { return p.beyond_end > 0; };
+  const auto first = std::partition(found.begin(), found.end(), std::not_fn(ends));
+  const auto kept = std::remove_if(first, found.end(), [&](const WeightedPoint& p) {
+    return std::any_of(found.begin(), first,
+                       [&](const WeightedPoint& other) { return bearsInstead(other, p); });
+  });
+  found.erase(kept, found.end());
 }
 
 void keepTops(btScalar separation, const StepAhead& step, std::vector<WeightedPoint>& found) {

@@ -24,6 +24,10 @@ struct ReductionScratch {
 /// those that are longer, and pushes along other ways, from where they have sunk in; faces stay.
 void keepLeastWaysOut(btScalar spacing, ReductionScratch& scratch, std::vector<WeightedPoint>& found);
 
+/// Drops faces that end before the place where they would bear what is round, if something else bears it as
+/// near as twice the way there. They would hold it as if they went on.
+void dropBeyondEnds(std::vector<WeightedPoint>& found);
+
 /// Where curved surfaces touch, the top of a hill bears, and nothing beside it does: spheres of several
 /// patches find the same hill, and see it from places of their own. Drops what lies on the hill of a top that
 /// was reached, and all but one of the tops of a hill. Of swept bodies it stays, as all of it might sink in.

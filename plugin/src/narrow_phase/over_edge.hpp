@@ -19,8 +19,8 @@ using NearestRound = std::function<bool(const btVector3& place, RoundPoint& near
 
 /// Does what EdgeProbe::overEdge() says, for a solid with sharp edges, A or else B, and a surface that bends.
 /// Positions are relative to A's origin, axes are those of the world.
-bool lieOverEdge(const SharpEdges& solid, bool of_a, const NearestRound& nearest_round,
-                 const OpposedPoints& points, const btVector3& to_top, EdgeContact& contact);
+EdgeProbe::FaceEnd lieOverEdge(const SharpEdges& solid, bool of_a, const NearestRound& nearest_round,
+                               const OpposedPoints& points, const btVector3& to_top, EdgeContact& contact);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -161,6 +161,7 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
     (of_a ? corner.points.on_a : corner.points.on_b) = at + offset;
     (of_a ? corner.points.on_b : corner.points.on_a) = under.at + to_other + offset;
     (of_a ? corner.points.normal_b : corner.points.normal_a) = under.normal * btScalar(of_a ? -1 : 1);
+    corner.is_beside = !layOnRim(own, vertex, way, of_a, corner.points) && !is_peak;
     corners.push_back(corner);
   }
 }
@@ -193,8 +194,8 @@ bool PackingProbe::edgeOnFace(const OpposedPoints& points, bool of_a, const btVe
   return layEdgeOnFace({a_, {0, 0, 0}}, {b_, apart()}, of_a, points, normal, ends);
 }
 
-bool PackingProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
-                            EdgeContact& edge) const {
+EdgeProbe::FaceEnd PackingProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
+                                          EdgeContact& edge) const {
   const PlacedPacking& round = of_a ? b_ : a_;
   const btVector3 offset = of_a ? apart() : btVector3(0, 0, 0);
   // Along a cylinder rounding alone makes the fall to the top, and the top any way off.

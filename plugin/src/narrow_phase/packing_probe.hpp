@@ -57,8 +57,8 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
                std::vector<EdgeContact>& crossings) const override;
   bool edgeOnFace(const OpposedPoints& points, bool of_a, const btVector3& normal,
                   std::vector<EdgeContact>& ends) const override;
-  bool overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
-                EdgeContact& edge) const override;
+  FaceEnd overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
+                   EdgeContact& edge) const override;
   EdgeDistances edgeDistances(const OpposedPoints& points, const btVector3& towards) const override;
   std::uint64_t id(std::size_t index) const override;
   Protrusion protrusion(std::size_t index, const btVector3& normal) const override;

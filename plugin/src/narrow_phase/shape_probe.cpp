@@ -1,6 +1,7 @@
 #include "narrow_phase/shape_probe.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/contact_tolerances.hpp"
 #include "narrow_phase/edge_edge.hpp"
@@ -63,6 +64,7 @@ bool ShapeProbe::probeLine(std::size_t index, const btVector3& direction, const 
   points.normal_b = towards_b;
   points.curvature_b = near_place.curvature;
   points.straight_b = near_place.straight;
+  points.along_straight_b = near_place.along_straight;
   return leaves;
 }
 
@@ -122,8 +124,14 @@ Bend ShapeProbe::bendOfFacets(const OpposedPoints& points, const Across& axes) c
 
 SurfaceProbe::Bends ShapeProbe::bends(const OpposedPoints& points, const Across& axes) const {
   if (points.curvature_b == 0) return {bendAt(a_, points.triangle_a, axes), bendOfFacets(points, axes)};
-  const btScalar x = points.straight_b.dot(axes.x), y = points.straight_b.dot(axes.y), c = points.curvature_b;
-  return {bendAt(a_, points.triangle_a, axes), {c * (1 - x * x), -c * x * y, c * (1 - y * y)}};
+  btScalar x = points.straight_b.dot(axes.x), y = points.straight_b.dot(axes.y);
+  const btScalar c = points.curvature_b, less = c - points.along_straight_b, length = std::hypot(x, y);
+  // Straight to the last digit: else there is a top, far away.
+  if (length > kUsableCosine) {
+    x /= length;
+    y /= length;
+  }
+  return {bendAt(a_, points.triangle_a, axes), {c - less * x * x, -less * x * y, c - less * y * y}};
 }
 
 const NearSphere* ShapeProbe::sphereOver(const btVector3& corner, const btVector3& normal) const {
@@ -179,6 +187,7 @@ void ShapeProbe::corners(std::size_t index, const OpposedPoints& points, const b
     corner.points.on_a = found.on_a;
     corner.points.on_b = found.on_b;
     corner.points.normal_b = found.normal_b;
+    corner.is_beside = !layOnRim(a_, vertex, normal, true, corner.points) && !is_peak;
     corners.push_back(corner);
   }
 }
@@ -248,9 +257,9 @@ FaceExtents::EdgeDistances ShapeProbe::edgeDistances(const OpposedPoints& points
   return {SharpEdges(a_, {0, 0, 0}).untilEdge(points.triangle_a, points.on_a, towards), until_b};
 }
 
-bool ShapeProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
-                          EdgeContact& edge) const {
-  if (!of_a) return false;
+EdgeProbe::FaceEnd ShapeProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
+                                        EdgeContact& edge) const {
+  if (!of_a) return FaceEnd::unknown;
   const btScalar far = to_top.length() + btFabs(points.depthAlong(points.normal_a));
   const auto nearest_round = [&](const btVector3& place, RoundPoint& found) {
     SurfaceQueries::Nearest nearest;
@@ -259,6 +268,35 @@ bool ShapeProbe::overEdge(const OpposedPoints& points, bool of_a, const btVector
     return true;
   };
   return lieOverEdge({a_, {0, 0, 0}}, true, std::cref(nearest_round), points, to_top, edge);
+}
+
+void ShapeProbe::lineEnds(const OpposedPoints& points, std::vector<EdgeContact>& ends) const {
+  btVector3 line[2];
+  const btVector3& face = points.normal_a;
+  if (points.curvature_a != 0 || !(points.curvature_b > 0) || !other_.line(a_, world_, -face, line)) return;
+  const btVector3 along = line[1] - line[0], out = along.cross(face).cross(along);
+  // Where it does not all but lie on the face, its deeper end is found as what bends.
+  if (!(btFabs(face.dot(along)) < kSlopeBeside * along.length())) return;
+  NearSphere seen;
+  EdgeContact end{points};
+  if (!other_.nearestTo(a_, world_, (line[0] + line[1]) / 2, seen)) return;
+  end.points.normal_b = out.normalized();
+  end.points.curvature_b = seen.curvature;
+  end.points.straight_b = seen.straight;
+  end.points.along_straight_b = seen.along_straight;
+  const SharpEdges a(a_, {0, 0, 0});
+  for (const int side : {0, 1}) {
+    const auto onFace = [&](const btVector3& place) { return place + face * face.dot(points.on_a - place); };
+    SmoothNormals::Walked walked;
+    if (!a.walk(points.triangle_a, points.on_a, onFace(line[side]) - points.on_a, 1, walked) ||
+        walked.edge != SmoothNormals::kNoEdge)
+      continue;
+    end.id = kCornerId + 1 + 2 * std::uint64_t(side);
+    end.points.on_b = line[side];
+    end.points.on_a = onFace(line[side]);
+    end.points.triangle_a = walked.triangle;
+    ends.push_back(end);
+  }
 }
 
 void ShapeProbe::overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,

@@ -62,8 +62,9 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public FaceExten
                 EdgeContact& crossing) const override;
   bool edgeOnFace(const OpposedPoints& points, bool of_a, const btVector3& normal,
                   std::vector<EdgeContact>& ends) const override;
-  bool overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
-                EdgeContact& edge) const override;
+  FaceEnd overEdge(const OpposedPoints& points, bool of_a, const btVector3& to_top,
+                   EdgeContact& edge) const override;
+  void lineEnds(const OpposedPoints& points, std::vector<EdgeContact>& ends) const override;
   void overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,
                std::vector<EdgeContact>& crossings) const override;
   /// Returns what tells where faces end, or null where B's faces are not known.

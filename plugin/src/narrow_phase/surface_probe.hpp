@@ -25,8 +25,9 @@ struct OpposedPoints {
   btVector3 normal_b{0, 0, 0};  ///< unit, into B: equal to normal_a where flat faces meet
   btScalar curvature_a = 0;     ///< [1/m], positive where A is convex, 0 where it is flat
   btScalar curvature_b = 0;
-  /// Unit, along which B is not curved: of a cylinder. 0 if it is round, or a packing.
+  /// Unit, along which B is curved less: of a cylinder. 0 if it is round, or a packing.
   btVector3 straight_b{0, 0, 0};
+  btScalar along_straight_b = 0;   ///< its curvature along that [1/m]
   std::size_t triangle_a = kNone;  ///< of A's surface
   std::size_t triangle_b = kNone;  ///< of B's, if B is a packing
 

@@ -1,5 +1,7 @@
 #include "narrow_phase/surface_rays.hpp"
 
+#include <algorithm>
+
 #include "common/contact_tolerances.hpp"
 
 namespace innersphere {
@@ -122,6 +124,29 @@ bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVect
   vertices.clear();
   return body.shape().vertexHillClimb().from(triangle, direction * axes, (start * axes) / body.scale(),
                                              distance / body.scale(), vertices);
+}
+
+bool layOnRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
+              OpposedPoints& corner) {
+  const SmoothNormals& normals = body.shape().surfaceQueries().normals();
+  const btMatrix3x3& axes = body.world.getBasis();
+  const btVector3 direction = way * axes;
+  btScalar most = kUsableCosine, bends = 0;
+  for (const std::uint32_t triangle : body.shape().vertexHillClimb().around(vertex)) {
+    if (!(normals.curvature(triangle) > 0)) continue;
+    const auto& corners = body.shape().packing().surface.triangles[triangle];
+    const auto at = std::size_t(std::find(corners.begin(), corners.end(), vertex) - corners.begin());
+    const btVector3& normal = normals.normalAt(triangle, at);
+    const btScalar facing = normal.dot(direction);
+    if (!(facing > most)) continue;
+    most = facing;
+    bends = 0;
+    for (std::size_t k = 0; k < 3; ++k) bends = btMax(bends, normal.distance(normals.normalAt(triangle, k)));
+    (of_a ? corner.normal_a : corner.normal_b) = axes * normal * btScalar(of_a ? 1 : -1);
+    (of_a ? corner.curvature_a : corner.curvature_b) = normals.curvature(triangle) / body.scale();
+    (of_a ? corner.triangle_a : corner.triangle_b) = triangle;
+  }
+  return bends == 0 || 2 - 2 * most < bends * bends;
 }
 
 Bend bendAt(const PlacedPacking& body, std::size_t triangle, const Across& axes) {

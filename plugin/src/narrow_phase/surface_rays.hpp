@@ -54,6 +54,12 @@ bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVect
 /// Returns where a vertex is, moved out along `direction` by the shape's margin.
 btVector3 cornerAt(const PlacedPacking& body, std::uint32_t vertex, const btVector3& direction);
 
+/// Has a corner of A, or else B, belong to the convex curved face in whose rim it lies, as does the end of a
+/// cylinder: that whose normal is nearest to `way` out of the solid, if that is less than 60 degrees off.
+/// Returns false if the rim goes on to corners further out that way.
+bool layOnRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
+              OpposedPoints& corner);
+
 /// Returns how the curved surface of a solid bends at a triangle.
 Bend bendAt(const PlacedPacking& body, std::size_t triangle, const Across& axes);
 

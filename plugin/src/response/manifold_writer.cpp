@@ -1,6 +1,7 @@
 #include "response/manifold_writer.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
@@ -42,6 +43,7 @@ struct NewPoint {
   btScalar curvature = 0;      ///< mean of both surfaces together [1/m]
   btScalar ahead = 0;          ///< how much further on bodies that rock touch when the step ends [m]
   btScalar nearer = 0;         ///< how much nearer the bodies come in the step as a hollow bends [m]
+  btScalar turns_away = 0;     ///< and how much less than by their speed, as they turn elsewhere [m]
   bool is_later = false;       ///< bodies will have bounced from the top of its hill when they come to it
   PointBends bends;
 };
@@ -161,11 +163,8 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   }
   // The solver lets a gap close at a constant speed; points beside the one that a body rolls on turn away
   // instead, and would brake it.
-  if (depth < 0 && !solver.substeps) {
-    const btScalar turning = motion.approachByTurningAt(from.on_b, from.normal);
-    depth = btMin(btScalar(0),
-                  depth + (from.nearer > 0 ? from.nearer : turning * law.time_step * law.time_step / 2));
-  }
+  if (depth < 0 && !solver.substeps)
+    depth = btMin(btScalar(0), depth + (from.nearer > 0 ? from.nearer : -from.turns_away));
   // A spring gives way by a part of the speed that it stops: too far for what is thin.
   if (motion.isSwept() && meets && approach * law.time_step > depth) spring = false;
   // What the bend of a hollow would drive in within the step is to leave as fast: bodies follow it, neither
@@ -214,12 +213,11 @@ bool isTopOf(const ContactPoint& top, const ContactPoint& point, btScalar separa
 }
 
 /// A point above a slope whose hilltop is among the points. A SubstepSolver has the hill go along with the
-/// bodies, so that its top meets the other body before the slope does. A point that is all but at the top is
-/// one: of a line between bodies, both ends are needed. Tops of other hills do not count: they may touch
-/// while this one still comes down.
+/// bodies, so that its top meets the other body before the slope does. Tops of other hills do not count: they
+/// may touch while this one still comes down.
 bool leavesItToTop(const ContactPatch& patch, int index, btScalar separation) {
   const ContactPoint& point = patch.points[index];
-  if (point.depth >= 0 || !(point.to_top.length() > kSameTop * separation)) return false;
+  if (point.depth >= 0 || point.to_top.isZero()) return false;
   for (int i = 0; i < patch.count; ++i) {
     const ContactPoint& other = patch.points[i];
     if (other.depth > point.depth + point.below_top / 2 && isTopOf(other, point, separation)) return true;
@@ -227,12 +225,16 @@ bool leavesItToTop(const ContactPatch& patch, int index, btScalar separation) {
   return false;
 }
 
+/// The acceleration with which two curves come nearer, beside that of the bodies' points: they bend by k and
+/// l, slide by v and turn by u and w.
+btScalar byBending(btScalar k, btScalar l, btScalar v, btScalar u, btScalar w) {
+  return ((u - w) * (u - w) + 2 * v * (k * w + l * u) - k * l * v * v) / (k + l);
+}
+
 /// How much nearer bodies come to each other in the step than the plane in which they touch says, where one
 /// lies in a hollow of the other [m]: as that bends, and both turn. That is the second order of the gap
-/// between two curves. Where they bend by k and l, slide by v and turn by u and w, its acceleration is that
-/// of the bodies' points and (k l v^2 - 2 v (k w + l u) - (u - w)^2) / (k + l). Not where they touch only
-/// later, further on, nor where k + l is not known, nor where what is round is all but flat for a body of
-/// this radius [m].
+/// between two curves. Not where they touch only later, further on, nor where the sum of both bends is not
+/// known, nor where what is round is all but flat for a body of this radius [m].
 btScalar nearerByBending(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
                          btScalar time_step, btScalar size) {
   const bool in_b = point.bend_b.isHollow();
@@ -254,11 +256,38 @@ btScalar nearerByBending(const ContactPoint& point, const btVector3& place, cons
     const btScalar left = btMin(angle, kSteepSlope) + hollow * btFabs(point.to_top.dot(axis));
     if (!(left > 0)) continue;
     const btScalar share = left / angle;
-    acceleration += share * share * ((u - w) * (u - w) + 2 * v * (k * w + l * u) - k * l * v * v) / (k + l);
+    acceleration += share * share * byBending(k, l, v, u, w);
   }
   if (acceleration == 0) return 0;
   acceleration += motion.approachByTurningAt(place, point.normal);
   return acceleration * time_step * time_step / 2;
+}
+
+/// How much less near bodies come in the step than by their speeds, as they turn [m]: by as much as their
+/// points turn away. At the top of a hill other points take their place, see above: none of it is left where
+/// what is round rolls on a plane. Not where bodies are all but flat together.
+btScalar turnsAway(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
+                   btScalar time_step, btScalar separation, btScalar size) {
+  btScalar acceleration = motion.approachByTurningAt(place, point.normal), beyond = 0;
+  if (!(point.to_top.length() > kSameTop * separation)) {
+    const Across axes(point.bend_x, point.normal.cross(point.bend_x));
+    const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
+    const btVector3 slides = motion.velocityAt(place), turns_a = motion.a().spin.cross(point.normal),
+                    turns_b = motion.b().spin.cross(point.normal);
+    for (int i = 0; i < 2; ++i) {
+      const btVector3& axis = hill.axis(i);
+      const btScalar k = point.bend_a.turn(axis, axes).dot(axis), l = point.bend_b.turn(axis, axes).dot(axis);
+      if (k < 0 || l < 0 || !hill.hasTop(i) || !(hill.fall(i) * size > 1)) continue;
+      const btScalar v = slides.dot(axis), u = turns_a.dot(axis), w = turns_b.dot(axis);
+      acceleration += byBending(k, l, v, u, w);
+      // Of circles, what the second order leaves out. Flat ones have none.
+      if (!(2 * size * btMin(k, l) > 1)) continue;
+      const btScalar radii = 1 / k + 1 / l, aside = (v - u / k - w / l) * time_step;
+      const btScalar left = radii - point.depth - slides.dot(point.normal) * time_step;
+      if (left > 0) beyond += aside * aside * (1 / (left + std::hypot(left, aside)) - 1 / (2 * radii));
+    }
+  }
+  return beyond - acceleration * time_step * time_step / 2;
 }
 
 /// How bodies bend at a point, in the axes in which a SubstepSolver is told so.
@@ -319,6 +348,8 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
       point.bends = bendsAcross(patch.points[i]);
     } else {
       point.nearer = nearerByBending(patch.points[i], point.on_b, motion, point.law.time_step, law.size());
+      point.turns_away = turnsAway(patch.points[i], point.on_b, motion, point.law.time_step,
+                                   manifold.getContactBreakingThreshold(), law.size());
       point.is_later = meetsAfterTop(patch.points[i], point.on_b, motion, first, law.size());
     }
     point.aside = patch.points[i].aside;

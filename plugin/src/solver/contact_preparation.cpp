@@ -17,6 +17,8 @@ namespace {
 constexpr btScalar kFastestPush = btScalar(0.5), kLeavingRate = 3;
 /// Angle, 2 degrees: triangles tell no better than that in which directions a surface bends most and least.
 constexpr btScalar kAligned = btScalar(0.035);
+/// In inverse sizes: what bends more is an edge. More is lost to rounding: way times bend is an angle.
+constexpr btScalar kSharpest = 1000;
 /// [rad]: a direction that is closer to one in which a body is held may be that one, for rounding.
 constexpr btScalar kAcross = btScalar(1e-5);
 
@@ -239,7 +241,15 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
   lanes.gap_0[lane] = lanes.gap[lane];
   lanes.pivot_a.set(lane, lanes.arm_a.get(lane));
   lanes.pivot_b.set(lane, lanes.arm_b.get(lane));
-  const PointBends bends = bendsOf(*source.point);
+  const btScalar size_a = bodies.size(pair.a), size_b = bodies.size(pair.b);
+  const btScalar size = size_b > 0 ? std::min(size_a, size_b) : size_a;
+  PointBends bends = bendsOf(*source.point);
+  for (Bend* bend : {&bends.a, &bends.b}) {
+    const btScalar most = btFabs(bend->xx) + btFabs(bend->yy);
+    if (!(most * size > kSharpest)) continue;
+    const btScalar share = kSharpest / (most * size);
+    *bend = {bend->xx * share, bend->xy * share, bend->yy * share};
+  }
   const btScalar both = btFabs(bends.a.xx) + btFabs(bends.a.yy) + btFabs(bends.b.xx) + btFabs(bends.b.yy);
   if (both == 0) return;
   const Across told(-source.point->m_normalWorldOnB);  // out of the first body of the manifold
@@ -253,8 +263,6 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
   };
   Bend a = seenAhead(source.flipped ? bends.b : bends.a), b = seenAhead(source.flipped ? bends.a : bends.b);
   Hill hill(a, b, -source.point->getDistance(), ahead);
-  const btScalar size_a = bodies.size(pair.a), size_b = bodies.size(pair.b);
-  const btScalar size = size_b > 0 ? std::min(size_a, size_b) : size_a;
   const auto rolls = [&](int i) { return hill.hasTop(i) && hill.fall(i) * size > 1; };
   // What is left of curvatures that cancel has axes of rounding: each surface has better ones.
   const bool any = rolls(0) || rolls(1);
@@ -271,14 +279,14 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
     else
       axis[i].setZero();
   }
-  a = a.along(axis[0], axis[1], ahead);
-  b = b.along(axis[0], axis[1], ahead);
-  const Across goes(axis[0], axis[1]);
+  // Also of a hollow on a flat face, or its edge: else it would be lifted as it turns.
   const auto radius = [&](const Bend& bend, btScalar size_of_it) {
-    const btScalar curvature = bend.turn(ahead.x, goes).dot(ahead.x);
+    const btScalar curvature = bend.turn(ahead.x, ahead).dot(ahead.x);
     return btFabs(curvature) * size_of_it > 1 ? 1 / curvature : btScalar(0);
   };
   const btScalar radius_a = radius(a, size_a), radius_b = radius(b, size_b > 0 ? size_b : BT_LARGE_FLOAT);
+  a = a.along(axis[0], axis[1], ahead);
+  b = b.along(axis[0], axis[1], ahead);
   lanes.axis_1.set(lane, axis[0]);
   lanes.axis_2.set(lane, axis[1]);
   lanes.fall_1[lane] = fall[0];

@@ -188,10 +188,16 @@ void ContactRows::roll(PointLanes& point, const LaneBodies& a, const LaneBodies&
   // By how much A's normal differs there.
   const Lanes off_1 = au_1 + ta_1 - point.a_11 * x_1 - point.a_12 * x_2 - n_1,
               off_2 = au_2 + ta_2 - point.a_12 * x_1 - point.a_22 * x_2 - n_2;
-  point.gap += half * ((ta_1 * ta_1 + ta_2 * ta_2) * ra + (tb_1 * tb_1 + tb_2 * tb_2) * rb +
-                       (au_1 + ta_1 + ta_1) * u_1 + (au_2 + ta_2 + ta_2) * u_2 - c_1 * x_1 - c_2 * x_2 +
-                       off_1 * still_1 + off_2 * still_2);
-  const Lanes3 turned = point.normal_0 + axis_1 * n_1 + axis_2 * n_2;
+  const Lanes grows = half * ((ta_1 * ta_1 + ta_2 * ta_2) * ra + (tb_1 * tb_1 + tb_2 * tb_2) * rb +
+                              (au_1 + ta_1 + ta_1) * u_1 + (au_2 + ta_2 + ta_2) * u_2 - c_1 * x_1 -
+                              c_2 * x_2 + off_1 * still_1 + off_2 * still_2);
+  const Lanes way_1 = dot(way, axis_1), way_2 = dot(way, axis_2), aside = way_1 * way_1 + way_2 * way_2,
+              left = aside + (grows + grows) * (point.gap - point.gap_0);
+  const auto exact = (grows > Lanes{}) & (left > inAll(btScalar(0.1)) * aside);
+  point.gap +=
+      exact ? (grows + grows) * aside / (left + root(left * left + inAll(4) * grows * grows * aside)) : grows;
+  const Lanes sooner = exact ? aside / left : inAll(1);
+  const Lanes3 turned = point.normal_0 + axis_1 * n_1 * sooner + axis_2 * n_2 * sooner;
   const Lanes length = root(dot(turned, turned));
   point.normal = turned * (length > Lanes{} ? inAll(1) / length : Lanes{});
   point.side_1 = point.side_1 - point.normal * dot(point.side_1, point.normal);

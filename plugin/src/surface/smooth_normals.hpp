@@ -40,6 +40,10 @@ class SmoothNormals {
     btVector3 normal;  ///< unit
     btScalar bulge;    ///< how far the curved surface stands out of the triangle there [m]
   };
+  /// Returns the normal of the curved surface at a corner of a triangle.
+  const btVector3& normalAt(std::size_t triangle, std::size_t corner) const {
+    return facets_[triangle].normals[corner];
+  }
   /// Returns the curved surface at a crossing.
   Place at(std::size_t triangle, const Crossing& crossing) const;
   /// Returns by how much the normal turns along a way of the length 1 on a triangle [1/m].

@@ -12,18 +12,14 @@ constexpr btScalar kLevelEdge = btScalar(5e-3);
 }  // namespace
 
 VertexHillClimb::VertexHillClimb(const Surface& surface)
-    : surface_(surface), first_(surface.vertices.size() + 1), neighbours_(6 * surface.triangles.size()) {
-  // Each corner of a triangle has two neighbours in it; inner edges come twice, which does not matter.
+    : surface_(surface), first_(surface.vertices.size() + 1), around_(3 * surface.triangles.size()) {
   for (const auto& triangle : surface.triangles) {
-    for (std::uint32_t v : triangle) first_[v + 1] += 2;
+    for (std::uint32_t v : triangle) ++first_[v + 1];
   }
   for (std::size_t v = 0; v < surface.vertices.size(); ++v) first_[v + 1] += first_[v];
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (const auto& triangle : surface.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      neighbours_[next[triangle[k]]++] = triangle[(k + 1) % 3];
-      neighbours_[next[triangle[k]]++] = triangle[(k + 2) % 3];
-    }
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    for (std::uint32_t v : surface.triangles[t]) around_[next[v]++] = t;
   }
 }
 
@@ -41,18 +37,25 @@ bool VertexHillClimb::from(std::size_t triangle, const btVector3& direction, con
   };
   for (std::uint32_t v : surface_.triangles[triangle]) climb(v);
   if (top == kNone) return false;
+  // Inner edges come twice, which does not matter.
+  const auto forNeighbours = [&](std::uint32_t v, const auto& look) {
+    for (const std::uint32_t t : around(v)) {
+      for (const std::uint32_t other : surface_.triangles[t])
+        if (other != v) look(other);
+    }
+  };
   for (std::uint32_t before = kNone; before != top;) {
     before = top;
-    for (std::uint32_t i = first_[before]; i < first_[before + 1]; ++i) climb(neighbours_[i]);
+    forNeighbours(before, climb);
   }
   vertices.push_back(top);
   bool is_peak = true;
-  for (std::uint32_t i = first_[top]; i < first_[top + 1]; ++i) {
-    const btVector3 edge = at(neighbours_[i]) - at(top);
+  forNeighbours(top, [&](std::uint32_t v) {
+    const btVector3 edge = at(v) - at(top);
     const btScalar rise = edge.dot(direction), level = kLevelEdge * edge.length();
-    if (btFabs(rise) < level) vertices.push_back(neighbours_[i]);
+    if (btFabs(rise) < level) vertices.push_back(v);
     is_peak = is_peak && !(rise > level);
-  }
+  });
   return is_peak;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <LinearMath/btVector3.h>
@@ -25,10 +26,15 @@ class VertexHillClimb {
   bool from(std::size_t triangle, const btVector3& direction, const btVector3& start, btScalar max_distance,
             std::vector<std::uint32_t>& vertices) const;
 
+  /// Returns the triangles around a vertex.
+  std::span<const std::uint32_t> around(std::uint32_t vertex) const {
+    return {around_.data() + first_[vertex], around_.data() + first_[vertex + 1]};
+  }
+
  private:
   const Surface& surface_;
-  std::vector<std::uint32_t> first_;  ///< neighbours of vertex v: neighbours_[first_[v]] to first_[v + 1]
-  std::vector<std::uint32_t> neighbours_;
+  std::vector<std::uint32_t> first_;  ///< triangles around vertex v: around_[first_[v]] to first_[v + 1]
+  std::vector<std::uint32_t> around_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION

@@ -270,6 +270,77 @@ TEST_P(Notch, SwingsOnAKnifeThatIsAHull) {
   swing(0.08, world.add(hull, 0, btVector3(0, 0, 0)));
 }
 
+/// A ring that carries a weight swings on the two upper edges of a square bar, without friction.
+class Ring : public Edges {
+ protected:
+  static constexpr double kBore = 0.12, kHalfBar = 0.05, kLong = 0.6, kTilt = 0.3;
+  static constexpr double kDown = 0.4, kInertia = 0.05;  // of the weight, below the middle; of 1 kg
+
+  static Mesh bar() {
+    return barMesh({{-kHalfBar, -2 * kHalfBar}, {kHalfBar, -2 * kHalfBar}, {kHalfBar, 0}, {-kHalfBar, 0}},
+                   kLong);
+  }
+  void swing(btRigidBody& bar);
+};
+
+// It turns about the middle of its bore, which stays where it is: a pendulum of the length of the weight.
+void Ring::swing(btRigidBody& bar) {
+  bar.setFriction(0);
+  constexpr double kWide = 0.06, kOuter = 0.2;
+  const Mesh mesh = ringMesh({{kBore, -kWide}, {kOuter, -kWide}, {kOuter, kWide}, {kBore, kWide}}, 96);
+  const auto ring = makePackedShape(*makeSolid(mesh, "ring"), 1000);
+  const btTransform upright(btQuaternion(btVector3(1, 0, 0), SIMD_HALF_PI), btVector3(0, 0, btScalar(kDown)));
+  const auto carrier = std::make_shared<btCompoundShape>();
+  carrier->addChildShape(ring->bodyTransform(upright), ring.get());
+  btRigidBody& body = world.add(carrier, 1, btVector3(0, 0, 0));
+  body.setMassProps(1, btVector3(1, 1, 1) * btScalar(kInertia));
+  body.updateInertiaTensor();
+  body.setFriction(0);
+  body.setActivationState(DISABLE_DEACTIVATION);
+  const btQuaternion turn(btVector3(0, 1, 0), btScalar(kTilt));
+  const btVector3 middle(0, 0, btScalar(-std::sqrt(kBore * kBore - kHalfBar * kHalfBar)));
+  const btVector3 weight(0, 0, btScalar(-kDown));
+  body.setWorldTransform(btTransform(turn, middle + quatRotate(turn, weight)));
+  body.setInterpolationWorldTransform(body.getWorldTransform());
+
+  const double step = 1 / std::get<1>(GetParam());
+  double before = kTilt, crossed = 0, widest = 0;
+  int crossings = 0;
+  for (double time = step; crossings < 8 && time < 10; time += step) {
+    run(step);
+    const double tilt = std::asin(double(body.getWorldTransform().getBasis()[0][2]));
+    if ((tilt > 0) != (before > 0)) {
+      ++crossings;
+      crossed = time - step * tilt / (tilt - before);
+      widest = 0;
+    }
+    widest = std::max(widest, std::fabs(tilt));
+    before = tilt;
+    const btVector3 off = body.getWorldTransform()(-weight) - middle;
+    EXPECT_LT(std::hypot(double(off.x()), double(off.z())), 1e-3);
+  }
+  EXPECT_EQ(crossings, 8);
+  const double quarter =
+      M_PI / 2 * std::sqrt((kInertia + kDown * kDown) / (kGravity * kDown)) * (1 + kTilt * kTilt / 16);
+  EXPECT_NEAR(crossed, 15 * quarter, 0.005 * 15 * quarter);
+  run(quarter);
+  widest = std::fabs(std::asin(double(body.getWorldTransform().getBasis()[0][2])));
+  EXPECT_NEAR(widest, kTilt, 0.02 * kTilt);
+  world.world.removeRigidBody(&body);
+}
+
+TEST_P(Ring, SwingsOnAPackedBar) {
+  const auto shape = makePackedShape(*makeSolid(bar(), "bar"), 256);
+  btRigidBody& body = world.add(shape, 0, btVector3(0, 0, 0));
+  body.setWorldTransform(shape->bodyTransform(btTransform::getIdentity()));
+  swing(body);
+}
+TEST_P(Ring, SwingsOnABarOfTriangles) {
+  btTriangleMesh triangles;
+  addTriangles(bar(), triangles);
+  swing(world.add(std::make_shared<btBvhTriangleMeshShape>(&triangles, true), 0, btVector3(0, 0, 0)));
+}
+
 std::string nameOf(const testing::TestParamInfo<Edges::ParamType>& info) {
   return std::string(std::get<0>(info.param) ? "Substeps" : "Bullet") +
          std::to_string(int(std::get<1>(info.param)));
@@ -277,6 +348,7 @@ std::string nameOf(const testing::TestParamInfo<Edges::ParamType>& info) {
 const auto kAll = testing::Combine(testing::Bool(), testing::Values(60.0, 240.0));
 INSTANTIATE_TEST_SUITE_P(Of, Edges, kAll, nameOf);
 INSTANTIATE_TEST_SUITE_P(Of, Notch, kAll, nameOf);
+INSTANTIATE_TEST_SUITE_P(Of, Ring, kAll, nameOf);
 
 /// All points of contact of two bodies.
 struct AllPoints : btCollisionWorld::ContactResultCallback {

@@ -117,7 +117,7 @@ TEST(Passing, ABoxSlidesOverAHole) {
   constexpr double kHole = 0.08, kThick = 0.1, kHalf = 0.05, kSpeed = 1.2;
   const auto box = makePackedShape(*makeBox({0.3, 0.3, 2 * kHalf}), 256);
   for (const int sides : {4, 8, 16}) {
-    const Mesh mesh = turnedMesh({{kHole, -kThick}, {1, -kThick}, {1, 0}, {kHole, 0}}, sides);
+    const Mesh mesh = ringMesh({{kHole, -kThick}, {1, -kThick}, {1, 0}, {kHole, 0}}, std::uint32_t(sides));
     const auto plate = makePackedShape(*makeSolid(mesh, "plate"), 256);
     for (const bool substeps : {false, true}) {
       for (const double rate : {60.0, 240.0}) {
@@ -139,7 +139,7 @@ TEST(Passing, ABoxSlidesOverAHole) {
 TEST(Passing, ABodySlidesOverAGap) {
   constexpr btScalar kGap = btScalar(0.08), kHalf = btScalar(0.05), kSpeed = btScalar(1.2);
   const btVector3 slab(1, 1, kHalf);
-  const Mesh bored = turnedMesh({{0.08, -0.05}, {0.15, -0.05}, {0.15, 0.05}, {0.08, 0.05}}, 6);
+  const Mesh bored = ringMesh({{0.08, -0.05}, {0.15, -0.05}, {0.15, 0.05}, {0.08, 0.05}}, 6);
   const auto ring = makePackedShape(*makeSolid(bored, "ring"), 256);
   const auto box = makePackedShape(*makeBox({0.3, 0.3, 0.1}), 256);
   const auto packed_slab = makePackedShape(*makeBox({2, 2, 0.1}), 256);

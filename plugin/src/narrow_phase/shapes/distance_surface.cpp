@@ -51,12 +51,17 @@ bool DistanceSurface::updateNearSphere(const PlacedPacking& body, const btTransf
   near_sphere.normal = world.getBasis() * found.normal;
   near_sphere.curvature = found.curvature;
   near_sphere.straight = world.getBasis() * found.straight;
+  near_sphere.along_straight = found.along_straight;
   near_sphere.aside.setZero();
   if (found.edged != nullptr && found.distance > 0) {
     const btScalar bend = btMax(found.curvature, found.edge_curvature);
     layFaceOn(body, bend, near_sphere, [&](const btVector3& edge, const btVector3& out, btScalar tolerance) {
       const btTransform from_world = world.inverse();
       const btVector3 direction = from_world.getBasis() * out;
+      // Of a rim, which goes on below, only the lowest place bears.
+      if (btFabs(direction.dot(found.straight)) > found.along_straight * tolerance &&
+          found.along_straight > 0)
+        return false;
       const btVector3 outermost = found.edged->localGetSupportingVertex(direction);
       return (outermost - from_world(edge + body.origin())).dot(direction) < tolerance;
     });
@@ -81,6 +86,7 @@ bool DistanceSurface::nearestTo(const PlacedPacking& body, const btTransform& wo
   // Only surfaces that bend are followed beside where they were met first.
   near_sphere.curvature = btMax(found.curvature, btMin(found.edge_curvature, sharpest(body, near_sphere)));
   near_sphere.straight = world.getBasis() * found.straight;
+  near_sphere.along_straight = found.along_straight;
   near_sphere.aside.setZero();
   return true;
 }
@@ -103,6 +109,13 @@ btScalar DistanceSurface::meets(const PlacedPacking& body, const btTransform& wo
     if (part > 1) return 2;
   }
   return -1;
+}
+
+bool DistanceSurface::line(const PlacedPacking& body, const btTransform& world, const btVector3& direction,
+                           btVector3 (&ends)[2]) {
+  if (!lineTowards(direction * world.getBasis(), ends)) return false;
+  for (btVector3& end : ends) end = world * end - body.origin();
+  return true;
 }
 
 bool DistanceSurface::facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) {

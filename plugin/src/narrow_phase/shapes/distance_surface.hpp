@@ -23,6 +23,8 @@ class DistanceSurface : public ShapeSurface {
   btScalar meets(const PlacedPacking& body, const btTransform& world, const btVector3& from,
                  const btVector3& way) final;
   bool facets(const PlacedPacking& body, const btTransform& world, SharpEdges& solid) final;
+  bool line(const PlacedPacking& body, const btTransform& world, const btVector3& direction,
+            btVector3 (&ends)[2]) final;
 
  protected:
   struct Nearest {
@@ -30,6 +32,7 @@ class DistanceSurface : public ShapeSurface {
     btVector3 normal;             ///< unit, outwards
     btScalar curvature = 0;       ///< [1/m]
     btVector3 straight{0, 0, 0};  ///< see NearSphere
+    btScalar along_straight = 0;
     /// The shape, if it may have an edge or a corner there.
     const btConvexShape* edged = nullptr;
     btScalar edge_curvature = 0;  ///< of that edge [1/m]; 0 if it is a face, or not known
@@ -41,6 +44,9 @@ class DistanceSurface : public ShapeSurface {
   virtual btScalar lowerBound(const btVector3& p) const;
   /// Returns true if it is known to be convex.
   virtual bool isConvex() const { return true; }
+  /// Finds the ends of the straight line on it that is furthest out along `direction`, in the frame of the
+  /// shape. Returns false if there is none.
+  virtual bool lineTowards(const btVector3&, btVector3 (&)[2]) const { return false; }
   /// Returns the shape as a polyhedron, or null if it is none.
   virtual const btPolyhedralConvexShape* polyhedron() const { return nullptr; }
   /// Returns true if the bounding box of a shape is what it was at the last call. What moves less than the

@@ -73,6 +73,15 @@ class CapsuleSurface : public PrimitiveSurface<btCapsuleShape> {
     nearest.curvature = 1 / shape_.getRadius();
     return true;
   }
+
+  bool lineTowards(const btVector3& direction, btVector3 (&ends)[2]) const override {
+    const int axis = shape_.getUpAxis();
+    for (const int end : {0, 1}) {
+      ends[end] = direction * shape_.getRadius();
+      ends[end][axis] += shape_.getHalfHeight() * btScalar(end == 0 ? -1 : 1);
+    }
+    return true;
+  }
 };
 
 class BoxSurface : public PrimitiveSurface<btBoxShape> {
@@ -123,6 +132,12 @@ struct Profile {
     along[axis] = up;
     return outwards * out + along;
   }
+  /// Unit, across that half plane.
+  btVector3 around(int axis) const {
+    btVector3 along(0, 0, 0);
+    along[axis] = 1;
+    return along.cross(outwards);
+  }
   btScalar radius;
   btScalar height;
   btVector3 outwards;  ///< unit, from the axis
@@ -146,6 +161,8 @@ class CylinderSurface : public PrimitiveSurface<btCylinderShape> {
       nearest.distance = length - margin;
       nearest.normal = at.direction(out / length, side * up / length, axis);
       nearest.curvature = margin > 0 ? 1 / margin : btScalar(0);
+      nearest.straight = at.around(axis);
+      nearest.along_straight = out / (length * (radius - margin) + margin * out);
       nearest.edged = &shape_;
     } else if (out > up) {
       nearest.distance = out - margin;
@@ -156,6 +173,15 @@ class CylinderSurface : public PrimitiveSurface<btCylinderShape> {
       nearest.distance = up - margin;
       nearest.normal = at.direction(0, side, axis);
     }
+    return true;
+  }
+
+  bool lineTowards(const btVector3& direction, btVector3 (&ends)[2]) const override {
+    const int axis = shape_.getUpAxis();
+    const Profile towards(direction, axis);
+    const btScalar half = shape_.getHalfExtentsWithoutMargin()[axis];
+    for (const int end : {0, 1})
+      ends[end] = towards.direction(shape_.getRadius(), end == 0 ? -half : half, axis);
     return true;
   }
 };
@@ -177,20 +203,24 @@ class ConeSurface : public PrimitiveSurface<btConeShape> {
     const btScalar out = at.radius - radius, up = at.height + height / 2;
     const btScalar along = out * -slope_up + up * slope_out;
     const btScalar above = out * slope_out + up * slope_up;
-    const auto fromPoint = [&](btScalar x, btScalar y) {
+    const auto fromPoint = [&](btScalar x, btScalar y, btScalar from_axis) {
       const btScalar length = btSqrt(x * x + y * y);
       nearest.distance = length - margin;
       nearest.normal = length > 0 ? at.direction(x / length, y / length, axis) : at.outwards;
       nearest.curvature = margin > 0 ? 1 / margin : btScalar(0);
+      if (from_axis > 0) {
+        nearest.straight = at.around(axis);
+        nearest.along_straight = x / (length * from_axis + margin * x);
+      }
       nearest.edged = &shape_;
     };
     if (-up >= above && out <= 0) {
       nearest.distance = -up - margin;
       nearest.normal = at.direction(0, -1, axis);
     } else if (along > slant) {
-      fromPoint(at.radius, at.height - height / 2);
+      fromPoint(at.radius, at.height - height / 2, 0);
     } else if (along < 0) {
-      fromPoint(out, up);
+      fromPoint(out, up, radius);
     } else {
       nearest.distance = above - margin;
       nearest.normal = at.direction(slope_out, slope_up, axis);
@@ -199,6 +229,17 @@ class ConeSurface : public PrimitiveSurface<btConeShape> {
       const btScalar nearest_radius = radius - along * slope_up + margin * slope_out;
       nearest.curvature = nearest_radius > 0 ? slope_out / nearest_radius : btScalar(0);
     }
+    return true;
+  }
+
+  bool lineTowards(const btVector3& direction, btVector3 (&ends)[2]) const override {
+    const int axis = shape_.getConeUpIndex();
+    const btScalar margin = shape_.getMargin(), radius = shape_.getRadius(), height = shape_.getHeight();
+    const btScalar slant = btSqrt(radius * radius + height * height);
+    const Profile towards(direction, axis);
+    const btVector3 out = towards.direction(height / slant, radius / slant, axis) * margin;
+    ends[0] = towards.direction(radius, -height / 2, axis) + out;
+    ends[1] = towards.direction(0, height / 2, axis) + out;
     return true;
   }
 };

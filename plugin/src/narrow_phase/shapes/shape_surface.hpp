@@ -17,7 +17,8 @@ struct NearSphere {
   btScalar distance = 0;        ///< of its centre from the other surface [m], negative inside the other solid
   btVector3 normal{0, 0, 0};    ///< unit, out of the other solid at the nearest point; axes of the world
   btScalar curvature = 0;       ///< of the other surface there [1/m]; 0 if flat, or not known
-  btVector3 straight{0, 0, 0};  ///< unit, along which it is not curved: of a cylinder; 0 if it is round
+  btVector3 straight{0, 0, 0};  ///< unit, along which it is curved less: of a cylinder; 0 if it is round
+  btScalar along_straight = 0;  ///< its curvature along that [1/m]: 0, but for a rim
   /// The way from the line through its centre along the normal to the nearest point: not zero where that lies
   /// on an edge of the other surface that a face of the solid lies on. Then the normal is that of the face
   /// [m].
@@ -48,6 +49,12 @@ class ShapeSurface {
   /// Renews the distances of near spheres for where the bodies are now; they may be further away by then.
   /// Returns false if that cannot be done.
   virtual bool updateNearSpheres(const PlacedPacking&, const btTransform&, std::vector<NearSphere>&) {
+    return false;
+  }
+
+  /// Finds the straight line on a surface that bends one way only, as that of a cylinder, which is furthest
+  /// out along `direction` (unit): its ends, relative to body.origin(). Returns false if there is none.
+  virtual bool line(const PlacedPacking&, const btTransform&, const btVector3&, btVector3 (&)[2]) {
     return false;
   }
 

@@ -17,12 +17,16 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include "common/contact_tolerances.hpp"
+#include "narrow_phase/hill.hpp"
 #include "narrow_phase/shapes/distance_surface.hpp"
 #include "narrow_phase/shapes/face_on_edge.hpp"
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
+
+/// In its length: this far beside a line others are asked for what it meets.
+constexpr btScalar kBesideLine = btScalar(1e-4);
 
 /// Nearest point of one triangle to the centre of one sphere, lengths in the packing's frame.
 struct TrianglePoint {
@@ -150,10 +154,17 @@ class TriangleSurface : public ShapeSurface {
 
   bool depthOf(const PlacedPacking& body, const btTransform& world, const btVector3& place,
                const btVector3& out, btScalar most, btScalar& depth) override {
-    const btVector3 way = out * world.getBasis() * most;
-    const FirstTriangle first = firstOn(world.invXform(body.origin() + place), way);
-    depth = first.m_hitFraction * most;
-    return first.normal.dot(way) * btScalar(side_) > 0;
+    const btVector3 way = out * world.getBasis() * most, from = world.invXform(body.origin() + place);
+    const auto meetsFromBehind = [&](const btVector3& aside) {
+      const FirstTriangle first = firstOn(from + aside, way);
+      depth = first.m_hitFraction * most;
+      return first.normal.dot(way) * btScalar(side_) > 0;
+    };
+    // A line that comes from outside may miss the front of an edge by rounding, but not all beside it do.
+    const Across axes(way.normalized());
+    for (const btVector3& side : {axes.x, -axes.x, axes.y, -axes.y})
+      if (!meetsFromBehind(side * (kBesideLine * most))) return false;
+    return meetsFromBehind(btVector3(0, 0, 0));
   }
 
   btScalar meets(const PlacedPacking& body, const btTransform& world, const btVector3& from,
