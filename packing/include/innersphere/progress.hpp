@@ -5,7 +5,7 @@
 
 namespace innersphere {
 
-/// This function is called now and then from the thread that started the work, with the stage and the
+/// This function is called from the thread that started the work, some times a second, with the stage and the
 /// finished fraction of it, 0 to 1. Return false to cancel: the work then throws Error with
 /// ErrorCode::cancelled and leaves nothing behind.
 using Progress = std::function<bool(const char* stage, double fraction)>;

@@ -92,6 +92,7 @@ void CellSearch::gather(std::span<const Cell> cells) {
 }
 
 void CellSearch::visit(const Cell& cell, std::size_t begin, std::size_t end, std::size_t parent) {
+  container_.goOn();
   const double half = cell.side() / 2;
   const Cube cube{cell.centre(), half};
   Cell now = cell;

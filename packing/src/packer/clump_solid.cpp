@@ -15,6 +15,7 @@
 #include "innersphere/error.hpp"
 #include "packer/container.hpp"
 #include "packer/pattern_search.hpp"
+#include "packer/reporter.hpp"
 #include "packer/surface_solid.hpp"
 #include "packer/union_lattice.hpp"
 #include "packer/union_measures.hpp"
@@ -175,12 +176,10 @@ std::string commandLine(const ClumpOptions& options) {
 
 Covering clumpSolid(const Solid& solid, const ClumpOptions& options, const Progress& progress) {
   checkOptions(options);
-  const auto report = [&](double fraction) {
-    if (progress && !progress("clump", fraction))
-      throw Error(ErrorCode::cancelled, "the clump of '" + solid.name() + "' was cancelled");
-  };
+  const Reporter reporter(progress, "the clump of '" + solid.name() + "'");
+  const auto report = [&](double fraction) { reporter("clump", fraction); };
   report(0);
-  const Container container(solid);
+  const Container container(solid, &reporter);
   const double volume = solid.massProperties().volume / std::pow(container.side(), 3);
   if (!(volume > 0))
     throw Error(ErrorCode::bad_argument, "the solid's mass properties must have a volume greater than 0");

@@ -18,7 +18,8 @@ constexpr double kFarthest = 1e8;
 
 }  // namespace
 
-Container::Container(const Solid& solid) : solid_(solid), mesh_(dynamic_cast<const MeshSolid*>(&solid)) {
+Container::Container(const Solid& solid, const Reporter* reporter)
+    : solid_(solid), reporter_(reporter), mesh_(dynamic_cast<const MeshSolid*>(&solid)) {
   const Bounds box = solid.bounds();
   double longest = 0, farthest = 0;
   for (int k = 0; k < 3; ++k) {
@@ -69,6 +70,7 @@ Point Container::fromWorld(const Vec3d& p) const {
 }
 
 Container::Nearest Container::closest(const Point& x, double cutoff) const {
+  goOn();
   ClosestTriangle::Nearest hit;
   if (mesh_) {
     hit = mesh_->closestTriangle(toWorld(x), cutoff * side_);

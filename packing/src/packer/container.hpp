@@ -3,6 +3,7 @@
 
 #include "innersphere/solid.hpp"
 #include "packer/ball.hpp"
+#include "packer/reporter.hpp"
 
 namespace innersphere {
 
@@ -19,15 +20,22 @@ class Container {
     const Triangle* triangle = nullptr;  ///< that the point lies on, if the solid is a mesh
   };
 
-  /// Maps a solid, which must outlive the container. Throws Error: bad_argument if the bounds are not finite
-  /// or out of range, no_sphere_fits if they are empty or too far away for double precision.
-  explicit Container(const Solid& solid);
+  /// Maps a solid, which must outlive the container, as must the reporter if there is one. Throws Error:
+  /// bad_argument if the bounds are not finite or out of range, no_sphere_fits if they are empty or too far
+  /// away for double precision.
+  explicit Container(const Solid& solid, const Reporter* reporter = nullptr);
 
   const Solid& solid() const { return solid_; }
   double side() const { return side_; }  ///< metres per unit
 
   /// Returns the origin of the packing's frame [m] (see Packing::origin).
   const Vec3d& origin() const { return origin_; }
+
+  /// Throws Error cancelled if the user wants the work to end (see Reporter). So do closest() and
+  /// contains().
+  void goOn() const {
+    if (reporter_) reporter_->goOn();
+  }
 
   /// Returns the nearest point of the surface. Throws Error not_finite if the solid gives no number.
   Nearest closest(const Point& x, double cutoff) const;
@@ -36,7 +44,10 @@ class Container {
   /// (unit vector): its radius is from `least` to `most`, as large as may be, or 0 if there is none.
   Ball emptyBall(const Point& wall, const Point& side, double least, double most) const;
 
-  bool contains(const Point& x) const { return solid_.contains(toWorld(x)); }
+  bool contains(const Point& x) const {
+    goOn();
+    return solid_.contains(toWorld(x));
+  }
   /// The same, cheaper where the nearest point of the surface is known.
   bool contains(const Point& x, const Nearest& nearest) const;
 
@@ -65,6 +76,7 @@ class Container {
   Point fromFrame(const Vec3d& p) const;
 
   const Solid& solid_;
+  const Reporter* const reporter_;
   Vec3d origin_{};
   Vec3d corner_{};               // of the unit cube, in the packing's frame
   const MeshSolid* const mesh_;  // the solid, if it is a mesh

@@ -15,6 +15,7 @@
 #include "packer/container.hpp"
 #include "packer/near_balls.hpp"
 #include "packer/pattern_search.hpp"
+#include "packer/reporter.hpp"
 #include "packer/surface_samples.hpp"
 #include "packer/surface_solid.hpp"
 #include "packer/union_measures.hpp"
@@ -177,11 +178,10 @@ Covering coverSolid(const Solid& solid, const Packing& packing, const CoverOptio
     throw Error(ErrorCode::bad_argument, "resolution must lie between 0.0001 and 0.1");
   if (options.threads < 0) throw Error(ErrorCode::bad_argument, "threads must be 0 or more");
   validate(packing);
-  const auto report = [&](double fraction) {
-    if (progress && !progress("covering", fraction))
-      throw Error(ErrorCode::cancelled, "covering '" + solid.name() + "' was cancelled");
-  };
-  const Container container(solid);
+  const Reporter reporter(progress, "covering '" + solid.name() + "'");
+  const auto report = [&](double fraction) { reporter("covering", fraction); };
+  report(0);
+  const Container container(solid, &reporter);
   std::vector<Ball> balls;
   for (const Sphere& s : packing.spheres)
     balls.push_back(

@@ -156,6 +156,7 @@ GreedyRounds::Found GreedyRounds::search(const std::vector<Active>& active, cons
 bool GreedyRounds::insert(const std::vector<CellSearch::Candidate>& candidates, float top, const Stop& stop,
                           const Add& add, Placed& placed) const {
   for (const CellSearch::Candidate& candidate : candidates) {
+    container_.goOn();
     const Ball& ball = candidate.ball;
     if (placed.grid.nearest(ball.centre, ball.radius).distance < ball.radius) {
       assert(&candidate != &candidates.front());  // or the same turn would come again and again

@@ -152,9 +152,12 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
     const Prefix spheres(balls, prefix, container.side());
     std::vector<Prefix::Sums> copies(trials.size()), cuts(planes.size());
     std::vector<Finding> deep(made.deep.size());
-    tbb::parallel_for(std::size_t{0}, trials.size(),
-                      [&](std::size_t i) { copies[i] = spheres.overlap(trials[i].pose); });
+    tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
+      container.goOn();
+      copies[i] = spheres.overlap(trials[i].pose);
+    });
     tbb::parallel_for(std::size_t{0}, deep.size(), [&](std::size_t i) {
+      container.goOn();
       // No more than the solid has, as a query tells.
       const double found = std::min(spheres.volume(made.deep[i].pose) / volume, 1.0);
       deep[i] = {found, errorOf(found, made.deep[i].truth.fraction), found};

@@ -295,10 +295,12 @@ OverlapTrials makeOverlapTrials(const Container& container, const Surface& surfa
     return i % 3 == 1 || samples.empty() ? nestedStart(overlap, i) : facingStart(samples, i);
   };
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    container.goOn();
     const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     result.trials[i] = findTrial(overlap, start(i), least * steady::pow(kMostShared / least, part));
   });
   tbb::parallel_for(std::size_t{0}, deep, [&](std::size_t i) {
+    container.goOn();
     const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(deep);
     result.deep[i] = findDeepTrial(overlap, count + i, kDeepOverlap + part * (1 - kDeepOverlap));
   });

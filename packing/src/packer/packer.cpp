@@ -21,6 +21,7 @@
 #include "packer/mass_weights.hpp"
 #include "packer/overlap_errors.hpp"
 #include "packer/pack_options.hpp"
+#include "packer/reporter.hpp"
 #include "packer/surface_samples.hpp"
 #include "packer/volume_true.hpp"
 
@@ -73,8 +74,9 @@ namespace {
 
 /// The solid and the limits in the packer's coordinates.
 struct Problem {
-  Problem(const Solid& solid, const PackOptions& wishes, const MassProperties& mass, const Mesh& surface)
-      : container(solid), options(wishes), samples(surface, container) {
+  Problem(const Solid& solid, const PackOptions& wishes, const MassProperties& mass, const Mesh& surface,
+          const Reporter& reporter)
+      : container(solid, &reporter), options(wishes), samples(surface, container) {
     const double side = container.side();
     volume = mass.volume / (side * side * side);
     enough = std::min(options.density > 0 ? options.density : 1.0, kFull) * volume;
@@ -104,21 +106,6 @@ void requireThickness(const Problem& problem) {
           "': it is a sheet or a rod, thinner than that everywhere; make it thicker, or ask for a smaller "
           "min_radius (--min-radius)");
 }
-
-/// Calls the user back, and ends the work if the user wants that.
-class Reporter {
- public:
-  Reporter(const Progress& progress, const std::string& name) : progress_(progress), name_(name) {}
-  void operator()(const char* stage, double fraction) const {
-    if (progress_ && !progress_(stage, std::clamp(fraction, 0.0, 1.0))) {
-      throw Error(ErrorCode::cancelled, "packing '" + name_ + "' was cancelled");
-    }
-  }
-
- private:
-  const Progress& progress_;
-  const std::string name_;
-};
 
 GreedyRounds::Placed place(const Problem& problem, tbb::task_arena& arena, const Reporter& report) {
   const PackOptions& options = problem.options;
@@ -274,14 +261,15 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   require(packing.solid.volume > 0, "the solid's mass properties must have a volume greater than 0");
   packing.provenance = {solid.name(), solid.hash(), commandLine(options), INNERSPHERE_VERSION};
   const Mesh surface = solid.surface();
-  const Problem problem(solid, options, packing.solid, surface);
+  const Reporter report(progress, "packing '" + solid.name() + "'");
+  report("packing", 0);
+  const Problem problem(solid, options, packing.solid, surface, report);
   require(options.gap == 0 || !problem.samples.empty(),
           "a gap can only be asked for if the solid has a surface");
   require(options.order == SphereOrder::radius || !problem.samples.empty(),
           "spheres can only be ordered by coverage if the solid has a surface");
 
   requireThickness(problem);
-  const Reporter report(progress, solid.name());
   tbb::task_arena arena(arenaThreads(options.threads));
   const Chosen chosen = choose(problem, place(problem, arena, report));
   if (chosen.balls.empty()) {
