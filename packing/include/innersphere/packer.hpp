@@ -45,7 +45,8 @@ struct PackOptions {
 /// solid is full: a ball after one sphere. Whatever ended it, the certificate says how large a sphere could
 /// still fit. Size and place of the solid do not matter: the same solid gives the same spheres, to single
 /// precision. Where two places are equally good, as in symmetric solids or a million sizes away, rounding
-/// decides. Throws Error: bad_argument, no_sphere_fits, not_finite (the solid's distances), cancelled.
+/// decides. Throws Error: bad_argument (also for walls so thin that the search would need more than some 3
+/// GB), no_sphere_fits, not_finite (the solid's distances), cancelled.
 Packing pack(const Solid& solid, const PackOptions& options = {}, const Progress& progress = {});
 
 }  // namespace innersphere

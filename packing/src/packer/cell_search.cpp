@@ -12,7 +12,8 @@
 namespace innersphere {
 namespace {
 
-// In a cell whose half is larger than this many wanted radii, only the centre is looked at.
+// In a cell whose half is larger than this many wanted radii, only the centre is looked at, unless the solid
+// is equally thick everywhere: there most cells need not be divided.
 constexpr double kLarge = 4;
 
 // Points at which a cell is looked at before it is divided.
@@ -152,7 +153,7 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin, std::size_t
   if (!cuts_.empty() && program_.optimum() <= bound_ && prove()) return Verdict::below;
   Point x = centre;
   double before = std::numeric_limits<double>::infinity();
-  const int probes = half > kLarge * wanted_ ? 1 : kProbes;
+  const int probes = half > kLarge * wanted_ && !equally_thick_ ? 1 : kProbes;
   for (int k = 0; k < probes; ++k) {
     const Probe p = probe(x, begin, balls_.size(), wanted_, k == 0 ? bound_ - std::numbers::sqrt3 * half : 0);
     if (p.value > wanted_ && climb(x)) return Verdict::found;
@@ -161,7 +162,8 @@ CellSearch::Verdict CellSearch::bound(Cell& cell, std::size_t begin, std::size_t
     const bool worthwhile = k + 1 < probes && before - optimum > kWorthAPoint * bound_;
     if (optimum <= kLowEnough * bound_ || (optimum <= bound_ && !worthwhile)) {
       // If that is no proof, only the balls' curvature is in the way.
-      const bool below = prove() || (straighten() && prove()) || (flatten(half) && prove());
+      const bool below = prove() || (straighten() && prove()) || (flatten(half) && prove()) ||
+                         (equally_thick_ && back() && prove());
       return below ? Verdict::below : Verdict::undecided;
     }
     before = optimum;
@@ -197,6 +199,21 @@ bool CellSearch::flatten(double half) {
     flatter = true;
   });
   return flatter;
+}
+
+bool CellSearch::back() {
+  bool backed = false;
+  program_.forWeights([&](int k, double) {
+    Probe& cut = cuts_[k];
+    if (!cut.triangle || cut.ball.radius == 0) return;
+    std::optional<Prism> prism = prismBehind(container_, *cut.triangle, cut.gradient);
+    if (!prism) return;
+    prism->back(cut.ball);
+    cut.prism = static_cast<int>(prisms_.size());
+    prisms_.push_back(*prism);
+    backed = true;
+  });
+  return backed;
 }
 
 double CellSearch::provenBound(const Point& centre, double half) const {

@@ -91,6 +91,11 @@ class CellSearch {
   /// there are none.
   bool flatten(double half);
 
+  /// Puts prisms behind the walls that hold the optimum down, backed by the balls that flatten() found. Most
+  /// of what is behind a wall is then known to be outside, and cells may be larger than the solid is thick.
+  /// Returns false if there are none.
+  bool back();
+
   /// Returns the largest empty ball, up to `radius`, that touches the surface at `wall` from outside; or just
   /// the point.
   Ball ballBehind(const Point& wall, const Point& normal, double radius);

@@ -4,12 +4,14 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <tuple>
 
 #include "common/hash.hpp"
 #include "common/steady_math.hpp"
+#include "innersphere/error.hpp"
 
 namespace innersphere {
 namespace {
@@ -27,7 +29,8 @@ constexpr std::size_t kMostTightCells = 1000;
 constexpr double kUndecided = 0.25;
 
 // Where one of this many parts of a round has as many candidates as it would take for all spheres, the others
-// are left for later. Fewer: more is searched in vain; more: one part tells less.
+// are left for later. Fewer: more is searched in vain; more: one part tells less. Parts of many blocks have
+// parts of their own.
 constexpr std::uint64_t kParts = 16;
 
 // Rounds with no more blocks than this are searched whole.
@@ -79,9 +82,21 @@ void sortCells(std::vector<Cell>& cells) {
   std::sort(cells.begin(), cells.end(), [&](const Cell& a, const Cell& b) { return key(a) < key(b); });
 }
 
-/// Returns true for one of kParts blocks, spread at random, other ones in each turn.
-bool isInPart(std::uint64_t block, std::uint64_t turn) {
-  return mixed(block * kParts + turn % kParts) % kParts == 0;
+/// Returns 1 for one of kParts blocks, spread at random, other ones in each turn, 2 for one of kParts of
+/// these, and so on up to `most`; else 0.
+int partOf(std::uint64_t block, std::uint64_t turn, int most) {
+  std::uint64_t random = mixed(block * kParts + turn % kParts);
+  int part = 0;
+  for (; part < most && random % kParts == 0; random /= kParts) ++part;
+  return part;
+}
+
+[[noreturn]] void throwTooThin(const Container& container) {
+  throw Error(
+      ErrorCode::bad_argument,
+      "'" + container.solid().name() +
+          "' is so thin beside its size that its spheres have too many places to look at; make it thicker or "
+          "smaller, or ask for a larger min_radius");
 }
 
 /// Larger candidates come first, equal ones in the order of the Z-order curve; those of a part at random, as
@@ -102,7 +117,8 @@ struct GreedyRounds::Round {
   float top, bound;
   double wanted;
   bool equally_thick;
-  int level;  ///< of the blocks
+  int level;               ///< of the blocks
+  std::size_t most_cells;  ///< live after a search
 };
 
 /// The cells that are live after a search, searched or not, in the order of blocks, and the candidates.
@@ -116,29 +132,35 @@ GreedyRounds::Found GreedyRounds::search(const std::vector<Active>& active, cons
   const std::vector<std::size_t> begins = beginsOf(active);
   const std::size_t blocks = begins.size() - 1;
   std::vector<CellSearch::Result> results(blocks);
-  std::vector<bool> first(blocks, true);
-  if (blocks > kMostWholeBlocks) {
-    for (std::size_t b = 0; b < blocks; ++b) first[b] = isInPart(active[begins[b]].block, turn);
-  }
-  const auto searchBlocks = [&](bool part) {
+  int part = 0;
+  for (std::size_t rest = blocks; rest > kMostWholeBlocks; rest /= kParts) ++part;
+  std::vector<int> parts(blocks);
+  for (std::size_t b = 0; b < blocks; ++b) parts[b] = partOf(active[begins[b]].block, turn, part);
+  std::size_t count = 0;
+  std::atomic<std::size_t> live = active.size();
+  const auto searchPart = [&] {
     tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
-      if (first[b] != part) return;
+      if (parts[b] != part) return;
       std::vector<Cell> cells;
       for (std::size_t i = begins[b]; i < begins[b + 1]; ++i) cells.push_back(active[i].cell);
       sortCells(cells);
       results[b] = CellSearch(container_, grid, round.top, round.bound, round.wanted, round.equally_thick)
                        .search(cells);
+      if ((live += results[b].cells.size()) > round.most_cells) throwTooThin(container_);
     });
+    for (std::size_t b = 0; b < blocks; ++b) count += parts[b] == part ? results[b].candidates.size() : 0;
   };
-  searchBlocks(true);
-  std::size_t count = 0;
-  for (const CellSearch::Result& result : results) count += result.candidates.size();
-  const bool whole = blocks <= kMostWholeBlocks || count <= most_ / kParts;
-  if (whole) searchBlocks(false);
+  // A part of a part has to have as many candidates as may be wanted: it tells less than the part.
+  for (; part > 0; --part) {
+    searchPart();
+    if (count > (part > 1 ? most_ : most_ / kParts)) break;
+  }
+  const bool whole = part == 0;
+  if (whole) searchPart();
 
   Found found;
   for (std::size_t b = 0; b < blocks; ++b) {
-    if (whole || first[b]) {
+    if (parts[b] >= part) {
       const CellSearch::Result& result = results[b];
       const Active& block = active[begins[b]];
       const bool large = block.cell.level < round.level;
@@ -192,7 +214,9 @@ GreedyRounds::Placed GreedyRounds::run(tbb::task_arena& arena, const Stop& stop,
     const std::vector<Cell> cells = queue.takeAbove(next);
     const bool equally_thick = cells.size() > kManyCells * (placed.top.size() + kFewSpheres);
     const double wanted = std::max(top / (1 + (early ? tight : delta_) * (1 - 1e-5)), min_radius_);
-    const Round round{top, bound, wanted, equally_thick, blockLevel(wanted)};
+    const std::size_t most_cells = most_cells_ + kMostCellsPerSphere * placed.top.size();
+    if (queue.live() > most_cells) throwTooThin(container_);
+    const Round round{top, bound, wanted, equally_thick, blockLevel(wanted), most_cells - queue.live()};
     std::vector<Active> active;
     arena.execute([&] { active = sortIntoBlocks(cells, round.level); });
     for (std::uint64_t turn = 0; !active.empty(); ++turn) {

@@ -25,9 +25,13 @@ class GreedyRounds {
     float largest_missing = 0;  ///< nothing larger is possible now
   };
 
+  /// The cells that are live at once, at most, and for each sphere as many more: 3 GB.
+  static constexpr std::size_t kMostCells = std::size_t{1} << 25, kMostCellsPerSphere = 256;
+
   /// `most`: how many spheres are wanted in all.
-  GreedyRounds(const Container& container, double delta, double min_radius, std::size_t most)
-      : container_(container), delta_(delta), min_radius_(min_radius), most_(most) {}
+  GreedyRounds(const Container& container, double delta, double min_radius, std::size_t most,
+               std::size_t most_cells = kMostCells)
+      : container_(container), delta_(delta), min_radius_(min_radius), most_(most), most_cells_(most_cells) {}
 
   using Stop = std::function<bool(const Placed&)>;
   using Pause = std::function<bool(const Placed&, double)>;
@@ -36,7 +40,8 @@ class GreedyRounds {
   /// Packs. `stop` is called after every sphere; `pause` is called with the bound between the parallel
   /// searches, and it may throw; `add`, which may be null, is called after every sphere with the radius that
   /// none can exceed, and may insert spheres of its own. All are called from this thread and end the packing
-  /// by returning true. The searches run in `arena`.
+  /// by returning true. The searches run in `arena`. Throws Error bad_argument if more cells are live than
+  /// may be.
   Placed run(tbb::task_arena& arena, const Stop& stop, const Pause& pause, const Add& add) const;
 
   /// This is a cell to be searched, and the block of the octree that it is in.
@@ -61,7 +66,7 @@ class GreedyRounds {
   const Container& container_;
   double delta_;
   double min_radius_;
-  std::size_t most_;
+  std::size_t most_, most_cells_;
 };
 
 }  // namespace innersphere

@@ -135,7 +135,10 @@ GreedyRounds::Placed place(const Problem& problem, tbb::task_arena& arena, const
     });
   };
   const bool covers = options.order == SphereOrder::coverage;
-  const std::size_t most = options.spheres > 0 ? options.spheres : std::numeric_limits<std::size_t>::max();
+  // A gap is closed, if it can be, by a sphere for each sample.
+  std::size_t most =
+      options.gap > 0 ? problem.samples.points().size() : std::numeric_limits<std::size_t>::max();
+  if (options.spheres > 0) most = options.spheres;
   return GreedyRounds(problem.container, options.delta, problem.smallest, most)
       .run(arena, stop, pause, covers ? add : GreedyRounds::Add());
 }

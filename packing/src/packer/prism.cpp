@@ -52,7 +52,21 @@ double Prism::farthestBehind(const CubeCorners& cube, CornerValues& distances) c
     for (int k = 0; height < 0 && k < 3; ++k)
       distances[corner] = std::max(distances[corner], outwards_[k].dot(x - corners_[k]));
   }
-  return depth > 0 ? std::hypot(depth, farthest) : 0;
+  return depth > 0 ? std::hypot(deepest(cube, depth), farthest) : 0;
+}
+
+// Between the triangle's plane and the ball a sliver is left, which is deepest farthest from where they
+// touch.
+double Prism::deepest(const CubeCorners& cube, double depth) const {
+  const double centre = inwards_.dot(corners_[0] - outside_.centre);
+  if (outside_.radius == 0 || depth > centre) return depth;
+  double beside2 = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Point way = cube.row(corner).matrix().transpose() - outside_.centre;
+    beside2 = std::max(beside2, (way - inwards_.dot(way) * inwards_).squaredNorm());
+  }
+  const double chord2 = outside_.radius * outside_.radius - beside2;
+  return chord2 > 0 ? std::clamp(centre - std::sqrt(chord2), 0.0, depth) : depth;
 }
 
 }  // namespace innersphere

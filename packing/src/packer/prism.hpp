@@ -22,17 +22,25 @@ class Prism {
   /// Builds the prism. `inwards` is the unit normal of the triangle that points into the solid.
   Prism(const std::array<Point, 3>& corners, const Point& inwards);
 
+  /// Tells of a ball outside of the solid: what is in it has no sphere about it, so less is left behind the
+  /// triangle.
+  void back(const Ball& outside) { outside_ = outside; }
+
   /// Finds the distances of a cube's corners from the prism; they are negative inside. Returns the largest
-  /// distance from the triangle that a point of the cube behind the triangle's plane can have; 0 if there is
-  /// none.
+  /// distance from the triangle that a point of the cube behind the triangle's plane can have if a sphere is
+  /// about it; 0 if there is none.
   double farthestBehind(const CubeCorners& cube, CornerValues& distances) const;
 
  private:
+  /// Returns how deep behind the triangle a point of the cube can be that is not in the ball outside; `depth`
+  /// if that does not tell.
+  double deepest(const CubeCorners& cube, double depth) const;
   /// Returns how far x is beside the prism, and `height` above the triangle; if it is not, 0.
   double beside(const Point& x, double height) const;
 
   std::array<Point, 3> corners_;
   Point inwards_;
+  Ball outside_{Point::Zero(), 0};
   std::array<Point, 3> outwards_;  // of the edge that starts at each corner, in the plane
 };
 

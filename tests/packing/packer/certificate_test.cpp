@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "analytic_solids.hpp"
+#include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
 #include "innersphere/solids.hpp"
+#include "mesh_shapes.hpp"
 #include "packer_oracles.hpp"
 
 namespace innersphere::test {
@@ -61,6 +63,31 @@ TEST(PackerCertificate, AWallOfOneThicknessIsFilledAllOver) {
   }
   options.threads = 3;
   EXPECT_TRUE(sameBytes(packing, pack(*plate, options)));
+}
+
+// Cells much larger than a plate is thick are bounded by both of its faces at once. Whatever way it lies, its
+// middle keeps room for spheres of half its thickness, and for no larger ones.
+TEST(PackerCertificate, APlateInAnyPosition) {
+  constexpr double kHalf = 0.002;
+  const Mesh plate = boxMesh({-0.5, -0.4, -kHalf}, {0.5, 0.4, kHalf});
+  for (int turn = 0; turn < 4; ++turn) {
+    const double a = 0.3 * turn, b = 0.5 * turn;
+    Mesh turned = plate;
+    for (Vec3d& v : turned.vertices) {
+      v = {v[0], std::cos(a) * v[1] - std::sin(a) * v[2], std::sin(a) * v[1] + std::cos(a) * v[2]};
+      v = {std::cos(b) * v[0] - std::sin(b) * v[1], std::sin(b) * v[0] + std::cos(b) * v[1], v[2]};
+    }
+    PackOptions options;
+    options.spheres = 300;
+    options.overlap_errors = false;
+    const auto solid = makeSolid(turned, "plate");
+    const Packing packing = pack(*solid, options);
+    ASSERT_EQ(packing.spheres.size(), 300u);
+    EXPECT_LE(worstOverlap(packing), 0);
+    EXPECT_GE(packing.certificate.largest_missing_radius, kHalf * (1 - 1e-9));
+    EXPECT_LE(packing.certificate.largest_missing_radius, kHalf * (1 + options.delta));
+    EXPECT_GE(packing.spheres.back().radius, kHalf / (1 + options.delta));
+  }
 }
 
 // The search is not blind: the largest sphere of an empty cube is known, and so is the next one.

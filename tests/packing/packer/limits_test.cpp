@@ -3,11 +3,16 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <thread>
 
 #include "analytic_solids.hpp"
 #include "innersphere/error.hpp"
+#include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
+#include "mesh_shapes.hpp"
+#include "packer/container.hpp"
+#include "packer/greedy_rounds.hpp"
 #include "packer_oracles.hpp"
 
 namespace innersphere::test {
@@ -93,6 +98,38 @@ TEST(PackerLimits, WhicheverComesFirst) {
   EXPECT_EQ(pack(Cube(), options).spheres.size(), 50u);
   options.density = 0.6;
   EXPECT_LT(pack(Cube(), options).spheres.size(), 50u);
+}
+
+// A round that needs more cells than may be live is no question of memory.
+TEST(PackerLimits, Cells) {
+  const Cube cube;
+  const Container container(cube);
+  tbb::task_arena arena(2);
+  const auto codeWith = [&](std::size_t cells) {
+    try {
+      GreedyRounds(container, 0.1, 0.001, 100'000, cells)
+          .run(
+              arena, [](const auto&) { return false; },
+              [](const auto& now, double) { return now.top.size() > 1000; }, {});
+    } catch (const Error& error) {
+      return std::optional(error.code());
+    }
+    return std::optional<ErrorCode>();
+  };
+  EXPECT_EQ(codeWith(GreedyRounds::kMostCells), std::nullopt);
+  EXPECT_EQ(codeWith(10), ErrorCode::bad_argument);
+}
+
+// Sheet metal of 1 m and 1 mm has a million places for the largest sphere, but its faces are flat.
+TEST(PackerLimits, CellsOfThinPlates) {
+  const auto plate = makeSolid(boxMesh({-0.5, -0.5, -0.0005}, {0.5, 0.5, 0.0005}), "plate");
+  const Container container(*plate);
+  tbb::task_arena arena(2);
+  const auto placed = GreedyRounds(container, 0.1, 1e-4, 200, 500'000)
+                          .run(
+                              arena, [](const auto& now) { return now.top.size() == 200; },
+                              [](const auto&, double) { return false; }, {});
+  EXPECT_EQ(placed.rounded.size(), 200u);
 }
 
 TEST(PackerLimits, GapNeedsASurface) {

@@ -202,6 +202,42 @@ TEST(Prism, BoundsTheDistanceFromItsTriangle) {
   }
 }
 
+// Behind the triangle no sphere is centred in the ball, and one that is beside the ball is no larger than the
+// way to the triangle.
+TEST(Prism, WithABallOutsideBoundsTheDistanceOfWhatIsNotInIt) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto point = [&] { return Point(unit(random), unit(random), unit(random)); };
+  int less = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    const std::array<Point, 3> corners{4 * point(), 4 * point(), 4 * point()};
+    const Point cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (cross.norm() < 0.01) continue;
+    const Point inwards = cross.normalized();
+    Prism prism(corners, inwards);
+    const Point centre = (corners[0] + corners[1] + corners[2]) / 3 + point();
+    const double half = 0.5;
+    CornerValues distances;
+    const double before = prism.farthestBehind(cornersOf(centre, half), distances);
+    const double radius = 10 * std::abs(unit(random));
+    const Ball ball{centre - (radius + unit(random)) * inwards + 0.3 * point(), radius};
+    prism.back(ball);
+    const double behind = prism.farthestBehind(cornersOf(centre, half), distances);
+    EXPECT_LE(behind, before);
+    less += behind < before;
+    const auto world = [](const Point& x) { return Vec3d{x[0], x[1], x[2]}; };
+    const Triangle triangle(world(corners[0]), world(corners[1]), world(corners[2]));
+    for (int i = 0; i < 200; ++i) {
+      const Point x = centre + half * point();
+      Vec3d nearest;
+      if (inwards.dot(x - corners[0]) < 0 && ball.distance(x) > 0) {
+        EXPECT_LE(std::sqrt(triangle.closest(world(x), nearest)), behind + 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(less, 100);
+}
+
 TEST(RadiusSchedule, StepsEncloseEveryRadius) {
   const RadiusSchedule schedule(1, 1e-3, 1.0075);
   std::mt19937_64 random(9);
