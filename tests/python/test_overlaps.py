@@ -333,8 +333,9 @@ def test_bad_options(ball, words):
 def test_bad_backends():
     with pytest.raises(innersphere.InvalidArgumentError, match="'auto', 'cpu', 'cuda'"):
         Query("gpu")
-    with pytest.raises(innersphere.InvalidArgumentError):
-        Query(threads=-1)
+    for threads in (-1, 10**7, 10**8, 10**10):
+        with pytest.raises(innersphere.InvalidArgumentError, match="threads"):
+            Query("cpu", threads=threads)
     if not innersphere.cuda_available():
         with pytest.raises(innersphere.NoDeviceError):
             Query("cuda")

@@ -78,12 +78,15 @@ struct QueryResult {
 inline constexpr int kCurrentDevice = -1;  ///< The CUDA device that is current in the calling thread.
 inline constexpr int kAllDevices = -2;     ///< All CUDA devices of the machine.
 
+inline constexpr int kMostThreads = 4096;  ///< See QueryContextOptions::threads.
+
 inline constexpr double kMostResidentSeconds = 1;  ///< See QueryContextOptions::resident_seconds.
 
 /// Says how queries run.
 struct QueryContextOptions {
   Backend backend = Backend::automatic;  ///< Where queries run.
-  int threads = 0;  ///< The threads of the CPU backend. 0: all cores. The result does not depend on it.
+  /// The threads of the CPU backend, 0 to kMostThreads. 0: all cores. The result does not depend on it.
+  int threads = 0;
   bool time_kernels = false;  ///< Whether kernelTime() is measured, which takes some microseconds a run.
   /// The CUDA device: a number from 0 on, kCurrentDevice, or kAllDevices, which share a batch or a sweep.
   /// Results do not depend on it. Each device keeps copies of the models that it has worked on.

@@ -253,9 +253,10 @@ bool cudaAvailable() {
 }
 
 QueryContext::QueryContext(const QueryContextOptions& options) {
-  if (options.threads < 0) {
-    throw Error(ErrorCode::bad_argument,
-                "threads is " + std::to_string(options.threads) + "; it must be 0 (all cores) or more");
+  if (options.threads < 0 || options.threads > kMostThreads) {
+    throw Error(ErrorCode::bad_argument, "threads is " + std::to_string(options.threads) +
+                                             "; it must be from 0 (all cores) to " +
+                                             std::to_string(kMostThreads));
   }
   if (options.device < kAllDevices)
     throw Error(ErrorCode::bad_argument, "there is no CUDA device " + std::to_string(options.device));

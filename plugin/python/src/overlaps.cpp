@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <mutex>
 #include <utility>
 #include <variant>
@@ -60,11 +62,18 @@ void enterDevice() {
       "by multiprocessing.get_context(\"spawn\"), or use Query(\"cpu\")");
 }
 
+/// Numbers beyond an int stay out of range.
+int inInt(std::int64_t x) {
+  return static_cast<int>(
+      std::clamp<std::int64_t>(x, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
+}
+
 /// Runs queries for Python. One at a time: a second thread waits for the first.
 class Query {
  public:
-  Query(const std::string& backend, int threads, std::variant<std::monostate, int, std::string> device)
-      : Query({parseWord("backend", backend, kBackends), threads, false, deviceOf(device)}) {}
+  Query(const std::string& backend, std::int64_t threads,
+        std::variant<std::monostate, int, std::string> device)
+      : Query({parseWord("backend", backend, kBackends), inInt(threads), false, deviceOf(device)}) {}
 
   nb::object overlap(const SharedPacking& a, const SharedPacking& b, nb::handle pose_a, nb::handle pose_b,
                      const std::string& want, const std::string& estimator, double margin, nb::object out) {
@@ -343,7 +352,7 @@ void bindOverlaps(nb::module_& module) {
 
 backend: "auto" (the CPU or, if there is enough work and a device, CUDA; both give the same bits), "cpu", or "cuda",
     which raises NoDeviceError where there is none.
-threads: of the CPU; 0 are all cores. Results do not depend on it.
+threads: of the CPU, up to 4,096; 0 are all cores. Results do not depend on it.
 device: the CUDA device, from 0 on; "all": they share the poses of a query; None: the current one, as a rule 0. Results
     do not depend on it.
 
@@ -351,7 +360,7 @@ A query is fastest where A stands still and the poses of B are one array of doub
 positions and quaternions: it is then read in place, by a device, too.
 
 The GIL is free while a query runs. One object runs one query at a time: give each thread its own.)")
-      .def(nb::init<const std::string&, int, std::variant<std::monostate, int, std::string>>(),
+      .def(nb::init<const std::string&, std::int64_t, std::variant<std::monostate, int, std::string>>(),
            "backend"_a = "auto", "threads"_a = 0, "device"_a.none() = nb::none(),
            nb::sig("def __init__(self, backend: typing.Literal['auto', 'cpu', 'cuda'] = 'auto', threads: int "
                    "= 0, device: int | typing.Literal['all'] | None = None) -> None"))

@@ -74,8 +74,20 @@ TEST_P(BadInputConformance, NullQueries) {
 
 INNERSPHERE_FOR_EACH_BACKEND(BadInputConformance);
 
-TEST(BadInput, ThreadsBelowZero) {
-  EXPECT_THROW(QueryContext({Backend::cpu, -1}), Error);
+TEST(BadInput, NumbersOfThreads) {
+  for (const int threads : {-1, kMostThreads + 1, 10'000'000, 100'000'000, std::numeric_limits<int>::max()}) {
+    try {
+      QueryContext context({Backend::cpu, threads});
+      FAIL() << threads;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+      EXPECT_NE(std::string(error.what()).find(std::to_string(threads)), std::string::npos) << error.what();
+    }
+  }
+  QueryContext most({Backend::cpu, kMostThreads});
+  const auto model = makeModel(randomSpheres(50, 0.3, 20, 1));
+  Scene scene(model, model);
+  EXPECT_GT(most.overlap(scene.query).pair_count, 0u);
 }
 
 TEST(BadInput, CudaByNameIsNeverReplaced) {
