@@ -55,8 +55,10 @@ struct MeshReport {
 /// applied in double; assimp keeps coordinates in single precision: what is far from its origin is read
 /// coarsely, and makeSolid() notes it. Polygons are cut into triangles along their dents. Throws Error, with
 /// the line or the byte where the file has one: file_not_found, bad_format, empty_input, not_finite (also for
-/// numbers beyond single precision), bad_argument (the scale). `notes` may be null; it gets a sentence for
-/// what was left out: bytes behind the last triangle of a binary STL file.
+/// numbers beyond single precision), bad_argument (the scale). COLLADA and 3MF files name their unit,
+/// millimetres in most 3MF files: they come in metres, times the scale. `notes` may be null; it gets a
+/// sentence for what was left out, bytes behind the last triangle of a binary STL file, and for the unit of a
+/// 3MF file if that is not metres.
 Mesh readMesh(const std::string& path, const MeshOptions& options = {},
               std::vector<std::string>* notes = nullptr);
 

@@ -1,6 +1,8 @@
 // Files in, meshes out.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include <cmath>
 #include <cstring>
 #include <sstream>
 
@@ -135,6 +137,95 @@ TEST(MeshImport, ScaleMultipliesCoordinates) {
   for (const double scale : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
     options.scale = scale;
     expectError(path, ErrorCode::bad_argument, "scale", options);
+  }
+}
+
+/// A zip archive of these files, stored or deflated, written as the format's description says.
+std::string zipOf(const std::vector<std::pair<std::string, std::string>>& files, bool deflated) {
+  std::string out, directory;
+  const auto put = [](std::string& to, std::uint32_t x, int bytes) {
+    for (int k = 0; k < bytes; ++k) to += static_cast<char>(x >> 8 * k & 255);
+  };
+  for (const auto& [name, content] : files) {
+    std::string data = content;
+    if (deflated) {
+      z_stream stream{};
+      deflateInit2(&stream, 9, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
+      data.resize(deflateBound(&stream, content.size()));
+      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(content.data()));
+      stream.avail_in = static_cast<uInt>(content.size());
+      stream.next_out = reinterpret_cast<Bytef*>(data.data());
+      stream.avail_out = static_cast<uInt>(data.size());
+      deflate(&stream, Z_FINISH);
+      data.resize(stream.total_out);
+      deflateEnd(&stream);
+    }
+    std::string common;  // of both headers
+    put(common, 20, 2), put(common, 0, 2), put(common, deflated ? 8 : 0, 2), put(common, 0, 4);
+    put(common,
+        static_cast<std::uint32_t>(
+            crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()))),
+        4);
+    put(common, static_cast<std::uint32_t>(data.size()), 4);
+    put(common, static_cast<std::uint32_t>(content.size()), 4);
+    put(common, static_cast<std::uint32_t>(name.size()), 2), put(common, 0, 2);
+    const auto offset = static_cast<std::uint32_t>(out.size());
+    out += "PK\3\4" + common + name + data;
+    directory += "PK\1\2";
+    put(directory, 20, 2);
+    directory += common;
+    put(directory, 0, 2), put(directory, 0, 4), put(directory, 0, 4), put(directory, offset, 4);
+    directory += name;
+  }
+  const auto begin = static_cast<std::uint32_t>(out.size()), count = static_cast<std::uint32_t>(files.size());
+  out += directory + "PK\5\6";
+  put(out, 0, 4), put(out, count, 2), put(out, count, 2);
+  put(out, static_cast<std::uint32_t>(directory.size()), 4), put(out, begin, 4), put(out, 0, 2);
+  return out;
+}
+
+std::string threeMfOf(const Mesh& mesh, const std::string& unit, bool deflated) {
+  std::ostringstream model;
+  model << "<?xml version=\"1.0\"?>\n<model" << unit
+        << " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">"
+           "<resources><object id=\"1\" type=\"model\"><mesh><vertices>";
+  for (const Vec3d& v : mesh.vertices)
+    model << "<vertex x=\"" << v[0] << "\" y=\"" << v[1] << "\" z=\"" << v[2] << "\"/>";
+  model << "</vertices><triangles>";
+  for (const auto& t : mesh.triangles)
+    model << "<triangle v1=\"" << t[0] << "\" v2=\"" << t[1] << "\" v3=\"" << t[2] << "\"/>";
+  model << "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>";
+  const std::string relations =
+      "<?xml version=\"1.0\"?><Relationships "
+      "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+      "Target=\"/3D/3dmodel.model\" Id=\"r\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+  return zipOf({{"_rels/.rels", relations}, {"3D/3dmodel.model", model.str()}}, deflated);
+}
+
+// Without a unit a 3MF file is in millimetres, as the format says.
+TEST(MeshImport, ThreeMfComesInMetres) {
+  const Scratch scratch;
+  const Mesh box = boxMesh({0, 0, 0}, {1, 2, 3});
+  const std::vector<std::pair<std::string, double>> units{{"", 1e-3},
+                                                          {" unit=\"millimeter\"", 1e-3},
+                                                          {" xml:lang='en'\n unit = 'meter'", 1},
+                                                          {" unit=\"inch\"", 0.0254},
+                                                          {" unit=\"micron\"", 1e-6}};
+  for (const bool deflated : {false, true}) {
+    for (const auto& [unit, metres] : units) {
+      std::vector<std::string> notes;
+      MeshOptions options;
+      options.scale = 2;
+      const Mesh mesh = readMesh(scratch.write("box.3mf", threeMfOf(box, unit, deflated)), options, &notes);
+      EXPECT_NEAR(volumeOf(mesh) / (6 * std::pow(2 * metres, 3)), 1, 1e-6) << unit;
+      EXPECT_EQ(notes.size(), metres == 1 ? 0u : 1u);
+    }
+    std::vector<std::string> notes;
+    const std::string furlongs = threeMfOf(box, " unit=\"furlong\"", deflated);
+    EXPECT_NEAR(volumeOf(readMesh(scratch.write("box.3mf", furlongs), {}, &notes)), 6, 1e-5);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_NE(notes[0].find("not known"), std::string::npos);
   }
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "common/bounds.hpp"
@@ -10,6 +11,7 @@
 #include "mesh/import/read_apart.hpp"
 #include "mesh/import/read_assimp.hpp"
 #include "mesh/import/readers.hpp"
+#include "mesh/import/unit_3mf.hpp"
 #include "mesh/mesh_clean.hpp"
 #include "mesh/mesh_report.hpp"
 
@@ -40,6 +42,29 @@ Reader readerOf(const std::string& ending) {
   return nullptr;
 }
 
+void scaleBy(double scale, Mesh& mesh, const std::string& path) {
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    Vec3d& v = mesh.vertices[i];
+    const Vec3d before = v;
+    v = scale * v;
+    if (isFinite(v)) continue;
+    throw Error(ErrorCode::not_finite, "vertex " + std::to_string(i) + " of " + path + ", " + text(before) +
+                                           ", is too far away for the scale " + text(scale));
+  }
+}
+
+// assimp applies the unit of COLLADA files, but not that of 3MF files.
+void toMetres(Mesh& mesh, const std::string& path, std::vector<std::string>& notes) {
+  const std::optional<LengthUnit> unit = unitOf3mf(readFile(path));
+  if (!unit) {
+    notes.push_back("the unit of the file is not known; its numbers are taken for metres");
+  } else if (unit->metres != 1) {
+    notes.push_back("the file is in the unit " + unit->name + ": its numbers are multiplied by " +
+                    text(unit->metres));
+    scaleBy(unit->metres, mesh, path);
+  }
+}
+
 Mesh readAny(const std::string& path, bool own_process, std::vector<std::string>& notes) {
   const bool compressed = endingOf(path) == "gz";
   const std::string ending = endingOf(compressed ? path.substr(0, path.size() - 3) : path);
@@ -50,18 +75,9 @@ Mesh readAny(const std::string& path, bool own_process, std::vector<std::string>
     throw Error(ErrorCode::bad_format,
                 path + " cannot be read: only .obj, .stl, .ply and .off may be compressed; unpack it");
   }
-  return own_process ? readApart(readAssimp, path) : readAssimp(path);
-}
-
-void scaleBy(double scale, Mesh& mesh, const std::string& path) {
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    Vec3d& v = mesh.vertices[i];
-    const Vec3d before = v;
-    v = scale * v;
-    if (isFinite(v)) continue;
-    throw Error(ErrorCode::not_finite, "vertex " + std::to_string(i) + " of " + path + ", " + text(before) +
-                                           ", is too far away for the scale " + text(scale));
-  }
+  Mesh mesh = own_process ? readApart(readAssimp, path) : readAssimp(path);
+  if (ending == "3mf") toMetres(mesh, path, notes);
+  return mesh;
 }
 
 }  // namespace
