@@ -32,9 +32,11 @@ std::vector<std::string> nameEmptyParts(const Mesh& surface, const Packing& pack
     if (isFilled(bodies[i], packing)) continue;
     if (++empty > kNamed) continue;
     const Bounds box = boundsOf(bodies[i]);
-    sentences.push_back("part " + std::to_string(i + 1) + " of " + std::to_string(bodies.size()) + ", " +
-                        text(diagonal(box)) + " m large near " + text(centre(box)) +
-                        ", got no sphere, so nothing collides with it; use more spheres or a smaller radius");
+    sentences.push_back(
+        "part " + std::to_string(i + 1) + " of " + std::to_string(bodies.size()) + ", " +
+        text(diagonal(box)) + " m large near " + text(centre(box)) +
+        ", got no sphere: volumes and contacts by volume leave it out, contacts by the triangles feel "
+        "it; use more spheres or a smaller radius");
   }
   if (empty > kNamed) sentences.push_back(counted(empty - kNamed, "more part") + " got no sphere");
   return sentences;

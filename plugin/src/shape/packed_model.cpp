@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <mutex>
+#include <set>
+#include <string>
 
 #include "common/bullet_vectors.hpp"
 #include "common/log.hpp"
@@ -58,6 +61,14 @@ btScalar largestRadius(const Packing& packing, std::size_t count) {
   return largest;
 }
 
+/// Whether this is the first time in the program. Each world may have a model of its own of the same packing.
+bool isNew(const std::string& message) {
+  static std::mutex mutex;
+  static std::set<std::string> told;
+  const std::lock_guard<std::mutex> lock(mutex);
+  return told.insert(message).second;
+}
+
 }  // namespace
 
 Prefix::Prefix(const PackedModel& model, std::size_t sphere_count)
@@ -73,8 +84,10 @@ void Prefix::warnOnce() const {
     const Packing& packing = model_.packing();
     const std::string bare = bareSurface(packing, count);
     if (bare.empty()) return;
-    log("The packing of \"" + packing.provenance.source + "\" leaves parts of its solid out: " + bare +
-        ". Use more of its spheres, or pack it anew, in the order of coverage.");
+    const std::string message = "The packing of \"" + packing.provenance.source +
+                                "\" leaves parts of its solid out: " + bare +
+                                ". Use more of its spheres, or pack it anew, in the order of coverage.";
+    if (isNew(message)) log(message);
   });
 }
 

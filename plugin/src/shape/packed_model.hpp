@@ -46,7 +46,8 @@ class Prefix {
   /// the packing has a surface.
   const CollisionModel& searchModel() const;
 
-  /// Tells the log, once, if parts of the surface have no sphere near them. For spheres that a user chose.
+  /// Tells the log, once for each packing, if parts of the surface have no sphere near them. For spheres that
+  /// a user chose.
   void warnOnce() const;
 
   const std::size_t count;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "capture_log.hpp"
 #include "innersphere/error.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
@@ -235,6 +236,25 @@ TEST(Shape, IsRecognisedAmongOthersOfItsType) {
   EXPECT_EQ(PackingShape::from(nullptr), nullptr);
   EXPECT_TRUE(shape->isConcave());
   EXPECT_NE(shape->getShapeType(), SDF_SHAPE_PROXYTYPE);
+}
+
+// Worlds that read the same packing each have a model of their own.
+TEST(Shape, BareSurfaceIsToldOnceForEachPacking) {
+  const CaptureLog log;
+  for (const char* source : {"a bare box", "another bare box"}) {
+    for (int world = 0; world < 2; ++world) {
+      Packing packing = latticeBox({1, 1, 1}, 2);
+      packing.provenance.source = source;
+      Coverage& all = packing.coverage.emplace_back();
+      all.count = static_cast<std::uint32_t>(packing.spheres.size());
+      all.mean = all.p95 = all.max = 0.5;
+      const auto shape = makeShape(packing);
+      const auto again = makeShape(packing);
+    }
+  }
+  ASSERT_EQ(log.messages.size(), 2u);
+  EXPECT_NE(log.messages[0].find("\"a bare box\""), std::string::npos);
+  EXPECT_NE(log.messages[1].find("\"another bare box\""), std::string::npos);
 }
 
 TEST(Shape, DebugDrawsItsSurface) {
