@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "file_names.hpp"
@@ -49,25 +51,78 @@ std::string endingFor(const std::string& bytes) {
   return byte >= 0xa0 && byte <= 0xbf ? ".cbor" : ".xyzr";
 }
 
-Packing readStream(const std::string& source) {
-  const std::string name = source == "-" ? "stdin" : source;
-  const std::string bytes = readAll(source);
-  const TemporaryFile file(endingFor(bytes));
+std::string nameOf(const std::string& source) {
+  return source == "-" ? "stdin" : source;
+}
+
+// Reads what comes through a stream from a file with this ending, for `read` wants one.
+template <class Read>
+auto readKept(const std::string& source, const std::string& bytes, const std::string& ending,
+              const Read& read) {
+  const std::string name = nameOf(source);
+  const TemporaryFile file(ending);
   std::ofstream stream(file.path(), std::ios::binary);
   stream << bytes;
   stream.close();
   if (!stream)
     throw Error(ErrorCode::write_failed, "cannot keep what was read from " + name + " in " + file.path());
   try {
-    Packing packing = readPacking(file.path());
-    if (packing.provenance.source == file.path()) packing.provenance.source = name;
-    return packing;
+    return read(file.path());
   } catch (const Error& error) {
     std::string message = error.what();
     const std::size_t at = message.find(file.path());
     if (at != std::string::npos) message.replace(at, file.path().size(), name);
     throw Error(error.code(), message);
   }
+}
+
+Packing readStream(const std::string& source) {
+  const std::string bytes = readAll(source);
+  return readKept(source, bytes, endingFor(bytes), [&](const std::string& path) {
+    Packing packing = readPacking(path);
+    if (packing.provenance.source == path) packing.provenance.source = nameOf(source);
+    return packing;
+  });
+}
+
+// Empty for what is known by its content alone, or not known.
+std::string meshEndingFor(const std::string& bytes) {
+  constexpr std::size_t kStlHead = 84, kStlTriangle = 50;
+  const auto begins = [&](const std::string& word) { return bytes.compare(0, word.size(), word) == 0; };
+  if (begins("ply\n") || begins("ply\r")) return ".ply";
+  if (begins("glTF")) return ".glb";
+  if (begins("PK\3\4")) return ".3mf";
+  if (begins("{")) return ".gltf";
+  if (begins("<")) return "";
+  if (bytes.size() >= kStlHead) {
+    std::uint32_t triangles = 0;
+    std::memcpy(&triangles, bytes.data() + kStlHead - sizeof triangles, sizeof triangles);
+    if (bytes.size() == kStlHead + kStlTriangle * triangles) return ".stl";
+  }
+  std::istringstream lines(bytes);
+  std::string line, word;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    if (!(words >> word) || word[0] == '#') continue;
+    if (word == "solid") return ".stl";
+    if (word.size() <= 6 && word.size() >= 3 && word.compare(word.size() - 3, 3, "OFF") == 0) return ".off";
+    for (const char* of_obj : {"v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl"}) {
+      if (word == of_obj) return ".obj";
+    }
+    break;
+  }
+  return "";
+}
+
+Mesh meshFromStream(const SolidArguments& arguments, std::vector<std::string>& notes) {
+  const std::string bytes = readAll(arguments.source);
+  if (bytes.compare(0, 2, "\x1f\x8b") == 0) {
+    throw Error(
+        ErrorCode::bad_format,
+        nameOf(arguments.source) + " is compressed; unpack it on the way: gunzip -c FILE | innersphere ...");
+  }
+  return readKept(arguments.source, bytes, meshEndingFor(bytes),
+                  [&](const std::string& path) { return readMesh(path, arguments.mesh, &notes); });
 }
 
 }  // namespace
@@ -88,28 +143,33 @@ void addRepairOption(Command& command, MeshOptions& options) {
       "with rings, inside is where its winding number exceeds 1/2");
 }
 
-std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments) {
+std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments, std::vector<std::string>* notes) {
   const EndsAtOnce at_once;
   if (isNamedSolid(arguments.source)) {
     return demo::scaledSolid(makeNamedSolid(arguments.source), arguments.mesh.scale);
   }
-  if (isStream(arguments.source)) {
-    throw Error(ErrorCode::bad_argument, "a mesh is not read from " + arguments.source +
-                                             ": its format is known by the ending of a file; name one");
-  }
+  std::vector<std::string> found;
+  const std::string name = nameOf(arguments.source);
+  const auto solidOf = [&](Mesh mesh, std::vector<std::string>& sentences) {
+    const auto tell = [&](std::size_t first) {
+      for (std::size_t i = first; i < sentences.size(); ++i) say(name + ": " + sentences[i]);
+      return sentences.size();
+    };
+    const std::size_t told = tell(0);
+    MeshReport report;
+    auto solid = makeSolid(std::move(mesh), name, arguments.mesh, &report);
+    sentences.insert(sentences.end(), report.notes.begin(), report.notes.end());
+    tell(told);
+    if (notes) *notes = sentences;
+    return solid;
+  };
+  if (isStream(arguments.source)) return solidOf(meshFromStream(arguments, found), found);
   if (!std::filesystem::exists(arguments.source)) {
     throw Error(ErrorCode::file_not_found,
                 "there is neither a file nor a solid named \"" + arguments.source + "\"" +
                     didYouMean(arguments.source, namedSolids(), "; `innersphere solids` lists the solids"));
   }
-  const auto tell = [&](const std::string& note) { say(arguments.source + ": " + note); };
-  std::vector<std::string> notes;
-  Mesh mesh = readMesh(arguments.source, arguments.mesh, &notes);
-  for (const std::string& note : notes) tell(note);
-  MeshReport report;
-  auto solid = makeSolid(std::move(mesh), arguments.source, arguments.mesh, &report);
-  for (const std::string& note : report.notes) tell(note);
-  return solid;
+  return solidOf(readMesh(arguments.source, arguments.mesh, &found), found);
 }
 
 bool isPacking(const std::string& source) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "command.hpp"
 #include "innersphere/covering.hpp"
@@ -23,8 +24,10 @@ void addPackingArgument(Command& command, const std::string& name, std::string& 
 void addScaleOption(Command& command, MeshOptions& options);
 void addRepairOption(Command& command, MeshOptions& options);
 
-/// Reads the mesh or makes the solid; says what was mended or looks suspicious. Throws Error.
-std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments);
+/// Reads the mesh, which may come through a pipe or from stdin ("-"), or makes the solid; says what was
+/// mended or looks suspicious, and adds it to `notes`, which may be null. Throws Error.
+std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments,
+                                       std::vector<std::string>* notes = nullptr);
 
 /// True for what loadPacking() reads: stdin ("-"), a pipe, or a file that ends in .json, .cbor or .xyzr.
 bool isPacking(const std::string& source);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <utility>
 
 #include "command_line.hpp"
 #include "commands.hpp"
@@ -100,6 +101,19 @@ Command Tool::manCommand() const {
   return command;
 }
 
+// What the library tells a program to ask for is an option here, of one command.
+std::string inWordsOfTool(std::string message) {
+  const std::pair<const char*, const char*> words[] = {
+      {"ask for repair", "give `innersphere pack` --repair"},
+      {"ask for a smaller min_radius", "give `innersphere pack` a smaller --min-radius"},
+      {"ask for a larger min_radius", "give `innersphere pack` a larger --min-radius"}};
+  for (const auto& [of_library, of_tool] : words) {
+    const std::size_t at = message.find(of_library);
+    if (at != std::string::npos) message.replace(at, std::strlen(of_library), of_tool);
+  }
+  return message;
+}
+
 int fail(int exit_code, const std::string& message) {
   clearProgressBar();
   std::fprintf(stderr, "innersphere: %s\n", message.c_str());
@@ -125,7 +139,7 @@ int run(const std::vector<std::string>& words) {
   } catch (const UsageError& error) {
     return fail(kBadUsage, error.what());
   } catch (const Error& error) {
-    return fail(exitCodeOf(error.code()), std::string(error.what()) + " [" + toString(error.code()) + "]");
+    return fail(exitCodeOf(error.code()), inWordsOfTool(error.what()) + " [" + toString(error.code()) + "]");
   } catch (const std::bad_alloc&) {
     return fail(kInternalError, "out of memory");
   } catch (const std::exception& error) {

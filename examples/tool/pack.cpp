@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
@@ -85,6 +87,12 @@ Covering clumped(const Solid& solid, const Arguments& arguments) {
   return clumpSolid(solid, options, progressBar());
 }
 
+// Beside spheres on stdout the report is a note.
+void printReport(const Report& report, const PackingOutput& output, bool as_json) {
+  if (!isStdout(output.path)) return report.print(as_json);
+  if (!isQuiet()) report.print(as_json, stderr);
+}
+
 void coverInto(const PackingOutput& output, bool say_where, const Solid& solid, const Arguments& arguments) {
   const Covering covering = arguments.clump ? clumped(solid, arguments) : covered(solid, arguments);
   clearProgressBar();
@@ -95,17 +103,19 @@ void coverInto(const PackingOutput& output, bool say_where, const Solid& solid, 
                    [&](const std::string& path, bool force) { writeCovering(covering, path, force); });
   if (say_where) say("wrote " + output.path);
   const Bounds box = solid.bounds();
-  describe(covering, norm(box.max - box.min)).print(arguments.json, isStdout(output.path) ? stderr : stdout);
+  printReport(describe(covering, norm(box.max - box.min)), output, arguments.json);
 }
 
-void packInto(const PackingOutput& output, bool say_where, const Solid& solid, const Arguments& arguments) {
+void packInto(const PackingOutput& output, bool say_where, const Solid& solid, const Arguments& arguments,
+              const std::vector<std::string>& notes) {
   checkOutputOf(arguments, output);
   if (areCovering(arguments)) return coverInto(output, say_where, solid, arguments);
-  const Packing packing = pack(solid, limitsFor(solid, arguments), progressBar());
+  Packing packing = pack(solid, limitsFor(solid, arguments), progressBar());
+  packing.warnings.insert(packing.warnings.begin(), notes.begin(), notes.end());
   clearProgressBar();
   writePackingOutput(packing, output);
   if (say_where) say("wrote " + output.path);
-  describe(packing).print(arguments.json, isStdout(output.path) ? stderr : stdout);
+  printReport(describe(packing), output, arguments.json);
 }
 
 // "chess.cbor" becomes "chess-3.cbor".
@@ -116,7 +126,7 @@ std::string numbered(const std::string& path, std::size_t number) {
 }
 
 // One packing each.
-void packBodies(const Solid& solid, const Arguments& arguments) {
+void packBodies(const Solid& solid, const Arguments& arguments, const std::vector<std::string>& notes) {
   const std::vector<Mesh> bodies = splitBodies(solid.surface());
   std::vector<PackingOutput> outputs(bodies.size(), arguments.output);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -126,7 +136,7 @@ void packBodies(const Solid& solid, const Arguments& arguments) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const std::string name =
         arguments.solid.source + ", body " + std::to_string(i + 1) + " of " + std::to_string(bodies.size());
-    packInto(outputs[i], true, *makeSolid(bodies[i], name, arguments.solid.mesh), arguments);
+    packInto(outputs[i], true, *makeSolid(bodies[i], name, arguments.solid.mesh), arguments, notes);
   }
 }
 
@@ -159,9 +169,10 @@ void run(Arguments& arguments) {
                 "--split writes a file for each body; give -o a name, not " + output.path);
   }
   if (!arguments.split) checkOutputOf(arguments, output);
-  const auto solid = loadSolid(arguments.solid);
-  if (arguments.split) return packBodies(*solid, arguments);
-  packInto(output, !named, *solid, arguments);
+  std::vector<std::string> notes;
+  const auto solid = loadSolid(arguments.solid, &notes);
+  if (arguments.split) return packBodies(*solid, arguments, notes);
+  packInto(output, !named, *solid, arguments, notes);
 }
 
 }  // namespace
@@ -170,7 +181,9 @@ Command packCommand() {
   Command command("pack", "Fill a solid with spheres");
   auto arguments = std::make_shared<Arguments>();
   PackOptions& options = arguments->pack;
-  command.argument("SOLID", arguments->solid.source, "Mesh file (OBJ, STL, PLY, ...) or name of a solid")
+  command
+      .argument("SOLID", arguments->solid.source,
+                "Mesh file (OBJ, STL, PLY, ...), name of a solid, or - for a mesh from stdin")
       .withFile()
       .withSuggestions(namedSolids());
   command

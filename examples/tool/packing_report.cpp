@@ -106,7 +106,7 @@ Report describe(const Packing& packing) {
   const double largest = most->radius, smallest = least->radius;
   report.add("largest_radius", "largest radius", largest, number(largest, "m"));
   report.add("smallest_radius", "smallest radius", smallest, number(smallest, "m"));
-  // An import says nothing of its solid.
+  // An import says nothing of its solid: mass properties are those of its spheres.
   const bool measured = quality.density > 0;
   report.add("density", "density", quality.density, measured ? percent(quality.density) : "not known");
   const double diagonal = diagonalOf(packing.surface);
@@ -142,13 +142,16 @@ Report describe(const Packing& packing) {
   for (const char* measured : {"coverage", "errors_by_depth"})
     report.add(measured, "", file.at(measured), "");
   addMassWeights(packing.mass_weights, report);
-  report.add("volume", "volume of the solid", solid.volume, number(solid.volume, "m^3"));
+  report.add("volume", measured ? "volume of the solid" : "volume of the spheres", solid.volume,
+             number(solid.volume, "m^3"));
   Vec3d centre = solid.centre_of_mass;
   for (int k = 0; k < 3; ++k) centre[k] += packing.origin[k];
-  report.add("centre_of_mass", "centre of mass", centre, vector(centre, "m"));
+  const double size = diagonal > 0 ? diagonal : std::cbrt(solid.volume);
+  report.add("centre_of_mass", measured ? "centre of mass" : "centre of the spheres", centre,
+             place(centre, size));
   report.add("origin", packing.origin == Vec3d{} ? "" : "origin of the spheres", packing.origin,
-             vector(packing.origin, "m"));
-  report.add("inertia", "inertia, unit density", solid.inertia,
+             place(packing.origin, size));
+  report.add("inertia", measured ? "inertia, unit density" : "inertia of the spheres", solid.inertia,
              vector({solid.inertia[0], solid.inertia[4], solid.inertia[8]}, "m^5 (xx yy zz)"));
   report.add("triangles", "triangles", packing.surface.triangles.size());
   report.add("warnings", "", packing.warnings, "");

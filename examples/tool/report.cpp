@@ -1,6 +1,7 @@
 #include "report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace innersphere::tool {
@@ -54,6 +55,19 @@ std::string percent(double fraction) {
 
 std::string vector(const Vec3d& v, const std::string& unit) {
   return number(v[0]) + " " + number(v[1]) + " " + number(v[2]) + " " + unit;
+}
+
+std::string place(const Vec3d& at, double size) {
+  std::string numbers;
+  for (const double x : at) {
+    const double sizes_away = std::abs(x) / size;
+    const int digits =
+        4 + (sizes_away > 1 ? static_cast<int>(std::min(std::ceil(std::log10(sizes_away)), 12.0)) : 0);
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*g ", digits, x);
+    numbers += text;
+  }
+  return numbers + "m";
 }
 
 }  // namespace innersphere::tool

@@ -42,5 +42,7 @@ class Report {
 std::string number(double value, const std::string& unit = "");  ///< four digits: "0.0123 m"
 std::string percent(double fraction);                            ///< "85.02 %"
 std::string vector(const Vec3d& v, const std::string& unit);     ///< "1.2 0.3 4 m"
+/// With as many digits as tell 1e-4 of a size [m], wherever that is: "1000000.5 0.3 4 m".
+std::string place(const Vec3d& at, double size);
 
 }  // namespace innersphere::tool

@@ -42,7 +42,7 @@ int run(Arguments& arguments) {
 
   const PictureArguments& pictures = arguments.pictures;
   const bool taken = isStdout(arguments.csv) || isStdout(pictures.png) || isStdout(pictures.html);
-  describe(scene, play).print(arguments.json, taken ? stderr : stdout);
+  if (!taken || !isQuiet()) describe(scene, play).print(arguments.json, taken ? stderr : stdout);
   std::fflush(stdout);
   if (!arguments.csv.empty()) {
     writeTextOutput(arguments.csv, arguments.force, demo::toCsv(play.recording));

@@ -60,6 +60,10 @@ void setQuiet(bool quiet) {
   quiet_mode = quiet;
 }
 
+bool isQuiet() {
+  return quiet_mode;
+}
+
 void say(const std::string& line) {
   if (quiet_mode) return;
   clearProgressBar();

@@ -22,6 +22,7 @@ class EndsAtOnce {
 
 /// Keeps notes and progress off stderr.
 void setQuiet(bool quiet);
+bool isQuiet();
 
 /// A line on stderr, unless quiet.
 void say(const std::string& line);

@@ -440,3 +440,21 @@ def test_names():
 
 def test_repr(box):
     assert repr(box[:64]).startswith("<innersphere.Packing: 64 spheres, ")
+
+
+def test_messages_name_what_python_has(tmp_path):
+    packing = innersphere.pack((BOX_VERTICES, BOX_FACES), spheres=10, overlap_errors=False)
+    packing.save(tmp_path / "box.json")
+    with pytest.raises(innersphere.FileThereError, match="overwrite=True"):
+        packing.save(tmp_path / "box.json")
+    with pytest.raises(innersphere.NotASolidError, match="repair=True") as error:
+        innersphere.pack((BOX_VERTICES, BOX_FACES[:-1]), spheres=10)
+    assert "--" not in str(error.value)
+    with pytest.raises(innersphere.NoSphereFitsError) as error:
+        innersphere.pack((np.array(BOX_VERTICES) * [1, 1, 1e-6], BOX_FACES), spheres=10)
+    assert "--" not in str(error.value)
+    with pytest.raises(innersphere.InvalidArgumentError, match="a quaternion has to have the length 1"):
+        innersphere.Query("cpu").overlap(packing, packing, pose_b=([0, 0, 0], [0, 0, 0, 2]))
+    for shared in (5.0, np.zeros(3), {"volume": 1.0}):
+        with pytest.raises(TypeError, match="Query.overlap"):
+            innersphere.expected_error(packing, packing, shared)

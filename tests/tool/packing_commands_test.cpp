@@ -113,6 +113,9 @@ TEST_F(PackingCommands, ConvertKeepsThePacking) {
   EXPECT_EQ(readFile(path("torus.ply")).substr(0, 3), "ply");
   succeed("convert torus.cbor torus.xyzr");
   EXPECT_EQ(json("info torus.xyzr")["spheres"], 64);
+  const std::string table = succeed("info torus.xyzr").out;
+  EXPECT_NE(table.find("volume of the spheres"), std::string::npos) << table;
+  EXPECT_EQ(table.find("of the solid"), std::string::npos) << table;
 }
 
 TEST_F(PackingCommands, ReplacesOnlyWithForce) {
@@ -207,8 +210,67 @@ TEST_F(PackingCommands, PipesCarryPackings) {
   EXPECT_EQ(noise.exit_code, 3);
   EXPECT_EQ(noise.err.find("innersphere: stdin"), 0u) << noise.err;
   refuse("info -", 3, {"stdin"});
-  refuse("pack -", 2, {"ending"});
+  refuse("pack -", 3, {"stdin", "empty"});
   EXPECT_EQ(files(), std::set<std::string>{"torus.json"});
+}
+
+TEST_F(PackingCommands, PipesCarryMeshes) {
+  writeFile(path("tetra.obj"), "# a comment\n" + std::string(kTetrahedron));
+  succeed("pack tetra.obj --spheres 20 -o tetra.cbor");
+  succeed("convert tetra.cbor tetra.stl");
+  for (const std::string file : {"tetra.obj", "tetra.stl"}) {
+    const Outcome outcome = shell("\"$TOOL\" pack - --spheres 20 --json -o piped.cbor --force < " + file);
+    ASSERT_EQ(outcome.exit_code, 0) << file << outcome.err;
+    const auto summary = nlohmann::json::parse(outcome.out);
+    EXPECT_NEAR(summary["volume"].get<double>(), 1.0 / 6, 1e-6) << file;
+    EXPECT_EQ(summary["source"], "stdin");
+  }
+  EXPECT_EQ(shell("cat tetra.obj | \"$TOOL\" pack /dev/stdin --spheres 9 -o x.cbor").exit_code, 0);
+  EXPECT_NE(shell("gzip -c tetra.obj | \"$TOOL\" pack - -o y.cbor").err.find("gunzip"), std::string::npos);
+  EXPECT_EQ(shell("echo nonsense | \"$TOOL\" pack - -o y.cbor").exit_code, 3);
+}
+
+TEST_F(PackingCommands, QuietKeepsTheReportOffStandardError) {
+  const Outcome quiet = run("pack torus --spheres 20 -o - -q");
+  EXPECT_EQ(quiet.exit_code, 0);
+  EXPECT_EQ(quiet.err, "");
+  EXPECT_EQ(quiet.out, run("pack torus --spheres 20 -o -").out);
+}
+
+TEST_F(PackingCommands, PlacesHaveTheDigitsThatTellThemApart) {
+  writeFile(path("far.obj"),
+            "v 1000000 0 0\nv 1000001 0 0\nv 1000000 1 0\nv 1000000 0 1\n"
+            "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const std::string table = succeed("pack far.obj --spheres 20 -o far.cbor").out;
+  EXPECT_NE(table.find("1000000.25 0.25 0.25 m"), std::string::npos) << table;
+}
+
+// Scenes know no smallest radius, but `pack` does.
+TEST_F(PackingCommands, AdviceNamesTheCommandThatHasTheOption) {
+  writeFile(path("sheet.obj"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1e-6\nv 1 0 1e-6\nv 0 1 1e-6\nv 1 1 1e-6\n"
+            "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 2 4 8 6\nf 4 3 7 8\nf 3 1 5 7\n");
+  refuse("scene run pile --mesh sheet.obj", 3, {"`innersphere pack` a smaller --min-radius"});
+  writeFile(path("open.obj"), kOpenTetrahedron);
+  refuse("convert open.obj open.stl", 3, {"`innersphere pack` --repair"});
+}
+
+// What was said of the mesh is in the file, too.
+TEST_F(PackingCommands, FilesKeepWhatWasMended) {
+  std::istringstream lines(kTetrahedron);
+  std::string line, inside_out;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::string word, a, b, c;
+    words >> word >> a >> b >> c;
+    inside_out += word == "f" ? "f " + b + " " + a + " " + c + "\n" : line + "\n";
+  }
+  writeFile(path("tetra.obj"), inside_out);
+  const Outcome outcome = run("pack tetra.obj --spheres 20 -o tetra.cbor --json");
+  const auto warnings = nlohmann::json::parse(outcome.out)["warnings"];
+  ASSERT_GE(warnings.size(), 1u) << outcome.out;
+  EXPECT_NE(outcome.err.find(warnings[0].get<std::string>()), std::string::npos) << outcome.err;
+  EXPECT_EQ(json("info tetra.cbor")["warnings"], warnings);
 }
 
 // The volume that a triangle mesh bounds, by the divergence theorem.

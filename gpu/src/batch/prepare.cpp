@@ -51,8 +51,8 @@ void failFor(Fault fault, std::size_t index, const std::string& name) {
       fail(ErrorCode::bad_argument, index,
            "the rotation of " + name + " is off orthonormal by more than " +
                std::to_string(core::kRotationTolerance) +
-               "; it may only turn (in C++ Placement::scale scales, in Python solids are packed at their "
-               "size)");
+               ": a quaternion has to have the length 1, and a matrix may only turn (in C++ Placement::scale "
+               "scales, in Python solids are packed at their size)");
     case Fault::reflection:
       fail(ErrorCode::bad_argument, index, "the rotation of " + name + " is a reflection");
     case Fault::last_row:

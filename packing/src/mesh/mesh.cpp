@@ -98,7 +98,7 @@ void noteUnits(MeshReport& report) {
   const double longest = std::max({size[0], size[1], size[2]});
   if (longest < kSmall || longest > kLarge) {
     report.notes.push_back("the longest side is " + text(longest) +
-                           " m; if the file is not in metres, give a scale (0.001 for millimetres)");
+                           " m; if that is not so, change the scale (0.001 for a file in millimetres)");
   }
 }
 

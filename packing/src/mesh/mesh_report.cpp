@@ -80,7 +80,7 @@ void refuse(const MeshReport& report, const std::string& name) {
     why = "its triangles cannot be wound alike (it has one side only), see near " + text(report.open_at);
   }
   throw Error(ErrorCode::not_a_solid, name + " does not bound a volume: " + why +
-                                          "; close it in a mesh editor, or ask for repair (--repair): "
+                                          "; close it in a mesh editor, or ask for repair: "
                                           "holes are then closed flatly, inside is where the winding "
                                           "number exceeds 1/2, and near a hole the fill is a guess");
 }

@@ -104,7 +104,7 @@ void requireThickness(const Problem& problem) {
       "no sphere of the smallest allowed radius, " + text(problem.smallest * problem.container.side()) +
           " m, fits into '" + problem.container.solid().name() +
           "': it is a sheet or a rod, thinner than that everywhere; make it thicker, or ask for a smaller "
-          "min_radius (--min-radius)");
+          "min_radius");
 }
 
 GreedyRounds::Placed place(const Problem& problem, tbb::task_arena& arena, const Reporter& report) {
@@ -277,8 +277,7 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
   const Chosen chosen = choose(problem, place(problem, arena, report));
   if (chosen.balls.empty()) {
     throw Error(ErrorCode::no_sphere_fits, "no sphere of the smallest allowed radius fits into '" +
-                                               solid.name() +
-                                               "'; ask for a smaller min_radius (--min-radius)");
+                                               solid.name() + "'; ask for a smaller min_radius");
   }
   packing.order = options.order;
   packing.origin = problem.container.origin();

@@ -111,6 +111,14 @@ def _all(base: type[Error]) -> list[type[Error]]:
 _by_code = {c.code: c for c in _all(Error)}
 
 
+_words = {
+    "ask for repair": "ask for repair=True",
+    "ask for overwriting": "give overwrite=True",
+}
+
+
 def exception_for(code: str, message: str) -> Error:
-    """Makes the exception of a code of the C++ library."""
+    """Makes the exception of a code of the C++ library, in Python's terms."""
+    for of_library, of_python in _words.items():
+        message = message.replace(of_library, of_python)
     return _by_code.get(code, Error)(message)

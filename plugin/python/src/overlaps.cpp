@@ -270,9 +270,26 @@ class Query {
   std::vector<PairQuery> queries_;
 };
 
+/// Throws TypeError unless there are the fields that foretell errors.
+void requireFields(nb::handle shared) {
+  for (const char* field : {"volume", "area", "stiffness", "energy"}) {
+    try {
+      const nb::object found = shared[field];
+    } catch (nb::python_error& error) {
+      if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_LookupError) &&
+          !error.matches(PyExc_ValueError))
+        throw;
+      throw nb::type_error(("shared has no field \"" + std::string(field) +
+                            "\"; give what Query.overlap() returned for the two packings")
+                               .c_str());
+    }
+  }
+}
+
 nb::object expectedErrors(const SharedPacking& a, const SharedPacking& b, nb::handle shared,
                           const std::string& estimator) {
   const nb::object as_float64 = nb::module_::import_("innersphere._arrays").attr("as_float64");
+  requireFields(shared);
   const nb::object given = as_float64(shared["volume"], "volume");
   using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig>;
   const auto volumes = nb::cast<Numbers>(given.attr("ravel")());
