@@ -65,6 +65,13 @@ struct Note {
   std::optional<bool> holds;  ///< empty: the film is too short to show it
 };
 
+/// A step of a scale of colours, and the value at which the next one begins, in digits and signs; empty for
+/// the last.
+struct ScaleStep {
+  Colour colour;
+  std::string up_to;
+};
+
 /// A recording. The z axis points up.
 struct Film {
   std::string title;
@@ -78,6 +85,7 @@ struct Film {
   double frame_rate = 60;                          ///< [1/s]
   bool has_ground = true;                          ///< draw a floor at height `ground`
   float ground = 0;                                ///< [m]
+  std::vector<ScaleStep> scale;                    ///< what colours mean, for pictures
   bool colour_by_radius = false;  ///< spheres show their radius instead of their actor's colour
 
   std::size_t frames() const { return actors.empty() ? 0 : poses.size() / actors.size(); }

@@ -533,11 +533,10 @@
     const width = window.innerWidth;
     const height = window.innerHeight;
     const header = document.querySelector('header').getBoundingClientRect();
-    const views = element('views').getBoundingClientRect();
     const bottom = element('bottom').getBoundingClientRect().top;
     const areas = [
-      {left: 0, top: Math.max(header.bottom, views.bottom), right: width, bottom},
-      {left: header.right, top: views.bottom, right: width, bottom},
+      {left: 0, top: header.bottom, right: width, bottom},
+      {left: header.right, top: 0, right: width, bottom},
     ].filter((area) => area.right - area.left > 0.5 * width && area.bottom - area.top > 0.3 * height);
     return areas.length ? areas : [{left: 0, top: 0, right: width, bottom: height}];
   }

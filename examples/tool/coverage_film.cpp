@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <map>
+#include <sstream>
 
 #include "film/palette.hpp"
 #include "innersphere/error.hpp"
@@ -99,6 +101,13 @@ std::vector<Surface> bandsOf(const Packing& packing, float diagonal) {
   return bands;
 }
 
+/// "0.25%"
+std::string percentOf(float part) {
+  std::ostringstream text;
+  text << std::setprecision(3) << 100 * part << '%';
+  return text.str();
+}
+
 }  // namespace
 
 std::string addCoverage(const Packing& packing, demo::Film& film) {
@@ -107,9 +116,10 @@ std::string addCoverage(const Packing& packing, demo::Film& film) {
   }
   const std::vector<Surface> bands = bandsOf(packing, diagonalOf(packing.surface));
   for (std::size_t i = 0; i < bands.size(); ++i) {
+    const demo::Colour colour = demo::rampColour(1 - static_cast<float>(i) / kBands.size());
+    film.scale.push_back({colour, i < kBands.size() ? percentOf(kBands[i]) : ""});
     if (bands[i].triangles.empty()) continue;
-    film.actors.push_back({static_cast<std::uint32_t>(film.shapes.size()),
-                           demo::rampColour(1 - static_cast<float>(i) / kBands.size())});
+    film.actors.push_back({static_cast<std::uint32_t>(film.shapes.size()), colour});
     film.shapes.push_back({"band " + std::to_string(i), bands[i], {}});
   }
   return "Colours show the distance of the surface to the nearest sphere: yellow below 0.25 % of the "

@@ -3,6 +3,7 @@
 #include "file_names.hpp"
 #include "innersphere/error.hpp"
 #include "outputs.hpp"
+#include "render/legend.hpp"
 #include "replay/replay.hpp"
 #include "terminal.hpp"
 
@@ -37,7 +38,10 @@ void writePictures(const demo::Film& film, const PictureArguments& arguments, bo
     say("wrote " + arguments.html);
   }
   if (!arguments.png.empty()) {
-    const demo::Image image = demo::render(film, film.frames() - 1, arguments.render, progressBar());
+    demo::Image image = demo::render(film, film.frames() - 1, arguments.render, progressBar());
+    drawLegend(film, image);
+    // The picture has no words.
+    if (!film.scale.empty()) say(film.caption);
     writeOutput(arguments.png, force, [&image](const std::string& path) { demo::writePng(image, path); });
     say("wrote " + arguments.png);
   }

@@ -61,8 +61,8 @@ demo::Film filmOf(const Packing& packing, const std::string& title, const std::s
     const auto [least, most] =
         std::minmax_element(packing.spheres.begin(), packing.spheres.end(),
                             [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
-    film.caption +=
-        "Colours show the radius, " + number(least->radius) + " to " + number(most->radius, "m") + ".";
+    film.caption += "The colours of the spheres show their radius, " + number(least->radius) + " to " +
+                    number(most->radius, "m") + ".";
     film.colour_by_radius = true;
     film.shapes.push_back({title, packing.surface, packing.spheres});
     film.actors.push_back({0, demo::paletteColour(1)});
