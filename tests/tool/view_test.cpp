@@ -2,6 +2,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <regex>
 
 #include "tool_runner.hpp"
@@ -85,6 +86,27 @@ TEST_F(View, PageIsSelfContained) {
   EXPECT_EQ(film["actors"].size(), 1u);
   EXPECT_EQ(film["poses"].get<std::string>().size(), 40u) << "one pose of seven numbers in base 64";
   EXPECT_EQ(film["shapes"][0]["spheres"].get<std::string>().size(), 2136u) << "100 spheres of four numbers";
+}
+
+// Its row has seven fields between white ones, a stretch of one colour each, from yellow to violet.
+TEST_F(View, PicturesOfCoverageHaveAScale) {
+  const Outcome outcome =
+      run("view torus.cbor --colour coverage --width 300 --height 200 --samples 1 --png torus.png");
+  EXPECT_NE(outcome.err.find("distance of the surface to the nearest sphere"), std::string::npos)
+      << outcome.err;
+  const Picture picture = readPng(path("torus.png"));
+  std::size_t most = 0;
+  for (unsigned y = 0; y < picture.height; ++y) {
+    std::set<std::array<unsigned char, 3>> fields;
+    unsigned stretch = 0;
+    for (unsigned x = 1; x < picture.width; ++x) {
+      const unsigned char* const pixel = &picture.pixels[3 * (y * picture.width + x)];
+      stretch = std::equal(pixel, pixel + 3, pixel - 3) ? stretch + 1 : 0;
+      if (stretch == 25 && pixel[2] < 250) fields.insert({pixel[0], pixel[1], pixel[2]});
+    }
+    most = std::max(most, fields.size());
+  }
+  EXPECT_EQ(most, 7u);
 }
 
 // A closed surface has half as many vertices as triangles; the bands of colours each have their own rim.
