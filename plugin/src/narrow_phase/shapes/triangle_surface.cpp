@@ -17,7 +17,6 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include "common/contact_tolerances.hpp"
-#include "narrow_phase/hill.hpp"
 #include "narrow_phase/shapes/distance_surface.hpp"
 #include "narrow_phase/shapes/face_on_edge.hpp"
 
@@ -161,8 +160,9 @@ class TriangleSurface : public ShapeSurface {
       return first.normal.dot(way) * btScalar(side_) > 0;
     };
     // A line that comes from outside may miss the front of an edge by rounding, but not all beside it do.
-    const Across axes(way.normalized());
-    for (const btVector3& side : {axes.x, -axes.x, axes.y, -axes.y})
+    btVector3 x, y;
+    btPlaneSpace1(way.normalized(), x, y);
+    for (const btVector3& side : {x, -x, y, -y})
       if (!meetsFromBehind(side * (kBesideLine * most))) return false;
     return meetsFromBehind(btVector3(0, 0, 0));
   }
