@@ -120,6 +120,7 @@ void validateRadii(const std::vector<VolumeTrueRadii>& prefixes, std::size_t sph
         throw Error(ErrorCode::bad_argument, where() + " are not all positive and finite");
       }
     }
+    if (!std::isfinite(prefix.sampling_error)) notFinite("the sampling error of " + where());
   }
 }
 
@@ -160,8 +161,9 @@ void validateMeasures(const Packing& packing) {
       if (!std::isfinite(x)) notFinite("a number of the coverage");
     }
   }
-  if (!std::isfinite(packing.overlap_errors.sampling_error))
-    notFinite("the sampling error of the overlap errors");
+  for (double x : {packing.overlap_errors.shallowest, packing.overlap_errors.sampling_error}) {
+    if (!std::isfinite(x)) notFinite("a number of the overlap errors");
+  }
   for (const OverlapErrors::Prefix& prefix : packing.overlap_errors.prefixes) {
     validateEstimate(prefix.raw);
     validateEstimate(prefix.volume_true);

@@ -165,6 +165,23 @@ TEST(FilePacking, FilesThatEndEarlyAreSaidToDoSo) {
   expectError(ErrorCode::bad_format, path + ": it ends early", [&] { readPacking(path); });
 }
 
+// CBOR can hold numbers that JSON cannot: what is read from the one has to go into the other.
+TEST(FilePacking, NoNumberOfAFileMayBeOutOfAllNumbers) {
+  const nlohmann::json document = nlohmann::json::from_cbor(toCbor(somePacking(3))), flat = document.flatten();
+  int numbers = 0;
+  for (const auto& [path, value] : flat.items()) {
+    if (!value.is_number_float()) continue;
+    ++numbers;
+    nlohmann::json damaged = document;
+    damaged[nlohmann::json::json_pointer(path)] = std::nan("");
+    std::string bytes;
+    nlohmann::json::to_cbor(damaged, bytes);
+    expectError(ErrorCode::not_finite, "is not finite", [&] { decodePacking(bytes); });
+    if (HasFailure()) FAIL() << path;
+  }
+  EXPECT_GT(numbers, 50);
+}
+
 TEST(FilePacking, EmptySurfaceAndPrefixesAreFine) {
   const Scratch scratch;
   Packing packing = somePacking(3);
