@@ -119,9 +119,8 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       fillPlace(point, lane, source, pair, bodies);
       fillForces(point, lane, *source.point, pair, bodies);
       fillTurning(point, lane, source);
-      const btScalar rolls = point.fall_1[lane] + point.fall_2[lane];
-      reach_a = std::max(reach_a, point.arm_a.get(lane).length() + rolls);
-      reach_b = std::max(reach_b, point.arm_b.get(lane).length() + rolls);
+      reach_a = std::max(reach_a, point.arm_a.get(lane).length());
+      reach_b = std::max(reach_b, point.arm_b.get(lane).length());
       block.bounces = block.bounces || point.restitution[lane] > 0;
       block.bends = block.bends || !point.axis_1.get(lane).isZero() || !point.axis_2.get(lane).isZero();
       block.rolls = block.rolls || point.rolling[lane] > 0 || point.spinning[lane] > 0;

@@ -224,11 +224,21 @@ void ContactRows::follow(const Block& block, PointLanes& point, const LaneBodies
   point.arm_b = point.pivot_b + point.normal_0 * point.radius_b + to_b + apart * (inAll(1) - block.share);
 }
 
-/// Whether arms and normals may have changed so much, as their bodies see them, that rows over-relax.
-bool ContactRows::hasTurnedFar(const Block& block, const LaneBodies& a, const LaneBodies& b) {
+/// Whether arms and normals may have changed so much, as their bodies see them, that rows over-relax: with
+/// the bodies, and as places go along bent surfaces, further than either body moves where these nearly fit.
+bool ContactRows::hasTurnedFar(const Block& block, const PointLanes* points, const LaneBodies& a,
+                               const LaneBodies& b) {
   const Lanes3 moved = a.moved - b.moved;
   const Lanes turned = dot(a.axis, a.axis) * block.reach_a + dot(b.axis, b.axis) * block.reach_b;
-  const Lanes way = dot(moved, moved) + turned * inAll(4);  // an axis has half of the angle
+  Lanes way = dot(moved, moved) + turned * inAll(4);  // an axis has half of the angle
+  for (int i = 0; block.bends && i < block.count; ++i) {
+    const PointLanes& point = points[i];
+    const Lanes3 went_a = point.arm_a - point.pivot_a + point.normal_0 * point.radius_a,
+                 went_b = point.arm_b - point.pivot_b - point.normal_0 * point.radius_b,
+                 bent = point.normal - point.normal_0;
+    way = larger(
+        way, dot(went_a, went_a) + dot(went_b, went_b) + dot(bent, bent) * (block.reach_a + block.reach_b));
+  }
   const auto far = way * block.slender > inAll(1);
   bool any = false;
   for (int lane = 0; lane < kLanes; ++lane) any = any || far[lane] != 0;
@@ -355,7 +365,7 @@ void ContactRows::solveBlock(int index, Pass pass, std::vector<BodyState>& state
   PointLanes* const end = begin + block.count;
   if (pass != Pass::push) {
     for (PointLanes* point = begin; point != end; ++point) follow(block, *point, a, b);
-    block.turned = block.turned || hasTurnedFar(block, a, b);
+    block.turned = block.turned || hasTurnedFar(block, begin, a, b);
     if (block.turned) renewMasses(index, states);
   }
   Slowed slowed{};

@@ -118,7 +118,7 @@ class ContactRows {
     Lanes calm;                  ///< at this speed they come as deep into each other as is wanted [m/s]
     Lanes share;                 ///< of what they slide apart, to the place in the middle
     Lanes inverse_mass[2];       ///< of bodies that are not held [1/kg]
-    Lanes reach_a, reach_b;      ///< squared: of arms, and how far places roll as the body turns [m^2]
+    Lanes reach_a, reach_b;      ///< of arms, squared [m^2]
     Lanes slender;               ///< inverse square of the way that changes masses too much [1/m^2]
     bool bounces, rolls, bends;  ///< what some of its points do
     bool bouncing;               ///< in this substep
@@ -163,7 +163,8 @@ class ContactRows {
   INNERSPHERE_WIDE void carryWide(int index, std::vector<BodyState>& states);
   INNERSPHERE_WIDE void renewMassesWide(int index, const std::vector<BodyState>& states);
   INNERSPHERE_WIDE void solveWide(int index, Pass pass, std::vector<BodyState>& states);
-  inline static bool hasTurnedFar(const Block& block, const LaneBodies& a, const LaneBodies& b);
+  inline static bool hasTurnedFar(const Block& block, const PointLanes* points, const LaneBodies& a,
+                                  const LaneBodies& b);
   inline static void follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b);
   inline static void roll(PointLanes& point, const LaneBodies& a, const LaneBodies& b, const Lanes3& way,
                           Lanes3& to_a, Lanes3& to_b);

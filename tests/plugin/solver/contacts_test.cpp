@@ -7,6 +7,7 @@
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 
 #include "solver/contact_rows.hpp"
+#include "solver/point_curvature.hpp"
 #include "solver/solver_world.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
@@ -440,23 +441,17 @@ TEST(SubstepContacts, ABodyThatTumblesKeepsItsMomentumAndEnergy) {
   EXPECT_NEAR(world.energy(), energy, 0.01 * energy);
 }
 
-/// One step in one substep: a rod turns by `angle` after its row was made, which a pass is to stop.
-void stopATurnedRod(btScalar angle) {
-  constexpr btScalar kTime = btScalar(1) / 60;
-  SolverWorld world;
-  btRigidBody& rod = world.addBox(btVector3(0.5f, 0.025f, 0.025f), btScalar(0.1), btVector3(0, 0, 0));
-  btRigidBody& wall = world.addBox(btVector3(1, 1, 1), 0, btVector3(-2, 0, 0));
-  const btVector3 arm(0.4f, 0.05f, 0), normal(1, 0, 0), spin(0, angle / kTime, 0);
-  rod.setLinearVelocity(btVector3(-1, 0, 0));
-  rod.setAngularVelocity(spin);
-  rod.setFlags(0);
-  btPersistentManifold manifold(&rod, &wall, 0, 1, 1);
+constexpr btScalar kTime = btScalar(1) / 60;
+
+/// One step in one substep: a body moves on after the row of this point on a wall was made, which a pass is
+/// to stop.
+BodyState afterAPass(btRigidBody& body, btRigidBody& wall, const btManifoldPoint& point) {
+  body.setFlags(0);
+  btPersistentManifold manifold(&body, &wall, 0, 1, 1);
   manifold.m_index1a = 0;
-  btManifoldPoint point(arm, btVector3(0, 0, 0), normal, 0);
-  point.m_positionWorldOnA = point.m_positionWorldOnB = arm;
   manifold.addManifoldPoint(point);
   btPersistentManifold* manifolds[] = {&manifold};
-  btCollisionObject* objects[] = {&rod, &wall};
+  btCollisionObject* objects[] = {&body, &wall};
   btContactSolverInfo info;
   info.m_timeStep = kTime;
   SolverBodies bodies;
@@ -475,8 +470,29 @@ void stopATurnedRod(btScalar angle) {
   contacts.prepare(0, bodies);
   bodies.move(0, 1, kTime);
   contacts.solve(0, Pass::relax, bodies.states());
-  rod.setCompanionId(-1);
-  const BodyState& state = bodies.state(0);
+  body.setCompanionId(-1);
+  return bodies.state(0);
+}
+
+btRigidBody& addBody(SolverWorld& world, const btVector3& half) {
+  btRigidBody& body = world.addBox(half, btScalar(0.1), btVector3(0, 0, 0));
+  body.setLinearVelocity(btVector3(-1, 0, 0));
+  return body;
+}
+
+btManifoldPoint touching(const btVector3& place, const btVector3& normal) {
+  btManifoldPoint point(place, btVector3(0, 0, 0), normal, 0);
+  point.m_positionWorldOnA = point.m_positionWorldOnB = place;
+  return point;
+}
+
+void stopATurnedRod(btScalar angle) {
+  SolverWorld world;
+  btRigidBody& rod = addBody(world, btVector3(0.5f, 0.025f, 0.025f));
+  btRigidBody& wall = world.addBox(btVector3(1, 1, 1), 0, btVector3(-2, 0, 0));
+  const btVector3 arm(0.4f, 0.05f, 0), normal(1, 0, 0), spin(0, angle / kTime, 0);
+  rod.setAngularVelocity(spin);
+  const BodyState state = afterAPass(rod, wall, touching(arm, normal));
   // Points of what is flat stay where they are, as seen from the body.
   const btScalar before = (rod.getLinearVelocity() + spin.cross(arm)).dot(normal);
   EXPECT_NEAR((state.velocity + state.spin.cross(arm)).dot(normal) / before, 0, 1e-4) << angle;
@@ -484,6 +500,34 @@ void stopATurnedRod(btScalar angle) {
 
 TEST(SubstepContacts, RowsOfARodFollowAsItTurns) {
   for (const btScalar angle : {0.1f, 0.5f, 1.0f, 1.5f, 3.0f}) stopATurnedRod(angle);
+}
+
+/// The round edge of a plate slides in a hollow that nearly fits it: the place goes further than it slides,
+/// to where a push is no longer along the plate, which yields more. What a contact without friction stops
+/// gains nothing.
+TEST(SubstepContacts, RowsOfAPlateFollowThePlace) {
+  constexpr btScalar kEdge = 10, kHollow = btScalar(-8.9);  // curvatures [1/m]
+  for (const btScalar slide : {0.005f, 0.01f, 0.02f, 0.03f, 0.05f}) {
+    SolverWorld world;
+    btRigidBody& plate = addBody(world, btVector3(0.5f, 0.025f, 0.5f));
+    btRigidBody& wall = world.addBox(btVector3(1, 1, 1), 0, btVector3(-2, 0, 0));
+    plate.setLinearVelocity(btVector3(-1, slide / kTime, 0));
+    const btVector3 normal(1, 0, 0);
+    btManifoldPoint point = touching(btVector3(-0.5f, 0, 0), normal);
+    const Across axes(-normal);
+    PointBends bends;
+    for (const auto& [bend, curvature] : {std::pair(&bends.a, kEdge), std::pair(&bends.b, kHollow)})
+      *bend = Bend::about(btVector3(0, 0, 1), axes, curvature);
+    setBends(point, bends);
+    const auto energyOf = [&](const btVector3& velocity, const btVector3& spin) {
+      return (velocity.length2() / plate.getInvMass() +
+              (spin * spin / plate.getInvInertiaDiagLocal()).dot(btVector3(1, 1, 1))) /
+             2;
+    };
+    const btScalar before = energyOf(plate.getLinearVelocity(), btVector3(0, 0, 0));
+    const BodyState state = afterAPass(plate, wall, point);
+    EXPECT_LT(energyOf(state.velocity, state.spin), before) << slide;
+  }
 }
 
 TEST(SubstepContacts, RodsThatWhirlIntoEachOtherGainNothing) {
