@@ -3,6 +3,8 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
+#include "common/squeeze.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -76,6 +78,16 @@ bool canBeMoved(const btCollisionObject& object) {
          (collider->m_link >= 0 || !collider->m_multiBody->hasFixedBase());
 }
 
+/// The share of the push that is left to a patch by those that press against it.
+btScalar pushLeft(const ContactPatch& patch, const std::vector<ContactPatch>& patches) {
+  btScalar left = 1;
+  if (patch.by_volume || !(patch.depth() > 0)) return left;
+  for (const ContactPatch& other : patches)
+    if (!other.by_volume)
+      left = btMin(left, Squeeze::push(patch.depth(), patch.normal, other.depth(), other.normal));
+  return left;
+}
+
 /// The speed at which bodies leave along `normal`, if they leave along the deepest of their patches [m/s]:
 /// those of several directions must not add up.
 btScalar leavingAlong(const btVector3& normal, const std::vector<ContactPatch>& patches) {
@@ -124,6 +136,7 @@ ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std
   law.damping_ = damping_ratio_ * 2 * btSqrt(stiffness * mass_) * share;
   law.leaving_ = patch.by_volume ? btScalar(0) : leavingAlong(patch.normal, patches);
   law.rolling_ = canRollOn(patch) ? kRolling * size_ : btScalar(0);
+  law.push_left_ = pushLeft(patch, patches);
   return law;
 }
 
@@ -140,7 +153,11 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     law.damping = damping_;
     return law;
   }
-  const btScalar fastest = btMax(kFastest * law_->size_, btMin(leaving_, kLeaving * depth));
+  const bool given = law_->response_ == Response::compliant && !law_->defaultSpring();
+  const btScalar unseen = SubstepOptions().depth * law_->size_;
+  if (push_left_ < 1 && depth > unseen && !given && !law_->penalty())
+    law.friction = Squeeze::friction(depth, unseen);
+  const btScalar fastest = push_left_ * btMax(kFastest * law_->size_, btMin(leaving_, kLeaving * depth));
   if (law_->response_ == Response::rigid) {
     if (!(depth > law_->solver_.deepest_push))
       law.depth = btMin(depth, fastest * law.time_step / law_->solver_.erp);
@@ -162,8 +179,8 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
     };
     law.depth = btMin(depth, law_->solver_.deepest_spring);
     hold();
-    // What is held back must not be softer: under a load that it cannot bear it would sink on and on. That does
-    // not go for walls on both sides of what is deep in both: they would be pressed on it.
+    // What is held back must not be softer: under a load that it cannot bear it would sink on and on. That
+    // does not go for walls on both sides of what is deep in both: they would be pressed on it.
     const btScalar bearing = btMax(law.depth, btMin(depth, leaving_ / kLeaving));
     const btScalar doubled = (in_chain_ ? kChainStiffening : kStiffening) * law_->size_;
     const btScalar stiffening = 1 + btMax(bearing, btScalar(0)) / doubled;

@@ -20,6 +20,7 @@ struct PointLaw {
   btScalar depth = 0;      ///< to report [m]
   btScalar stiffness = 0;  ///< [N/m]
   btScalar damping = 0;    ///< [N s/m]
+  btScalar friction = 1;   ///< share of it
   btScalar push = 0;       ///< speed at which the spring alone would drive the bodies apart [m/s]
   btScalar rolling = 0;    ///< how far ahead the load of bodies that roll lies [m]
   btScalar tilting = 0;    ///< how much further for each radian that they tilt in the step [m]
@@ -48,6 +49,9 @@ struct PointLaw {
 ///
 /// A SubstepSolver is told the measured depth, without a spring but for one that is given: it has its own.
 /// So is whoever reads contacts that no solver does, see areSolved().
+///
+/// Patches that press against each other, deeper than is seen, leave with less friction and push (Squeeze).
+/// Not where a stiffness is given, which says how deep bodies are meant to be in each other.
 ///
 /// Where bodies touch in one place or along a line, on which they could roll, they resist it as if their load
 /// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second. Links that bear several
@@ -80,6 +84,7 @@ class ContactLaw {
     btScalar damping_;
     btScalar leaving_;  ///< how fast what is deep may be driven apart [m/s]
     btScalar rolling_;
+    btScalar push_left_;  ///< share, by what presses against it
     bool in_chain_;
   };
   /// Returns the law of patch `index`. All patches of the pair share its stiffness.

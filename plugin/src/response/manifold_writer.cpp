@@ -129,7 +129,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   if (!law.solved) return;
   // Directions of the user's own may be those of a belt that moves what lies on it.
   const bool belt = (point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED) != 0;
-  if (!belt) point.m_combinedFriction *= from.friction;
+  if (!belt) point.m_combinedFriction *= from.friction * law.friction;
   if (point.m_combinedFriction > 0 && point.m_combinedRollingFriction == 0) {
     const btScalar tilts = motion.spin().cross(from.normal).length() * law.time_step;
     point.m_combinedRollingFriction = law.rolling + law.tilting * tilts + from.ahead;

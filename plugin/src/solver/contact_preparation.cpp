@@ -5,6 +5,7 @@
 
 #include "common/bullet_vectors.hpp"
 #include "common/contact_tolerances.hpp"
+#include "common/squeeze.hpp"
 #include "solver/contact_rows.hpp"
 #include "solver/point_curvature.hpp"
 #include "solver/soft_step.hpp"
@@ -140,6 +141,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       const btManifoldPoint& point = *sources_[static_cast<std::size_t>(pair.begin + i)].point;
       fillSoftness(points[i], lane, point, pair, bodies);
     }
+    loosen(points, pair.count, lane, depth_ * smallerSize(pair, bodies));
     fillLoads(points, pair.count, lane);
   }
 }
@@ -160,6 +162,22 @@ void ContactRows::fillLoads(PointLanes* points, int count, int lane) {
       if (pressesAgainst(i, k)) return;
   }
   for (int i = 0; i < count; ++i) points[i].loaded[lane] = points[i].kept[lane];
+}
+
+/// What points press against each other, deeper than is wanted, is held neither by friction nor thrown.
+void ContactRows::loosen(PointLanes* points, int count, int lane, btScalar wanted) {
+  for (int i = 0; i < count; ++i) {
+    PointLanes& point = points[i];
+    const btScalar depth = -point.gap[lane];
+    if (!(depth > wanted) || point.spring[lane] > 0) continue;
+    btScalar push = 1;
+    for (int k = 0; k < count; ++k)
+      push = std::min(push, Squeeze::push(depth, point.normal.get(lane), -points[k].gap[lane],
+                                          points[k].normal.get(lane)));
+    if (!(push < 1)) continue;
+    point.friction[lane] *= Squeeze::friction(depth, wanted);
+    point.fastest[lane] *= push;
+  }
 }
 
 /// Where the bodies touch, and what they have borne there.

@@ -156,6 +156,7 @@ class ContactRows {
   void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                     const SolverBodies& bodies) const;
   static void fillLoads(PointLanes* points, int count, int lane);
+  static void loosen(PointLanes* points, int count, int lane, btScalar wanted);
   // Position-independent code inlines what is declared so.
   inline void renewMassesOf(const Block& block, const std::vector<BodyState>& states);
   inline void carryBlock(const Block& block, std::vector<BodyState>& states);

@@ -294,5 +294,48 @@ TEST(SolidsInTheSamePlace, Part) {
   }
 }
 
+// 2 % of its size deep between walls that lean by 10 degrees, with friction that would hold it between walls
+// of 27: no solid gives way by as much.
+TEST(Wedges, ComeOutOfWhatTheyAreDrivenInto) {
+  constexpr double kSlope = 10 * M_PI / 180, kFriction = 0.5, kDeep = 0.02;
+  const auto sideAt = [&](double z) { return z * std::tan(kSlope); };
+  const auto groove = makePackedShape(
+      *makeSolid(prismMesh({{0, 0}, {sideAt(1), 1}, {1, 1}, {1, -0.5}, {-1, -0.5}, {-1, 1}, {-sideAt(1), 1}}),
+                 "groove"),
+      1000);
+  const auto wedge = makePackedShape(
+      *makeSolid(
+          prismMesh({{-sideAt(0.4), 0.4}, {sideAt(0.4), 0.4}, {sideAt(0.9), 0.9}, {-sideAt(0.9), 0.9}}),
+          "wedge"),
+      1000);
+  const double size = std::hypot(2 * sideAt(0.9), 1, 0.5);
+  SubstepSolver solver;
+  for (const bool substeps : {false, true}) {
+    for (const double rate : {60.0, 240.0}) {
+      TestWorld world;
+      if (substeps) world.world.setConstraintSolver(&solver);
+      PackingCollisionAlgorithm::prepareWorld(world.world);
+      world.world.setGravity(btVector3(0, 0, 0));
+      const auto add = [&](const std::shared_ptr<PackingShape>& shape, double mass,
+                           double z) -> btRigidBody& {
+        const btTransform place =
+            shape->bodyTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(z))));
+        btRigidBody& body = world.add(shape, mass, place.getOrigin(), place.getRotation());
+        body.setFriction(btScalar(std::sqrt(kFriction)));
+        body.setActivationState(DISABLE_DEACTIVATION);
+        return body;
+      };
+      add(groove, 0, 0);
+      const btRigidBody& body = add(wedge, 1, -kDeep * size / std::sin(kSlope));
+      world.run(1, 1 / rate);
+      const double depth = -wedge->meshTransform(body.getWorldTransform()).getOrigin().z() * std::sin(kSlope);
+      EXPECT_LT(depth, 0.005 * size) << substeps << ", " << rate << " steps/s";
+      // By the law, along both walls as along one. SubstepSolver takes it back.
+      EXPECT_LT(body.getLinearVelocity().length(), substeps ? 0.01 * size : 0.5 * size)
+          << substeps << ", " << rate << " steps/s";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace innersphere::test
