@@ -30,7 +30,7 @@ struct WeightedPoint {
   bool is_top = false;        ///< see ProbedSample
   bool bends = false;         ///< between curved surfaces
   bool both_bend = false;     ///< neither of them is flat
-  btScalar beyond_end = 0;    ///< length of the way to where it would be deepest, if a face ends before [m]
+  btScalar beyond_end = 0;    ///< what is deeper, and no further away than this, bears instead [m]
   btVector3 slope{0, 0, 0};   ///< B's normal less A's
   btVector3 moved{0, 0, 0};   ///< the point on B, from where that was measured
   btVector3 across{0, 0, 0};  ///< how far A's point is beside B's, across the normal

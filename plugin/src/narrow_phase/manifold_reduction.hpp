@@ -24,8 +24,8 @@ struct ReductionScratch {
 /// those that are longer, and pushes along other ways, from where they have sunk in; faces stay.
 void keepLeastWaysOut(btScalar spacing, ReductionScratch& scratch, std::vector<WeightedPoint>& found);
 
-/// Drops faces that end before the place where they would bear what is round, if something else bears it as
-/// near as twice the way there. They would hold it as if they went on.
+/// Drops places of faces that end before the place where they would bear what is round, and of rims beside
+/// the deepest one, if something deeper is as near as `beyond_end`. They would hold it as if they went on.
 void dropBeyondEnds(std::vector<WeightedPoint>& found);
 
 /// Where curved surfaces touch, the top of a hill bears, and nothing beside it does: spheres of several

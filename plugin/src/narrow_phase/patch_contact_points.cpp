@@ -301,7 +301,7 @@ bool PatchContactPoints::addFace(const ProbedSample& sample, const btVector3& no
   layOnHill(points, axes, bends, !in_hollow, point);
   // The hollow says no more than the plane, however the bodies move on.
   if (in_hollow) (bends.a.isHollow() ? point.point.bend_a : point.point.bend_b) = Bend();
-  // Along a rim another place is deepest.
+  // Along a rim another place is deepest: all that is deeper lies within twice the way to it.
   if (points.along_straight_b > 0 && points.curvature_a == 0)
     point.beyond_end = 2 * btFabs(point.slope.dot(points.straight_b)) / points.along_straight_b;
   return true;
