@@ -51,8 +51,8 @@ constexpr btScalar kOpposedCosine = btScalar(0.94);
 /// Cosine, 30 degrees: where both surfaces bend, a face bears an edge if its normal is this close to the line
 /// that was probed.
 constexpr btScalar kBearingFaceCosine = btScalar(0.866);
-/// Ratio: an edge is taken to bend this much more than what is round on it. Ten times as much is lost to
-/// rounding in single precision.
+/// Ratio: an edge is taken to bend this much more than what is round on it, and, in inverse sizes of the
+/// smaller body, no more. Ten times as much is lost to rounding in single precision.
 constexpr btScalar kEdgeSharpness = 1000;
 /// Ratio: where one of two surfaces bends this much more than the other, it is an edge.
 constexpr btScalar kEdgeBends = 10;

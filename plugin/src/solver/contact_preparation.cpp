@@ -18,8 +18,6 @@ namespace {
 constexpr btScalar kFastestPush = btScalar(0.5), kLeavingRate = 3;
 /// Angle, 2 degrees: triangles tell no better than that in which directions a surface bends most and least.
 constexpr btScalar kAligned = btScalar(0.035);
-/// In inverse sizes: what bends more is an edge. More is lost to rounding: way times bend is an angle.
-constexpr btScalar kSharpest = 1000;
 /// [rad]: a direction that is closer to one in which a body is held may be that one, for rounding.
 constexpr btScalar kAcross = btScalar(1e-5);
 
@@ -263,8 +261,9 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
   PointBends bends = bendsOf(*source.point);
   for (Bend* bend : {&bends.a, &bends.b}) {
     const btScalar most = btFabs(bend->xx) + btFabs(bend->yy);
-    if (!(most * size > kSharpest)) continue;
-    const btScalar share = kSharpest / (most * size);
+    // Way times bend is an angle.
+    if (!(most * size > kEdgeSharpness)) continue;
+    const btScalar share = kEdgeSharpness / (most * size);
     *bend = {bend->xx * share, bend->xy * share, bend->yy * share};
   }
   const btScalar both = btFabs(bends.a.xx) + btFabs(bends.a.yy) + btFabs(bends.b.xx) + btFabs(bends.b.yy);
