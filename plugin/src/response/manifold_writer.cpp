@@ -225,11 +225,23 @@ bool leavesItToTop(const ContactPatch& patch, int index, btScalar separation) {
   return false;
 }
 
-/// The acceleration with which two curves come nearer, beside that of the bodies' points: they bend by k and
-/// l, slide by v and turn by u and w.
-btScalar byBending(btScalar k, btScalar l, btScalar v, btScalar u, btScalar w) {
-  return ((u - w) * (u - w) + 2 * v * (k * w + l * u) - k * l * v * v) / (k + l);
-}
+/// The curves along an axis across the normal in which two surfaces touch.
+struct Curves {
+  Curves(const ContactPoint& point, const Across& axes, const btVector3& axis, const btVector3& place,
+         const PairMotion& motion)
+      : k(point.bend_a.turn(axis, axes).dot(axis)),
+        l(point.bend_b.turn(axis, axes).dot(axis)),
+        v(motion.velocityAt(place).dot(axis)),
+        u(motion.a().spin.cross(point.normal).dot(axis)),
+        w(motion.b().spin.cross(point.normal).dot(axis)) {}
+  /// The acceleration with which they come nearer, beside that of the bodies' points.
+  btScalar approach() const {
+    return ((u - w) * (u - w) + 2 * v * (k * w + l * u) - k * l * v * v) / (k + l);
+  }
+  btScalar k, l;  ///< of A and B: how they bend [1/m]
+  btScalar v;     ///< how fast they slide [m/s]
+  btScalar u, w;  ///< and how fast their normals turn [1/s]
+};
 
 /// How much nearer bodies come to each other in the step than the plane in which they touch says, where one
 /// lies in a hollow of the other [m]: as that bends, and both turn. That is the second order of the gap
@@ -241,22 +253,20 @@ btScalar nearerByBending(const ContactPoint& point, const btVector3& place, cons
   if (in_b == point.bend_a.isHollow()) return 0;
   const Across axes(point.bend_x, point.normal.cross(point.bend_x));
   const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
-  const btVector3 slides = motion.velocityAt(place), turns_a = motion.a().spin.cross(point.normal),
-                  turns_b = motion.b().spin.cross(point.normal);
   btScalar acceleration = 0;
   for (int i = 0; i < 2; ++i) {
-    const btVector3& axis = hill.axis(i);
-    const btScalar k = point.bend_a.turn(axis, axes).dot(axis), l = point.bend_b.turn(axis, axes).dot(axis);
+    if (!hill.hasTop(i)) continue;
+    const Curves curves(point, axes, hill.axis(i), place, motion);
+    const btScalar k = curves.k, l = curves.l;
     const btScalar hollow = in_b ? l : k, round = in_b ? k : l;
     const bool sure = k + l > kSureCurvature * (btFabs(k) + btFabs(l)) && 2 * size * round > 1;
-    if (!hill.hasTop(i) || !(hollow < 0) || !sure) continue;
-    const btScalar v = slides.dot(axis), u = turns_a.dot(axis), w = turns_b.dot(axis);
+    if (!(hollow < 0) || !sure) continue;
     // By this angle the normal turns within the step; they touch here from where it is that of the point.
-    const btScalar angle = btFabs(k * l * v - k * w - l * u) / (k + l) * time_step;
-    const btScalar left = btMin(angle, kSteepSlope) + hollow * btFabs(point.to_top.dot(axis));
+    const btScalar angle = btFabs(k * l * curves.v - k * curves.w - l * curves.u) / (k + l) * time_step;
+    const btScalar left = btMin(angle, kSteepSlope) + hollow * btFabs(point.to_top.dot(hill.axis(i)));
     if (!(left > 0)) continue;
     const btScalar share = left / angle;
-    acceleration += share * share * byBending(k, l, v, u, w);
+    acceleration += share * share * curves.approach();
   }
   if (acceleration == 0) return 0;
   acceleration += motion.approachByTurningAt(place, point.normal);
@@ -272,18 +282,16 @@ btScalar turnsAway(const ContactPoint& point, const btVector3& place, const Pair
   if (!(point.to_top.length() > kSameTop * separation)) {
     const Across axes(point.bend_x, point.normal.cross(point.bend_x));
     const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
-    const btVector3 slides = motion.velocityAt(place), turns_a = motion.a().spin.cross(point.normal),
-                    turns_b = motion.b().spin.cross(point.normal);
     for (int i = 0; i < 2; ++i) {
-      const btVector3& axis = hill.axis(i);
-      const btScalar k = point.bend_a.turn(axis, axes).dot(axis), l = point.bend_b.turn(axis, axes).dot(axis);
-      if (k < 0 || l < 0 || !hill.hasTop(i) || !(hill.fall(i) * size > 1)) continue;
-      const btScalar v = slides.dot(axis), u = turns_a.dot(axis), w = turns_b.dot(axis);
-      acceleration += byBending(k, l, v, u, w);
+      if (!hill.hasTop(i) || !(hill.fall(i) * size > 1)) continue;
+      const Curves curves(point, axes, hill.axis(i), place, motion);
+      const btScalar k = curves.k, l = curves.l;
+      if (k < 0 || l < 0) continue;
+      acceleration += curves.approach();
       // Of circles, what the second order leaves out. Flat ones have none.
       if (!(2 * size * btMin(k, l) > 1)) continue;
-      const btScalar radii = 1 / k + 1 / l, aside = (v - u / k - w / l) * time_step;
-      const btScalar left = radii - point.depth - slides.dot(point.normal) * time_step;
+      const btScalar radii = 1 / k + 1 / l, aside = (curves.v - curves.u / k - curves.w / l) * time_step;
+      const btScalar left = radii - point.depth - motion.velocityAt(place).dot(point.normal) * time_step;
       if (left > 0) beyond += aside * aside * (1 / (left + std::hypot(left, aside)) - 1 / (2 * radii));
     }
   }
