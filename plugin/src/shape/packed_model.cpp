@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <mutex>
-#include <set>
 #include <string>
 
 #include "common/bullet_vectors.hpp"
@@ -61,14 +60,6 @@ btScalar largestRadius(const Packing& packing, std::size_t count) {
   return largest;
 }
 
-/// Whether this is the first time in the program. Each world may have a model of its own of the same packing.
-bool isNew(const std::string& message) {
-  static std::mutex mutex;
-  static std::set<std::string> told;
-  const std::lock_guard<std::mutex> lock(mutex);
-  return told.insert(message).second;
-}
-
 }  // namespace
 
 Prefix::Prefix(const PackedModel& model, std::size_t sphere_count)
@@ -84,10 +75,9 @@ void Prefix::warnOnce() const {
     const Packing& packing = model_.packing();
     const std::string bare = bareSurface(packing, count);
     if (bare.empty()) return;
-    const std::string message = "The packing of \"" + packing.provenance.source +
-                                "\" leaves parts of its solid out: " + bare +
-                                ". Use more of its spheres, or pack it anew, in the order of coverage.";
-    if (isNew(message)) log(message);
+    // Each world may have a model of its own of the same packing.
+    logOnce("The packing of \"" + packing.provenance.source + "\" leaves parts of its solid out: " + bare +
+            ". Use more of its spheres, or pack it anew, in the order of coverage.");
   });
 }
 
