@@ -238,5 +238,42 @@ TEST(ContactPoints, OnAPlaneAreThoseOfACube) {
   }
 }
 
+TEST(ContactPoints, OfACylinderOnASlabAreTheEndsOfItsLineOnceEach) {
+  constexpr double kHalf = 0.5, kRadius = 0.3, kMargin = 0.02;
+  const btVector3 half_extents{btScalar(kHalf), btScalar(kRadius), btScalar(kRadius)};
+  btCylinderShapeX cylinder(half_extents);
+  cylinder.setMargin(btScalar(kMargin));
+  const auto shape = withoutMargin(slab());
+  const PlacedPacking a(*shape, at(0, 0, -0.5), Estimator::raw, btScalar(0.15));
+  const btTransform world = at(0.2, 0.1, kRadius - kDepth);
+  const auto surface = makeShapeSurface(cylinder);
+  std::vector<NearSphere> spheres;
+  surface->findNearSpheres(a, world, spheres);
+  Samples samples;
+  for (std::size_t i = 0; i < spheres.size(); ++i) samples.indices.push_back(i);
+  ASSERT_GE(samples.indices.size(), 4u);
+  samples.patches.push_back({-kDown, 2, 1, spheres.size()});
+  SampleScratch scratch;
+  std::vector<WeightedPoint> found;
+  findContactPoints(ShapeProbe(a, *surface, world, spheres), 0, btScalar(kSeparation), {}, samples, scratch,
+                    found);
+  for (const double end : {0.2 - kHalf + kMargin, 0.2 + kHalf - kMargin}) {
+    const btVector3 expected(btScalar(end), btScalar(0.1), btScalar(0.5 - kDepth));
+    const auto isThere = [&](const WeightedPoint& p) {
+      return p.kind == Kind::edge && p.point.on_b.distance(expected) < kRounding;
+    };
+    ASSERT_EQ(std::count_if(found.begin(), found.end(), isThere), 1);
+    const WeightedPoint point = *std::find_if(found.begin(), found.end(), isThere);
+    EXPECT_NEAR(point.point.depth, kDepth, kRounding);
+    EXPECT_NEAR(point.point.normal.distance(-kDown), 0, kRounding);
+    EXPECT_NEAR(point.point.to_top.length(), 0, kRounding);
+    EXPECT_NEAR(point.point.bend_b.mean(), 1 / kRadius / 2, 1e-4);
+  }
+  EXPECT_EQ(
+      std::count_if(found.begin(), found.end(),
+                    [](const WeightedPoint& p) { return p.point.id >= kCornerId && p.kind == Kind::edge; }),
+      2);
+}
+
 }  // namespace
 }  // namespace innersphere::test

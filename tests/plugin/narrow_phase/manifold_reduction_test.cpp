@@ -187,6 +187,39 @@ TEST(KeepLeastWaysOut, LeavesAllWhereNothingCrosses) {
       (Ids{1, 2}));
 }
 
+WeightedPoint endingAt(double x, double depth, std::uint64_t id, double beyond_end) {
+  WeightedPoint p = pointAt(x, 0, depth, id);
+  p.beyond_end = btScalar(beyond_end);
+  return p;
+}
+
+std::set<std::uint64_t> idsBeforeEnds(std::vector<WeightedPoint> found) {
+  dropBeyondEnds(found);
+  std::set<std::uint64_t> ids;
+  for (const WeightedPoint& p : found) ids.insert(p.point.id);
+  return ids;
+}
+
+TEST(DropBeyondEnds, DropsAFaceBesideSomethingDeeperOnTheWay) {
+  EXPECT_EQ(idsBeforeEnds({endingAt(0, 0.01, 1, 0.3), pointAt(0.29, 0, 0.011, 2)}),
+            std::set<std::uint64_t>{2});
+  // Either way.
+  EXPECT_EQ(idsBeforeEnds({pointAt(-0.29, 0, 0.011, 2), endingAt(0, 0.01, 1, 0.3)}),
+            std::set<std::uint64_t>{2});
+}
+
+TEST(DropBeyondEnds, KeepsAFaceWhereNothingDeeperIsOnTheWay) {
+  const std::set<std::uint64_t> both{1, 2};
+  EXPECT_EQ(idsBeforeEnds({endingAt(0, 0.01, 1, 0.3), pointAt(0.31, 0, 0.011, 2)}), both);
+  EXPECT_EQ(idsBeforeEnds({endingAt(0, 0.01, 1, 0.3), pointAt(0.1, 0, 0.009, 2)}), both);
+  EXPECT_EQ(idsBeforeEnds({pointAt(0, 0, 0.01, 1), pointAt(0.1, 0, 0.011, 2)}), both);
+}
+
+TEST(DropBeyondEnds, KeepsFacesThatEndBesideEachOther) {
+  EXPECT_EQ(idsBeforeEnds({endingAt(0, 0.01, 1, 0.3), endingAt(0.1, 0.011, 2, 0.2)}),
+            (std::set<std::uint64_t>{1, 2}));
+}
+
 /// A place of a solid that rises over a plane by the bends of its surface, `x` and `y` from the top.
 WeightedPoint onHill(double x, double y, double depth, double bend_x, double bend_y, std::uint64_t id) {
   const Across axes(kUp);

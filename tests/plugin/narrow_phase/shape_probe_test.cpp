@@ -130,6 +130,81 @@ TEST(ShapeProbe, FindsTheLowestCornerOfACube) {
   EXPECT_TRUE(corners.empty());
 }
 
+/// A slab with its upper face at z = 0, and Bullet's cylinder on it, whose axis leans from x. The slab goes
+/// on to x = 1.
+class CylinderOnSlab {
+ public:
+  CylinderOnSlab(double x, double lean)
+      : axis(btScalar(std::cos(lean)), 0, btScalar(std::sin(lean))),
+        out(btScalar(-std::sin(lean)), 0, btScalar(std::cos(lean))),
+        middle_(btScalar(x), btScalar(0.2), btScalar(kRadius)) {}
+
+  std::vector<EdgeContact> lineEnds() const {
+    const btVector3 half_extents{btScalar(kHalf), btScalar(kRadius), btScalar(kRadius)};
+    btCylinderShapeX cylinder(half_extents);
+    cylinder.setMargin(btScalar(kMargin));
+    const auto slab = withoutMargin(latticeBox({2, 2, 2}, 4));
+    const PlacedPacking a(*slab, btTransform(btQuaternion::getIdentity(), btVector3(0, 0, -1)),
+                          Estimator::raw, btScalar(0.3));
+    const btTransform place(btQuaternion(btVector3(0, 1, 0), btScalar(-std::atan2(axis.z(), axis.x()))),
+                            middle_);
+    const auto surface = makeShapeSurface(cylinder);
+    std::vector<NearSphere> spheres;
+    surface->findNearSpheres(a, place, spheres);
+    OpposedPoints points;
+    points.on_a.setValue(btScalar(0.1), btScalar(0.1), 1);
+    points.normal_a = points.normal_b = btVector3(0, 0, 1);
+    points.curvature_b = btScalar(1 / kRadius);
+    EXPECT_TRUE(SharpEdges(a, {0, 0, 0}).nearestTriangle(points.on_a, points.triangle_a));
+    std::vector<EdgeContact> ends;
+    ShapeProbe(a, *surface, place, spheres).lineEnds(points, ends);
+    return ends;
+  }
+  /// Of the lowest line, relative to the slab's middle.
+  btVector3 end(int side) const {
+    // The line ends where the rounding of the rim begins.
+    const btScalar half = btScalar(kHalf - kMargin);
+    return middle_ + axis * (side * half) - out * btScalar(kRadius) + btVector3(0, 0, 1);
+  }
+
+  static constexpr double kHalf = 0.5, kRadius = 0.3, kMargin = 0.02;
+  const btVector3 axis, out;  ///< out of the slab, across the axis
+
+ private:
+  const btVector3 middle_;
+};
+
+TEST(ShapeProbe, FindsTheEndsOfTheLineInWhichACylinderLies) {
+  for (const double lean : {0.0, 0.03, -0.08}) {
+    const CylinderOnSlab bodies(-0.1, lean);
+    const std::vector<EdgeContact> ends = bodies.lineEnds();
+    ASSERT_EQ(ends.size(), 2u) << lean;
+    EXPECT_NE(ends[0].id, ends[1].id);
+    for (const EdgeContact& end : ends) {
+      EXPECT_GE(end.id, kCornerId);
+      const btVector3 expected = bodies.end(end.points.on_b.x() < -0.1 ? -1 : 1);
+      EXPECT_NEAR(end.points.on_b.distance(expected), 0, kRounding);
+      EXPECT_NEAR(end.points.on_a.distance(btVector3(expected.x(), expected.y(), 1)), 0, kRounding);
+      EXPECT_NEAR(end.points.normal_a.distance(btVector3(0, 0, 1)), 0, kRounding);
+      EXPECT_NEAR(end.points.normal_b.distance(bodies.out), 0, kRounding);
+      EXPECT_NEAR(end.points.curvature_b, 1 / CylinderOnSlab::kRadius, kRounding);
+      EXPECT_NEAR(std::fabs(end.points.straight_b.dot(bodies.axis)), 1, kRounding);
+    }
+  }
+}
+
+TEST(ShapeProbe, FindsNoEndOfALineThatIsBeyondTheFace) {
+  EXPECT_EQ(CylinderOnSlab(0.51, 0).lineEnds().size(), 2u);  // at 0.99 m
+  const CylinderOnSlab over_edge(0.53, 0);
+  const std::vector<EdgeContact> ends = over_edge.lineEnds();
+  ASSERT_EQ(ends.size(), 1u);
+  EXPECT_NEAR(ends[0].points.on_b.distance(over_edge.end(-1)), 0, kRounding);
+}
+
+TEST(ShapeProbe, FindsNoEndsOfALineThatLeansFromTheFace) {
+  EXPECT_TRUE(CylinderOnSlab(-0.1, 0.12).lineEnds().empty());
+}
+
 TEST(ShapeProbe, FindsWhereACubesEdgeCrossesThatOfABox) {
   // The cube's lower edge lies along y, the box's upper edge along x.
   const btScalar half = btSqrt(btScalar(0.5));

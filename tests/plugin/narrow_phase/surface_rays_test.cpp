@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "outline_meshes.hpp"
 #include "test_packings.hpp"
 
 namespace innersphere::test {
@@ -229,6 +230,64 @@ TEST(SurfaceRays, FindTheCornerUphill) {
     EXPECT_NEAR(cornerAt(body, vertices[0], direction).distance(axes * expected + direction * btScalar(0.05)),
                 0, kRounding);
   }
+}
+
+/// A cylinder about z, which is turned, and twice as large as its packing.
+struct TurnedCylinder {
+  static constexpr std::uint32_t kAround = 24;
+  static constexpr double kRadius = 0.6;
+
+  TurnedCylinder() {
+    Packing packing = singleBall(0.3);
+    packing.surface = surfaceOf(turnedMesh({{0, -1}, {kRadius / 2, -1}, {kRadius / 2, 1}, {0, 1}}, kAround));
+    shape = makeShape(std::move(packing));
+    shape->setLocalScaling(btVector3(2, 2, 2));
+  }
+  /// Across the axis.
+  btVector3 outwards(double angle) const {
+    return somewhere().getBasis() * btVector3(btScalar(std::cos(angle)), btScalar(std::sin(angle)), 0);
+  }
+  std::shared_ptr<PackingShape> shape;
+};
+
+TEST(SurfaceRays, LayCornersOfARimOnItsSide) {
+  const TurnedCylinder cylinder;
+  const PlacedPacking body(*cylinder.shape, somewhere(), Estimator::raw, 0);
+  constexpr double kFacet = 2 * M_PI / TurnedCylinder::kAround;
+  for (std::uint32_t vertex = 0; vertex < 2 * TurnedCylinder::kAround; ++vertex) {
+    const double angle = vertex % TurnedCylinder::kAround * kFacet;
+    for (const double beside : {0.0, 0.4, -0.4, 0.9, -0.9, 1.1, -1.1, 3.9, -3.9, 4.1, 6.0, 12.0}) {
+      const btVector3 way = cylinder.outwards(angle + beside * kFacet);
+      for (const bool of_a : {true, false}) {
+        OpposedPoints corner;
+        // Four facets are 60 degrees: beyond, it is another part of the solid that is furthest out.
+        const bool is_of_side = std::fabs(beside) < 4;
+        EXPECT_EQ(layOnRim(body, vertex, way, of_a, corner), !is_of_side || std::fabs(beside) < 1) << beside;
+        const btVector3& normal = of_a ? corner.normal_a : corner.normal_b;
+        const btVector3 expected =
+            is_of_side ? cylinder.outwards(angle) * btScalar(of_a ? 1 : -1) : btVector3(0, 0, 0);
+        EXPECT_NEAR(normal.distance(expected), 0, kRounding);
+        EXPECT_NEAR(of_a ? corner.curvature_a : corner.curvature_b,
+                    is_of_side ? 1 / TurnedCylinder::kRadius : 0, 1e-4);
+        EXPECT_EQ((of_a ? corner.triangle_a : corner.triangle_b) == OpposedPoints::kNone, !is_of_side);
+      }
+    }
+  }
+}
+
+TEST(SurfaceRays, LayCornersOfFlatFacesOnNothing) {
+  const TurnedBox box;
+  const PlacedPacking body = box.placed();
+  const TurnedCylinder cylinder;
+  const PlacedPacking round(*cylinder.shape, somewhere(), Estimator::raw, 0);
+  OpposedPoints corner;
+  for (std::uint32_t vertex = 0; vertex < 8; ++vertex)
+    EXPECT_TRUE(layOnRim(body, vertex, body.world.getBasis().getColumn(0), true, corner));
+  // Along its axis a cylinder ends in a flat face.
+  EXPECT_TRUE(layOnRim(round, 0, -round.world.getBasis().getColumn(2), true, corner));
+  EXPECT_TRUE(corner.normal_a.isZero());
+  EXPECT_EQ(corner.curvature_a, 0);
+  EXPECT_EQ(corner.triangle_a, OpposedPoints::kNone);
 }
 
 }  // namespace
