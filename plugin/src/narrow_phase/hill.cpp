@@ -30,6 +30,7 @@ Hill::Hill(const Bend& a, const Bend& b, btScalar depth, const Across& axes) {
       half > 0 ? axes.x * (half + spread) + axes.y * xy : axes.x * xy + axes.y * (spread - half);
   axis_[0] = first.length2() > 0 ? first.normalized() : axes.x;
   axis_[1] = axes.x * -axis_[0].dot(axes.y) + axes.y * axis_[0].dot(axes.x);
+  if (xx == 0 && xy == 0 && yy == 0) return;
   fall_[0] = middle + spread;
   fall_[1] = middle - spread;
   const auto bendAlong = [&](const Bend& bend, int i) { return bend.turn(axis_[i], axes).dot(axis_[i]); };
