@@ -134,8 +134,8 @@ btScalar PackingProbe::meets(bool of_a, const btVector3& from, const btVector3& 
   return of_a ? meetSolid(a_, from, way) : meetSolid(b_, from - apart(), way);
 }
 
-SurfaceProbe::Bends PackingProbe::bends(const OpposedPoints& points, const Across& axes) const {
-  return {bendAt(a_, points.triangle_a, axes), bendAt(b_, points.triangle_b, axes)};
+Bend PackingProbe::bend(bool of_a, const OpposedPoints& points, const Across& axes) const {
+  return of_a ? bendAt(a_, points.triangle_a, axes) : bendAt(b_, points.triangle_b, axes);
 }
 
 void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,

@@ -48,7 +48,7 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
     return true;
   }
   btScalar meets(bool of_a, const btVector3& from, const btVector3& way) const override;
-  Bends bends(const OpposedPoints& points, const Across& axes) const override;
+  Bend bend(bool of_a, const OpposedPoints& points, const Across& axes) const override;
   void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
   bool crossing(const OpposedPoints& points, const btVector3& direction,

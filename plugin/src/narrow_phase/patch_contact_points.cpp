@@ -243,11 +243,11 @@ EdgeProbe::FaceEnd PatchContactPoints::addOverEdge(const ProbedSample& sample, b
   // From the place on the face to below that where the round surface has its normal.
   const btVector3& face = of_a ? points.normal_a : points.normal_b;
   const Across axes(face);
-  const SurfaceProbe::Bends bends =
-      surfaces_.bends(points, turned(axes, face, of_a ? points.normal_b : points.normal_a));
+  const btVector3& round_normal = of_a ? points.normal_b : points.normal_a;
+  const Bend below = surfaces_.bend(!of_a, points, turned(axes, face, round_normal));
   const btVector3 lean = points.normal_b - points.normal_a,
                   across = of_a ? points.on_b - points.on_a : points.on_a - points.on_b;
-  to_top = Hill(of_a ? bends.b : bends.a, Bend(), 0, axes).toTop(lean) + across;
+  to_top = Hill(below, Bend(), 0, axes).toTop(lean) + across;
   to_top -= face * face.dot(to_top);
   // In a hollow it lies with its ends, wherever it leans to.
   if (round < 0) to_top = (lean - face * face.dot(lean)) * (-1 / (round * lean.length() + SIMD_EPSILON));
@@ -257,11 +257,8 @@ EdgeProbe::FaceEnd PatchContactPoints::addOverEdge(const ProbedSample& sample, b
   const btVector3& normal = edge.points.normal_a;
   // A hollow along the edge is deepest beside there.
   const Across axes_there(normal);
-  SurfaceProbe::Bends there =
-      surfaces_.bends(points, turned(axes_there, normal, of_a ? points.normal_b : points.normal_a));
-  if ((of_a ? there.b : there.a).turn(edge.along, axes_there).dot(edge.along) < -kConvex * btFabs(round))
-    return FaceEnd::unknown;
-  (of_a ? there.a : there.b) = Bend::about(edge.along, axes_there, kEdgeSharpness * btFabs(round));
+  const Bend there = surfaces_.bend(!of_a, points, turned(axes_there, normal, round_normal));
+  if (there.turn(edge.along, axes_there).dot(edge.along) < -kConvex * btFabs(round)) return FaceEnd::unknown;
   const auto isSame = [&](const WeightedPoint& f) {
     return f.kind == Kind::edge &&
            f.point.on_b.distance2(edge.points.on_b) < kSameTop * kSameTop * separation_ * separation_;
@@ -269,8 +266,9 @@ EdgeProbe::FaceEnd PatchContactPoints::addOverEdge(const ProbedSample& sample, b
   if (std::any_of(found_.begin() + std::ptrdiff_t(first_), found_.end(), isSame)) return end;
   if (!add(edge.points, normal, sample.id, Kind::edge)) return end;
   ContactPoint& point = found_.back().point;
-  point.bend_a = there.a;
-  point.bend_b = there.b;
+  const Bend sharp = Bend::about(edge.along, axes_there, kEdgeSharpness * btFabs(round));
+  point.bend_a = of_a ? sharp : there;
+  point.bend_b = of_a ? there : sharp;
   point.bend_x = axes_there.x;
   return end;
 }
@@ -289,8 +287,8 @@ bool PatchContactPoints::addFace(const ProbedSample& sample, const btVector3& no
   SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
   if (in_hollow) {
     // What is round was probed where its normal is another one.
-    bends.a = surfaces_.bends(points, turned(axes, point.point.normal, points.normal_a)).a;
-    bends.b = surfaces_.bends(points, turned(axes, point.point.normal, points.normal_b)).b;
+    bends.a = surfaces_.bend(true, points, turned(axes, point.point.normal, points.normal_a));
+    bends.b = surfaces_.bend(false, points, turned(axes, point.point.normal, points.normal_b));
   }
   point.both_bend = points.curvature_a != 0 && points.curvature_b != 0;
   // What is flat lies in a hollow with its ends.
@@ -313,11 +311,12 @@ bool PatchContactPoints::addFace(const ProbedSample& sample, const btVector3& no
 bool PatchContactPoints::keepInHollow(const OpposedPoints& points, WeightedPoint& point) {
   if (point.is_top || point.slope.isZero()) return false;
   const Across axes_a(points.normal_a), axes_b(points.normal_b);
-  const Bend a = surfaces_.bends(points, axes_a).a, b = surfaces_.bends(points, axes_b).b;
+  const Bend a = surfaces_.bend(true, points, axes_a), b = surfaces_.bend(false, points, axes_b);
   const bool in_b = b.isHollow();
+  if (in_b == a.isHollow()) return false;
   const btScalar fall =
       a.turn(point.slope, axes_a).dot(point.slope) + b.turn(point.slope, axes_b).dot(point.slope);
-  if (in_b == a.isHollow() || !(fall > 0)) return false;
+  if (!(fall > 0)) return false;
   const btVector3& normal = in_b ? points.normal_b : points.normal_a;
   // No shorter radius than that of the strongest bend: what is round reaches no less far.
   const Hill round(in_b ? a : b, Bend(), 0, in_b ? axes_a : axes_b);

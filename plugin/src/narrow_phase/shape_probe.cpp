@@ -122,8 +122,9 @@ Bend ShapeProbe::bendOfFacets(const OpposedPoints& points, const Across& axes) c
   return bend.mean() < 0 ? bend : Bend{};
 }
 
-SurfaceProbe::Bends ShapeProbe::bends(const OpposedPoints& points, const Across& axes) const {
-  if (points.curvature_b == 0) return {bendAt(a_, points.triangle_a, axes), bendOfFacets(points, axes)};
+Bend ShapeProbe::bend(bool of_a, const OpposedPoints& points, const Across& axes) const {
+  if (of_a) return bendAt(a_, points.triangle_a, axes);
+  if (points.curvature_b == 0) return bendOfFacets(points, axes);
   btScalar x = points.straight_b.dot(axes.x), y = points.straight_b.dot(axes.y);
   const btScalar c = points.curvature_b, less = c - points.along_straight_b, length = std::hypot(x, y);
   // Straight to the last digit: else there is a top, far away.
@@ -131,7 +132,7 @@ SurfaceProbe::Bends ShapeProbe::bends(const OpposedPoints& points, const Across&
     x /= length;
     y /= length;
   }
-  return {bendAt(a_, points.triangle_a, axes), {c - less * x * x, -less * x * y, c - less * y * y}};
+  return {c - less * x * x, -less * x * y, c - less * y * y};
 }
 
 const NearSphere* ShapeProbe::sphereOver(const btVector3& corner, const btVector3& normal) const {

@@ -51,7 +51,7 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public FaceExten
   btScalar meets(bool of_a, const btVector3& from, const btVector3& way) const override {
     return of_a ? meetSolid(a_, from, way) : other_.meets(a_, world_, from, way);
   }
-  Bends bends(const OpposedPoints& points, const Across& axes) const override;
+  Bend bend(bool of_a, const OpposedPoints& points, const Across& axes) const override;
   void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
   /// Appends the corners in which what sticks through a mesh ends, however far from it. `points` are those of

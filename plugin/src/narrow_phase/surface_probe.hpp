@@ -93,12 +93,16 @@ class SurfaceProbe {
   /// Finds where a point that goes along `way` [m] comes from outside to A's surface, or to B's: the part of
   /// the way, 0 to 1; 2 if it does not; -1 if that is not known.
   virtual btScalar meets(bool of_a, const btVector3& from, const btVector3& way) const = 0;
+  /// Returns how A's surface, or B's, bends at opposed points. By default it is round.
+  virtual Bend bend(bool of_a, const OpposedPoints& points, const Across&) const {
+    return Bend::round(of_a ? points.curvature_a : points.curvature_b);
+  }
   struct Bends {
     Bend a, b;
   };
-  /// Returns how both surfaces bend at opposed points. By default they are round.
-  virtual Bends bends(const OpposedPoints& points, const Across&) const {
-    return {Bend::round(points.curvature_a), Bend::round(points.curvature_b)};
+  /// Returns the same of both.
+  Bends bends(const OpposedPoints& points, const Across& axes) const {
+    return {bend(true, points, axes), bend(false, points, axes)};
   }
 };
 
