@@ -193,7 +193,8 @@ bool refine(Samples& samples, const Probe& probe, const ContactSettings& setting
   // behind.
   if (std::is_same_v<Probe, PackingProbe> && !step.motion.isSwept()) {
     collectPoints(patches, scratch.old_points);
-    ascendAgain({probe, samples.indices}, settings.separation, scratch.old_points, scratch.tops);
+    ascendAgain({probe, samples.indices, scratch.sampling.line_starts}, settings.separation,
+                scratch.old_points, scratch.tops);
   }
   found.clear();
   const bool first_time = samples.lines.empty();

@@ -134,6 +134,7 @@ SampleScratch::SampleScratch() {
   probed.reserve(kUsualPatchSamples);
   places.reserve(kUsualPatchSamples);
   sideways.reserve(kUsualPatchSamples);
+  line_starts.reserve(kUsualPatchSamples);
 }
 
 void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation,
@@ -143,7 +144,7 @@ void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separa
   probeAll(probe, of, separation, scratch.tried);
   keepProbed(of, separation, scratch);
   const std::size_t tops_of_patch = sortTops(of, tops, scratch);
-  const LineStarts lines{probe, samples.indices};
+  const LineStarts lines(probe, samples.indices, scratch.line_starts);
   appendDeepestPoints(lines, separation, scratch.tops, tops_of_patch, scratch.probed);
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, &probe);
@@ -166,7 +167,7 @@ void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separati
   keepSideways(of, scratch);
   const std::size_t count = scratch.probed.size();
   const std::size_t tops_of_patch = sortTops(of, tops, scratch);
-  const LineStarts lines{probe, samples.indices};
+  const LineStarts lines(probe, samples.indices, scratch.line_starts);
   appendDeepestPoints(lines, separation, scratch.tops, tops_of_patch, scratch.probed);
   ascendBeside(lines, count, scratch.probed);
   keepAscents(scratch, samples);

@@ -43,10 +43,11 @@ struct SampleScratch {
     ProbedSample sample;
     bool found;
   };
-  std::vector<Tried> tried;             ///< all samples of a patch
-  std::vector<ProbedSample> probed;     ///< those whose lines met both surfaces, then the deepest points
-  std::vector<std::size_t> places;      ///< of the former, among the samples
-  std::vector<Top> tops;                ///< of the step before: first those of the patch
+  std::vector<Tried> tried;          ///< all samples of a patch
+  std::vector<ProbedSample> probed;  ///< those whose lines met both surfaces, then the deepest points
+  std::vector<std::size_t> places;   ///< of the former, among the samples
+  std::vector<Top> tops;             ///< of the step before: first those of the patch
+  std::vector<LineStarts::Start> line_starts;
   std::vector<ProbedSample> sideways;   ///< those whose line leaves A by its side
   std::vector<EdgeContact> corners;     ///< at one sample
   std::vector<EdgeContact> peaks;       ///< the same for corners that neither face lies flat at

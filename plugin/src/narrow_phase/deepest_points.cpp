@@ -299,15 +299,18 @@ bool isOnHill(const btVector3& from_top, const btVector3& slope, const Hill& hil
 }
 
 std::optional<std::size_t> LineStarts::nearest(const btVector3& place, const btVector3& direction) const {
+  if (room_.empty()) {
+    for (const std::size_t sphere : spheres_) room_.push_back({probe.lineStart(sphere), probe.reach(sphere)});
+  }
   std::optional<std::size_t> nearest;
   btScalar most = 0;
-  for (const std::size_t sphere : spheres) {
-    const btVector3 way = place - probe.lineStart(sphere);
-    const btScalar along = way.dot(direction), reach = probe.reach(sphere);
+  for (std::size_t i = 0; i < room_.size(); ++i) {
+    const btVector3 way = place - room_[i].at;
+    const btScalar along = way.dot(direction), reach = room_[i].reach;
     const btScalar spare = reach - (way - direction * along).length();
     if (spare <= most || btFabs(along) > 2 * reach) continue;
     most = spare;
-    nearest = sphere;
+    nearest = spheres_[i];
   }
   return nearest;
 }

@@ -11,12 +11,26 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
 /// Says which spheres lines may start from, all over the contact.
-struct LineStarts {
-  const SurfaceProbe& probe;
-  const std::vector<std::size_t>& spheres;
+class LineStarts {
+ public:
+  struct Start {
+    btVector3 at;
+    btScalar reach;
+  };
+  /// `room` is to work in.
+  LineStarts(const SurfaceProbe& surfaces, const std::vector<std::size_t>& spheres, std::vector<Start>& room)
+      : probe(surfaces), spheres_(spheres), room_(room) {
+    room_.clear();
+  }
 
   /// Returns the sphere that has most to spare for a line through `place`; nothing if all are out of reach.
   std::optional<std::size_t> nearest(const btVector3& place, const btVector3& direction) const;
+
+  const SurfaceProbe& probe;
+
+ private:
+  const std::vector<std::size_t>& spheres_;
+  std::vector<Start>& room_;  ///< of the spheres, once one was looked for
 };
 
 /// The top of a hill of the depth.

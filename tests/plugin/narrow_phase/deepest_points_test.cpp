@@ -61,7 +61,7 @@ class Reliefs : public SurfaceProbe {
     return true;
   }
 
-  const std::vector<std::size_t>& all() const { return all_; }
+  LineStarts lines() const { return {*this, all_, room_}; }
 
   std::vector<ProbedSample> samples() const {
     std::vector<ProbedSample> samples(starts_.size());
@@ -90,12 +90,13 @@ class Reliefs : public SurfaceProbe {
   Relief a_, b_;
   std::vector<btVector3> starts_;
   std::vector<std::size_t> all_;
+  mutable std::vector<LineStarts::Start> room_;
   std::vector<btScalar> reaches_;
 };
 
 /// With no tops of the step before.
 void appendDeepest(const Reliefs& reliefs, btScalar separation, std::vector<ProbedSample>& samples) {
-  appendDeepestPoints({reliefs, reliefs.all()}, separation, {}, 0, samples);
+  appendDeepestPoints(reliefs.lines(), separation, {}, 0, samples);
 }
 
 btVector3 start(double x, double y) {
@@ -254,7 +255,7 @@ TEST(DeepestPoints, OfAHillWithTwoTopsIsTheOneOfTheStepBefore) {
   EXPECT_NEAR(samples[2].points.on_a.x(), -0.01, kAtTop);
 
   std::vector<Top> tops;
-  const LineStarts lines{reliefs, reliefs.all()};
+  const LineStarts lines = reliefs.lines();
   ascendAgain(lines, btScalar(0.05), {topAt(0.012, 0)}, tops);
   ASSERT_EQ(tops.size(), 1u);
   samples = reliefs.samples();
@@ -275,9 +276,9 @@ TEST(DeepestPoints, OfTheStepBeforeCountOnceForEachHillAndOnlyWhereTheyAreThere)
   const std::vector<ContactPoint> before{topAt(-0.5, 0.01), topAt(-0.49, 0), topAt(0.5, 0)};
   std::vector<Top> tops;
   const Reliefs both(hills, kFlat, starts), left(gap, kFlat, starts);
-  ascendAgain({both, both.all()}, btScalar(0.05), before, tops);
+  ascendAgain(both.lines(), btScalar(0.05), before, tops);
   EXPECT_EQ(tops.size(), 2u);
-  ascendAgain({left, left.all()}, btScalar(0.05), before, tops);
+  ascendAgain(left.lines(), btScalar(0.05), before, tops);
   ASSERT_EQ(tops.size(), 1u);
   EXPECT_NEAR(tops[0].sample.points.on_a.x(), -0.5, kAtTop);
 }
@@ -304,7 +305,7 @@ TEST(Ascent, MovesSamplesNearATopUphillAndNoOthers) {
   const Reliefs reliefs(ball(0, 0, 0.01, 1), kFlat, {start(0.05, 0.02), start(0.5, 0)});
   std::vector<ProbedSample> samples = reliefs.samples();
   const btScalar near = samples[0].points.depthAlong(kUp), far = samples[1].points.depthAlong(kUp);
-  ascendBeside({reliefs, reliefs.all()}, samples.size(), samples);
+  ascendBeside(reliefs.lines(), samples.size(), samples);
   EXPECT_GT(samples[0].points.depthAlong(kUp), near);
   EXPECT_NEAR(samples[0].points.on_a.x(), 0, 5e-3);
   // Its slope is half a radian.
