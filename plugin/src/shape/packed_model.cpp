@@ -161,10 +161,6 @@ const Prefix& PackedModel::prefixWithin(btScalar gap, const Prefix& most) const 
   return most;
 }
 
-const SurfaceQueries& PackedModel::surfaceQueries() const {
-  return surface_queries_.get([this] { return std::make_unique<SurfaceQueries>(packing().surface); });
-}
-
 std::size_t PackedModel::triangleNear(std::size_t sphere) const {
   const std::vector<Sphere>& spheres = packing().spheres;
   const Triangles& known = triangles_near_.get([&] {

@@ -84,7 +84,9 @@ class PackedModel {
   /// `gap` [m] from the surface; `most` if there is none, or no surface.
   const Prefix& prefixWithin(btScalar gap, const Prefix& most) const;
   /// Returns the searches on the surface, in the packing's frame. Call it only if hasSurface().
-  const SurfaceQueries& surfaceQueries() const;
+  const SurfaceQueries& surfaceQueries() const {
+    return surface_queries_.get([this] { return std::make_unique<SurfaceQueries>(packing().surface); });
+  }
   /// Returns the triangle that is nearest to the centre of a sphere. Call it only if hasSurface().
   std::size_t triangleNear(std::size_t sphere) const;
   const VertexHillClimb& vertexHillClimb() const;

@@ -363,9 +363,5 @@ bool SurfaceQueries::nearest(const btVector3& point, btScalar max_distance, Near
   return true;
 }
 
-const SmoothNormals& SurfaceQueries::normals() const {
-  return normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
-}
-
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

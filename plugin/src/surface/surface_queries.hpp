@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <vector>
 
 #include <LinearMath/btVector3.h>
@@ -66,7 +67,9 @@ class SurfaceQueries {
   /// [m].
   bool nearest(const btVector3& point, btScalar max_distance, Nearest& result) const;
 
-  const SmoothNormals& normals() const;
+  const SmoothNormals& normals() const {
+    return normals_.get([this] { return std::make_unique<SmoothNormals>(surface_); });
+  }
   /// Returns how far off places on its triangles may be, for rounding [m].
   btScalar rounding() const { return tree_.rounding(); }
 
