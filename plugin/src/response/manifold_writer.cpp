@@ -356,8 +356,10 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
       point.bends = bendsAcross(patch.points[i]);
     } else {
       point.nearer = nearerByBending(patch.points[i], point.on_b, motion, point.law.time_step, law.size());
-      point.turns_away = turnsAway(patch.points[i], point.on_b, motion, point.law.time_step,
-                                   manifold.getContactBreakingThreshold(), law.size());
+      // That is for gaps alone.
+      if (point.depth < 0 || point.law.depth < 0)
+        point.turns_away = turnsAway(patch.points[i], point.on_b, motion, point.law.time_step,
+                                     manifold.getContactBreakingThreshold(), law.size());
       point.is_later = meetsAfterTop(patch.points[i], point.on_b, motion, first, law.size());
     }
     point.aside = patch.points[i].aside;
