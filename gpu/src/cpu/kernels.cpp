@@ -119,17 +119,24 @@ inline void addValues(const double* values, double (&sums)[ContactValues::kCount
   for (std::size_t i = 0; i < ContactValues::kCount; ++i) sums[i] += values[i];
 }
 
+/// Pairs whose values are fetched ahead: sorted by spheres, they are in no order that a processor foresees.
+constexpr std::size_t kAhead = 32;
+
 /// The values of a sphere with many partners go to kPartialSums partial sums, every so many of them, then
 /// these sums: so a device can sum them side by side, to the same bits.
 inline void sumContactsImpl(const ContactValues* values, const std::uint32_t* order, const std::size_t* heads,
                             std::size_t begin, std::size_t end, SphereContact* contacts) {
   constexpr std::size_t kCount = ContactValues::kCount, kMoment = ContactValues::kMoment;
+  const std::size_t last = heads[end] - 1;
   for (std::size_t c = begin; c < end; ++c) {
     const std::uint32_t* const found_pairs = order + heads[c];
     const std::size_t count = heads[c + 1] - heads[c];
     double sums[kCount] = {};
     if (count <= kPartialSums) {
-      for (std::size_t k = 0; k < count; ++k) addValues(values[found_pairs[k]].of, sums);
+      for (std::size_t k = 0; k < count; ++k) {
+        __builtin_prefetch(&values[order[std::min(heads[c] + k + kAhead, last)]]);
+        addValues(values[found_pairs[k]].of, sums);
+      }
     } else {
       for (std::size_t part = 0; part < kPartialSums; ++part) {
         double partial[kCount] = {};
