@@ -42,6 +42,11 @@ struct ContactPoint {
   btVector3 aside{0, 0, 0};
 };
 
+/// Returns the axes in which it is told how surfaces bend at a point.
+inline Across bendAxes(const ContactPoint& point) {
+  return {point.bend_x, point.normal.cross(point.bend_x)};
+}
+
 /// This is a part of the overlap region with one direction of contact. It becomes one manifold.
 struct ContactPatch {
   btVector3 normal{0, 0, 0};  ///< unit, from A to B

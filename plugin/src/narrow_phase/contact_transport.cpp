@@ -98,7 +98,7 @@ void ContactTransport::carryTo(const Placed& now, const PackingShape& a, btScala
     for (int i = 0; i < patch.count; ++i) {
       ContactPoint& point = patch.points[i];
       const btVector3 on_a = turn_a * (point.on_b + point.normal * point.depth);
-      Across axes(point.normal);
+      Across axes = bendAxes(point);
       axes.x = turn_b * axes.x;
       axes.y = turn_b * axes.y;
       point.on_b = turn_b * (point.on_b - to_b_then) + to_b_now;

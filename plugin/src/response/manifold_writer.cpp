@@ -203,7 +203,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
 /// Whether a point that may be the top of a hill is that of the hill on which another one is. Along a ridge,
 /// where a hill has no top, all places are.
 bool isTopOf(const ContactPoint& top, const ContactPoint& point, btScalar separation) {
-  const Across axes(point.bend_x, point.normal.cross(point.bend_x));
+  const Across axes = bendAxes(point);
   const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
   btVector3 way(0, 0, 0);
   for (int i = 0; i < 2; ++i) {
@@ -251,7 +251,7 @@ btScalar nearerByBending(const ContactPoint& point, const btVector3& place, cons
                          btScalar time_step, btScalar size) {
   const bool in_b = point.bend_b.isHollow();
   if (in_b == point.bend_a.isHollow()) return 0;
-  const Across axes(point.bend_x, point.normal.cross(point.bend_x));
+  const Across axes = bendAxes(point);
   const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
   btScalar acceleration = 0;
   for (int i = 0; i < 2; ++i) {
@@ -280,7 +280,7 @@ btScalar turnsAway(const ContactPoint& point, const btVector3& place, const Pair
                    btScalar time_step, btScalar separation, btScalar size) {
   btScalar acceleration = motion.approachByTurningAt(place, point.normal), beyond = 0;
   if (!(point.to_top.length() > kSameTop * separation)) {
-    const Across axes(point.bend_x, point.normal.cross(point.bend_x));
+    const Across axes = bendAxes(point);
     const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
     for (int i = 0; i < 2; ++i) {
       if (!hill.hasTop(i) || !(hill.fall(i) * size > 1)) continue;
@@ -300,7 +300,7 @@ btScalar turnsAway(const ContactPoint& point, const btVector3& place, const Pair
 
 /// How bodies bend at a point, in the axes in which a SubstepSolver is told so.
 PointBends bendsAcross(const ContactPoint& point) {
-  const Across to(point.normal), from(point.bend_x, point.normal.cross(point.bend_x));
+  const Across to(point.normal), from = bendAxes(point);
   return {point.bend_a.along(to.x, to.y, from), point.bend_b.along(to.x, to.y, from)};
 }
 

@@ -86,7 +86,7 @@ btScalar rockingSpeed(const ContactPoint& point, const btVector3& place, const P
   const btVector3 tilt = motion.spin().cross(point.normal);
   const btScalar all = tilt.length();
   if (all == 0) return 0;
-  const Across axes(point.bend_x, point.normal.cross(point.bend_x));
+  const Across axes = bendAxes(point);
   const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
   const btScalar height_a = (place - motion.originA()).dot(point.normal),
                  height_b = (motion.originB() - place).dot(point.normal);

@@ -24,6 +24,7 @@ ContactPoint contactOf(const btVector3& on_b, const btVector3& normal, double de
   point.depth = btScalar(depth);
   point.bend_a = bend_a;
   point.bend_b = bend_b;
+  point.bend_x = Across(normal).x;
   return point;
 }
 
@@ -260,6 +261,24 @@ TEST_F(OnAPlane, ARollingCylinderKeepsItsLineBelowIt) {
   expectSecondOrder(worst(0.2), worst(0.1));
   EXPECT_NEAR(worst(0.2).depth, depthErrorAt(0.2), 1e-6);
   EXPECT_LT(worst(0.2).place, 0.01);
+}
+
+// Not those that its normal would have: a crest is where the bend was told beside it, and at 45 degrees these
+// change from one normal to the next.
+TEST_F(OnAPlane, APointIsCarriedInAxesOfItsOwn) {
+  const auto body = makeShape(latticeBox({0.5, 1, 0.5}, 2));
+  for (const double turned : {0.0, 0.5, 1.0, M_PI / 2}) {
+    const btVector3 x{btScalar(std::cos(turned)), btScalar(std::sin(turned)), 0}, y = down.cross(x);
+    const btVector3 bent(1, 0, 0);  // a cylinder about y
+    const btScalar to_x = bent.dot(x), to_y = bent.dot(y), bend = 1 / btScalar(kRadius);
+    ContactPoint point = contactOf(below, down, kDepth, Bend{}, Bend{});
+    point.bend_a = {bend * to_x * to_x, bend * to_x * to_y, bend * to_y * to_y};
+    point.bend_x = x;
+    const ContactPoint found = carried(*body, {point}, rolledBy(0), rolledBy(0.2))[0];
+    const Errors errors = errorsOf(found, below, down, kDepth);
+    EXPECT_NEAR(errors.depth, depthErrorAt(0.2), 1e-6) << turned;
+    EXPECT_LT(errors.place, 0.01) << turned;
+  }
 }
 
 TEST_F(OnAPlane, ACornerIsAsDeepAsItsPlace) {
