@@ -39,6 +39,16 @@ Truth truthThat(Truth::Kind kind, double measured, double expected, double toler
           0.5};
 }
 
+// Where it ends between two steps, the nearest one counts.
+TEST(Verdict, NeedsATimeThatHasBeenSimulated) {
+  const auto outcome = [](double seconds) {
+    return judge({truthThat(Truth::Kind::equal, 1, 1, 0)}, recordingOf(seconds))[0].outcome;
+  };
+  EXPECT_EQ(outcome(0.5), Outcome::holds);
+  EXPECT_EQ(outcome(0.499998), Outcome::holds);  // 600 steps of 0.00833333 s, not of 1/120
+  EXPECT_EQ(outcome(0.45), Outcome::not_recorded);  // a step is 0.045 s
+}
+
 TEST(Verdict, FollowsFromToleranceOrBound) {
   const demo::Recording recording = recordingOf(1);
   const auto outcome = [&](Truth::Kind kind, double measured) {
