@@ -87,8 +87,8 @@ TEST(ContactLaw, BodiesThatStartInsideEachOtherPartGently) {
   }
 }
 
-/// Bodies that are deep in each other part no faster than half of their size in a second, or three times their
-/// depth, but bear more the deeper they are: else what cannot bear its load sinks on and on.
+/// Bodies that are deep in each other part no faster than half of their size in a second, or three times
+/// their depth, but bear more the deeper they are: else what cannot bear its load sinks on and on.
 TEST(ContactLaw, WhatIsHeldBackBearsMoreWithItsDepth) {
   ContactPatch patch;
   patch.normal = btVector3(0, 0, 1);
@@ -105,8 +105,8 @@ TEST(ContactLaw, WhatIsHeldBackBearsMoreWithItsDepth) {
   }
 }
 
-/// What is deep in walls on both sides leaves by the way by which it is deeper in. The other wall does not bear
-/// more for that: both would be pressed on it, and any change between them would throw it.
+/// What is deep in walls on both sides leaves by the way by which it is deeper in. The other wall does not
+/// bear more for that: both would be pressed on it, and any change between them would throw it.
 TEST(ContactLaw, WallsOnBothSidesDoNotPress) {
   std::vector<ContactPatch> walls(2);
   for (int i = 0; i < 2; ++i) {
@@ -119,6 +119,33 @@ TEST(ContactLaw, WallsOnBothSidesDoNotPress) {
   const ContactLaw::OfPatch out = pair.of(walls, 0), back = pair.of(walls, 1);
   EXPECT_GT(out.at(btScalar(0.4)).bears, 1.2 * out.at(btScalar(0.3)).bears);
   EXPECT_FLOAT_EQ(float(back.at(btScalar(0.3)).bears), float(back.at(btScalar(0.1)).bears));
+}
+
+/// Two walls of a groove: a body that moves along the middle at v leaves each at v sin.
+TEST(ContactLaw, WallsOfAGrooveLetGo) {
+  constexpr double kSlope = 0.3, kDeep = 0.01, kUnseen = 0.0015;  // of a body of 1 m
+  std::vector<ContactPatch> walls(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    walls[i].normal =
+        btVector3(btScalar(i == 0 ? std::cos(kSlope) : -std::cos(kSlope)), 0, btScalar(std::sin(kSlope)));
+    walls[i].area = 1;
+    walls[i].count = 1;
+    walls[i].points[0].depth = btScalar(kDeep);
+  }
+  const auto lawOf = [&](const ContactOptions& options, const std::vector<ContactPatch>& patches,
+                         double depth) {
+    return ContactLaw(options, 1, btScalar(1) / 60, 1).of(patches, 0).at(btScalar(depth));
+  };
+  ContactOptions rigid, soft;
+  rigid.response = Response::rigid;
+  soft.stiffness = 1e5;
+  for (const ContactOptions& options : {ContactOptions(), rigid}) {
+    EXPECT_NEAR(lawOf(options, walls, kDeep).friction, std::pow(kUnseen / kDeep, 2), 1e-6);
+    EXPECT_EQ(lawOf(options, walls, 0.9 * kUnseen).friction, 1);
+    EXPECT_EQ(lawOf(options, {walls[0]}, kDeep).friction, 1);
+  }
+  EXPECT_LE(lawOf({}, walls, kDeep).push, 0.5 * std::sin(kSlope) + 1e-5);
+  EXPECT_EQ(lawOf(soft, walls, kDeep).friction, 1);
 }
 
 TEST(ContactLaw, UsersOwnStiffnessIsKept) {
