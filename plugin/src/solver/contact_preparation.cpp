@@ -162,19 +162,28 @@ void ContactRows::fillLoads(PointLanes* points, int count, int lane) {
   for (int i = 0; i < count; ++i) points[i].loaded[lane] = points[i].kept[lane];
 }
 
-/// What points press against each other, deeper than is wanted, is held neither by friction nor thrown.
+/// What points press against each other, deeper than is wanted, is held neither by friction nor thrown. The
+/// deepest of them says how little is left: else those that are less deep would hold it.
 void ContactRows::loosen(PointLanes* points, int count, int lane, btScalar wanted) {
-  for (int i = 0; i < count; ++i) {
-    PointLanes& point = points[i];
-    const btScalar depth = -point.gap[lane];
-    if (!(depth > wanted) || point.spring[lane] > 0) continue;
+  const auto pushOf = [&](int i) {
     btScalar push = 1;
-    for (int k = 0; k < count; ++k)
-      push = std::min(push, Squeeze::push(depth, point.normal.get(lane), -points[k].gap[lane],
+    const btScalar depth = -points[i].gap[lane];
+    for (int k = 0; k < count && depth > 0; ++k)
+      push = std::min(push, Squeeze::push(depth, points[i].normal.get(lane), -points[k].gap[lane],
                                           points[k].normal.get(lane)));
+    return push;
+  };
+  btScalar deepest = wanted;
+  for (int i = 0; i < count; ++i) {
+    if (points[i].spring[lane] > 0) return;
+    if (-points[i].gap[lane] > deepest && pushOf(i) < 1) deepest = -points[i].gap[lane];
+  }
+  if (!(deepest > wanted)) return;
+  for (int i = 0; i < count; ++i) {
+    const btScalar push = pushOf(i);
     if (!(push < 1)) continue;
-    point.friction[lane] *= Squeeze::friction(depth, wanted);
-    point.fastest[lane] *= push;
+    points[i].friction[lane] *= Squeeze::friction(deepest, wanted);
+    points[i].fastest[lane] *= push;
   }
 }
 
