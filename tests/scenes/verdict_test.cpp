@@ -45,7 +45,7 @@ TEST(Verdict, NeedsATimeThatHasBeenSimulated) {
     return judge({truthThat(Truth::Kind::equal, 1, 1, 0)}, recordingOf(seconds))[0].outcome;
   };
   EXPECT_EQ(outcome(0.5), Outcome::holds);
-  EXPECT_EQ(outcome(0.499998), Outcome::holds);  // 600 steps of 0.00833333 s, not of 1/120
+  EXPECT_EQ(outcome(0.499998), Outcome::holds);     // 600 steps of 0.00833333 s, not of 1/120
   EXPECT_EQ(outcome(0.45), Outcome::not_recorded);  // a step is 0.045 s
 }
 

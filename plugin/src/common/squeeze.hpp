@@ -12,8 +12,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// What two places of a pair press against each other is no load, and a solid would be too stiff for a depth
 /// that is seen. So what was driven in as a wedge comes out, though friction would hold it.
 struct Squeeze {
-  /// Returns the share of the friction that is left at this depth, if so much is not seen yet: it falls with
-  /// the square, so that a steep wedge comes out as far as a blunt one, all but.
+  /// Returns the share of the friction that is left at a depth of more than `unseen`, which is not seen yet:
+  /// it falls with the square, so that a slender wedge comes out nearly as far as a blunt one.
   static btScalar friction(btScalar depth, btScalar unseen) { return unseen * unseen / (depth * depth); }
   /// Returns the share of the push that is left at a place, in view of another one, with their depths and
   /// normals; 1 if they do not press against each other. Along both, bodies come out no faster than along

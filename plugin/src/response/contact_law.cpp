@@ -147,13 +147,13 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   law.solved = law_->solved_;
   if (!law.solved) return law;
   law.rolling = rolling_;
+  const bool given = law_->response_ == Response::compliant && !law_->defaultSpring();
   if (law_->solver_.substeps && !law_->penalty()) {
-    law.spring = law_->response_ == Response::compliant && !law_->defaultSpring();
+    law.spring = given;
     law.stiffness = stiffness_;
     law.damping = damping_;
     return law;
   }
-  const bool given = law_->response_ == Response::compliant && !law_->defaultSpring();
   const btScalar unseen = SubstepOptions().depth * law_->size_;
   if (push_left_ < 1 && depth > unseen && !given && !law_->penalty())
     law.friction = Squeeze::friction(depth, unseen);

@@ -167,7 +167,8 @@ TEST(FilePacking, FilesThatEndEarlyAreSaidToDoSo) {
 
 // CBOR can hold numbers that JSON cannot: what is read from the one has to go into the other.
 TEST(FilePacking, NoNumberOfAFileMayBeOutOfAllNumbers) {
-  const nlohmann::json document = nlohmann::json::from_cbor(toCbor(somePacking(3))), flat = document.flatten();
+  const nlohmann::json document = nlohmann::json::from_cbor(toCbor(somePacking(3))),
+                       flat = document.flatten();
   int numbers = 0;
   for (const auto& [path, value] : flat.items()) {
     if (!value.is_number_float()) continue;
