@@ -1,27 +1,42 @@
 #include "common/motion_bound.hpp"
 
+#include <cmath>
+
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
-
-Motion::Motion(const btCollisionObject& object, const BodyVelocity& now) : size(BT_LARGE_FLOAT) {
-  if (object.getCollisionShape()->isInfinite()) return;
-  size = object.getCollisionShape()->getAngularMotionDisc();
-  if (object.isStaticObject()) return;
-  if (object.getCcdMotionThreshold() > 0) swept_from = object.getCcdMotionThreshold();
-  velocity = now.linear;
-  rim_speed = now.spin.length() * size;
-}
-
 namespace {
+
+/// What forces that are not gravity add to the velocity in a step.
+btVector3 pushIn(const btCollisionObject& object, btScalar time_step) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (body == nullptr || !(body->getInvMass() > 0)) return {0, 0, 0};
+  const btVector3& force = body->getTotalForce();
+  // Outside of a step there is none, not even gravity.
+  if (force.isZero()) return force;
+  const btVector3 push =
+      (force * body->getInvMass() - body->getGravity()) * body->getLinearFactor() * time_step;
+  return std::isfinite(push.length2()) ? push : btVector3(0, 0, 0);
+}
 
 btScalar speedBetween(const Motion& a, const Motion& b) {
   return (a.velocity - b.velocity).length() + a.rim_speed + b.rim_speed;
 }
 
 }  // namespace
+
+Motion::Motion(const btCollisionObject& object, const BodyVelocity& now, btScalar time_step)
+    : size(BT_LARGE_FLOAT) {
+  if (object.getCollisionShape()->isInfinite()) return;
+  size = object.getCollisionShape()->getAngularMotionDisc();
+  if (object.isStaticObject()) return;
+  if (object.getCcdMotionThreshold() > 0) swept_from = object.getCcdMotionThreshold();
+  velocity = now.linear + pushIn(object, time_step);
+  rim_speed = now.spin.length() * size;
+}
 
 bool isSwept(const Motion& a, const Motion& b, btScalar time_step) {
   return speedBetween(a, b) * time_step > btMin(a.swept_from, b.swept_from);

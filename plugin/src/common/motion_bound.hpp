@@ -13,9 +13,11 @@ class btCollisionObject;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Tells how fast the points of a body move.
+/// Tells how fast the points of a body move, with what the user's forces will add within the step of
+/// `time_step` [s]. Gravity is left out: all fall alike, and what rests on something would be looked for
+/// further away than it goes.
 struct Motion {
-  Motion(const btCollisionObject& object, const BodyVelocity& velocity_now);
+  Motion(const btCollisionObject& object, const BodyVelocity& velocity_now, btScalar time_step);
 
   btVector3 velocity{0, 0, 0};  ///< of its origin [m/s]
   btScalar rim_speed = 0;       ///< by turning [m/s]

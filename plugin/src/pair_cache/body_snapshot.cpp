@@ -13,7 +13,7 @@ BodySnapshot::BodySnapshot(const btCollisionObject& object, btScalar time_step)
       body_(btRigidBody::upcast(&object)),
       transform_(object.getWorldTransform()),
       velocity_(object),
-      motion_(object, velocity_) {
+      motion_(object, velocity_, 0) {
   take(time_step);
 }
 
@@ -36,7 +36,7 @@ void BodySnapshot::take(btScalar time_step) {
   }
   active_ = object_->isActive();
   velocity_ = BodyVelocity(*object_);
-  motion_ = Motion(*object_, velocity_);
+  motion_ = Motion(*object_, velocity_, time_step);
   const btTransform& now = object_->getWorldTransform();
   if (!(now == transform_)) travel_ += travelBetween(transform_, now, motion_.size);
   transform_ = start_ = now;
