@@ -54,6 +54,9 @@ constexpr btScalar kBearingFaceCosine = btScalar(0.866);
 /// Ratio: an edge is taken to bend this much more than what is round on it, and, in inverse sizes of the
 /// smaller body, no more. Ten times as much is lost to rounding in single precision.
 constexpr btScalar kEdgeSharpness = 1000;
+/// In inverse sizes of the smaller body: what bends less against each other lies flat, and does not roll. A
+/// milliradian would take the place across all of the body. What is less by far is rounding.
+constexpr btScalar kFlatTogether = btScalar(1e-3);
 /// Ratio: where one of two surfaces bends this much more than the other, it is an edge.
 constexpr btScalar kEdgeBends = 10;
 /// Ratio: a face that ends this much sooner than the other one has its edge on the other.

@@ -137,9 +137,20 @@ bool PatchContactPoints::addCorner(const EdgeContact& corner, bool of_a) {
       !add(points, of_a ? points.normal_b : points.normal_a, corner.id,
            corner.is_peak ? Kind::corner : Kind::edge))
     return false;
-  const bool is_on_rim = (of_a ? points.curvature_a : points.curvature_b) > 0,
-             is_over_flat = (of_a ? points.curvature_b : points.curvature_a) == 0;
-  if (is_on_rim && is_over_flat) layOnHill(points, found_.back());
+  const btScalar bends_here = of_a ? points.curvature_a : points.curvature_b,
+                 bends_below = of_a ? points.curvature_b : points.curvature_a;
+  if (bends_below != 0) {
+    // It goes over what bends, whose normal it has.
+    ContactPoint& point = found_.back().point;
+    const Across axes(point.normal);
+    const Bend sharp = Bend::round(kEdgeSharpness * btFabs(bends_below)),
+               below = surfaces_.bend(!of_a, points, axes);
+    point.bend_a = of_a ? sharp : below;
+    point.bend_b = of_a ? below : sharp;
+    point.bend_x = axes.x;
+  } else if (bends_here > 0) {
+    layOnHill(points, found_.back());
+  }
   return true;
 }
 

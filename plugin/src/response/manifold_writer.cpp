@@ -340,6 +340,8 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
                 const ContactLaw::OfPatch& law, const SolverSettings& solver, btManifoldResult* result) {
   btPersistentManifold& manifold = *result->getPersistentManifold();
   std::array<NewPoint, kPatchPoints> points;
+  btScalar load = 0;
+  for (int i = 0; i < manifold.getNumContacts(); ++i) load += manifold.getContactPoint(i).m_appliedImpulse;
   int count = 0;
   for (int i = 0; i < patch.count; ++i) {
     NewPoint& point = points[count];
@@ -350,8 +352,9 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     point.normal = patch.points[i].normal;
     point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
     point.on_b = origin + patch.points[i].on_b;
-    point.ahead = btMin(law.size(), point.law.time_step *
-                                        rockingSpeed(patch.points[i], point.on_b, motion, a, b, law.size()));
+    point.ahead =
+        btMin(law.size(), point.law.time_step * rockingSpeed(patch.points[i], point.on_b, motion, a, b,
+                                                             law.size(), load, point.law.time_step));
     if (solver.substeps) {
       point.bends = bendsAcross(patch.points[i]);
     } else {

@@ -1,5 +1,7 @@
 #include "response/patch_friction.hpp"
 
+#include "common/contact_tolerances.hpp"
+
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
@@ -13,14 +15,19 @@ constexpr btScalar kAcross = btScalar(0.5);
 /// Mean distance from the middle of a line, of that of its ends. Few spheres may tell less of an area.
 constexpr btScalar kLine = btScalar(0.5);
 
-/// In inverse sizes of the smaller body: what bends less against each other lies flat, and does not roll. A
-/// milliradian would take the place across all of the body. What is less by far is rounding.
-constexpr btScalar kFlatTogether = btScalar(1e-3);
-
 bool held(const btManifoldPoint& point) {
   const btScalar most = point.m_combinedFriction * point.m_appliedImpulse;
   const btScalar first = point.m_appliedImpulseLateral1, second = point.m_appliedImpulseLateral2;
   return first * first + second * second < kHeld * most * most;
+}
+
+/// How readily a body turns about an axis across the normal through a place that is `height` from its centre
+/// along the normal [1/(kg m^2)].
+btScalar yieldsAt(const btCollisionObject& object, btScalar height, const btVector3& axis) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (body == nullptr || object.isStaticOrKinematicObject() || !(body->getInvMass() > 0)) return 0;
+  const btScalar yields = axis.dot(body->getInvInertiaTensorWorld() * axis);
+  return yields / (1 + yields * height * height / body->getInvMass());
 }
 
 }  // namespace
@@ -82,7 +89,8 @@ btScalar spinningLever(btScalar depth, btScalar curvature, const btVector3& spin
 }
 
 btScalar rockingSpeed(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
-                      const btCollisionObject& a, const btCollisionObject& b, btScalar size) {
+                      const btCollisionObject& a, const btCollisionObject& b, btScalar size, btScalar load,
+                      btScalar time_step) {
   const btVector3 tilt = motion.spin().cross(point.normal);
   const btScalar all = tilt.length();
   if (all == 0) return 0;
@@ -99,7 +107,11 @@ btScalar rockingSpeed(const ContactPoint& point, const btVector3& place, const P
     };
     const btScalar share = btMin(past(a, height_a, point.bend_a), past(b, height_b, point.bend_b));
     const btScalar along = tilt.dot(axis);
-    if (share > size * hill.fall(i)) work += share / hill.fall(i) * along * along;
+    if (!(share > 0)) continue;
+    const btVector3 about = axis.cross(point.normal);
+    const btScalar yields = yieldsAt(a, height_a, about) + yieldsAt(b, height_b, about);
+    const btScalar lever = share / hill.fall(i), phase2 = load * time_step * lever * yields;
+    work += btMin(phase2, btScalar(1)) * lever * along * along;
   }
   return work / all;
 }

@@ -3,6 +3,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "common/pair_motion.hpp"
 #include "narrow_phase/contact_point.hpp"
@@ -48,16 +49,21 @@ btScalar slidingShare(const PairMotion& motion, const ContactPatch& patch,
 btScalar spinningLever(btScalar depth, btScalar curvature, const btVector3& spin, const btVector3& normal);
 
 /// Returns how fast the line of the push between bodies that rock on each other gets past their centres
-/// [m/s]. Where they tilt by t along an axis in which they bend by A and B, they touch t / (A + B) further
-/// on, and it gets past A's centre, h under the surface, by
+/// [m/s], as far as a step of `time_step` [s] does not resolve it. Where they tilt by t along an axis in
+/// which they bend by A and B, they touch t / (A + B) further on, and it gets past A's centre, h under the
+/// surface, by
 ///   l t = (1 - h A) / (A + B) t.
-/// The smaller l of A's and B's counts, of those that can be moved; their load times that is a stiffness
-/// which holds them upright. It is 0 where what is round rolls, on whatever, and is large where surfaces are
-/// nearly flat together, as two rings that lie on each other. Axes in which it is less than `size` [m], that
-/// of the smaller body, do not count: steps are short for what rocks so slowly. The speed is that by which
-/// the load does as much work about all that the bodies tilt as in both axes together.
+/// The smaller l of A's and B's counts, of those that can be moved. Their load N, which has given them the
+/// impulse `load` [N s] in the last step, makes that a stiffness N l which holds them upright: about the
+/// place, where their inertia is I, they swing by w = sqrt(N l / I). With the push at the end of the step
+/// amplitudes fall by w^2 dt / 2 in a second, and what a step cannot tell comes to rest. Of that the part
+/// (w dt)^2 is left, 1 at most: what a step resolves goes on rocking, as its brake falls with dt^3. It is 0
+/// where what is round rolls, on whatever, and in axes along which the surfaces are flat together, for the
+/// smaller body's `size` [m]. The speed is that by which the load does as much work about all that the bodies
+/// tilt as in both axes together.
 btScalar rockingSpeed(const ContactPoint& point, const btVector3& place, const PairMotion& motion,
-                      const btCollisionObject& a, const btCollisionObject& b, btScalar size);
+                      const btCollisionObject& a, const btCollisionObject& b, btScalar size, btScalar load,
+                      btScalar time_step);
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
 }  // namespace innersphere

@@ -18,6 +18,9 @@ namespace {
 constexpr btScalar kFastestPush = btScalar(0.5), kLeavingRate = 3;
 /// Angle, 2 degrees: triangles tell no better than that in which directions a surface bends most and least.
 constexpr btScalar kAligned = btScalar(0.035);
+/// In sizes of the smaller body: on what bends less than by its inverse size a place goes so far in a step,
+/// at most, as it would come to the end of it.
+constexpr btScalar kFarthestRoll = btScalar(1) / 16;
 /// [rad]: a direction that is closer to one in which a body is held may be that one, for rounding.
 constexpr btScalar kAcross = btScalar(1e-5);
 
@@ -139,7 +142,7 @@ void ContactRows::prepare(int index, const SolverBodies& bodies) {
       const btManifoldPoint& point = *sources_[static_cast<std::size_t>(pair.begin + i)].point;
       fillSoftness(points[i], lane, point, pair, bodies);
     }
-    loosen(points, pair.count, lane, depth_ * smallerSize(pair, bodies));
+    loosen(points, sources_.data() + pair.begin, pair.count, lane, depth_ * smallerSize(pair, bodies));
     fillLoads(points, pair.count, lane);
   }
 }
@@ -163,24 +166,36 @@ void ContactRows::fillLoads(PointLanes* points, int count, int lane) {
 }
 
 /// What points press against each other, deeper than is wanted, is held neither by friction nor thrown. The
-/// deepest of them says how little is left: else those that are less deep would hold it.
-void ContactRows::loosen(PointLanes* points, int count, int lane, btScalar wanted) {
+/// deepest of them says how little is left: else those that are less deep would hold it. That is of two
+/// bodies: bodies that are fixed are one to the rows, but what two of them hold is gripped.
+void ContactRows::loosen(PointLanes* points, const Source* sources, int count, int lane, btScalar wanted) {
+  const auto other = [&](int i) {
+    return sources[i].flipped ? sources[i].manifold->getBody0() : sources[i].manifold->getBody1();
+  };
   const auto pushOf = [&](int i) {
     btScalar push = 1;
     const btScalar depth = -points[i].gap[lane];
-    for (int k = 0; k < count && depth > 0; ++k)
-      push = std::min(push, Squeeze::push(depth, points[i].normal.get(lane), -points[k].gap[lane],
-                                          points[k].normal.get(lane)));
+    for (int k = 0; k < count && depth > 0; ++k) {
+      if (other(k) == other(i))
+        push = std::min(push, Squeeze::push(depth, points[i].normal.get(lane), -points[k].gap[lane],
+                                            points[k].normal.get(lane)));
+    }
     return push;
   };
-  btScalar deepest = wanted;
-  for (int i = 0; i < count; ++i) {
+  const auto deepestOf = [&](const btCollisionObject* body) {
+    btScalar deepest = wanted;
+    for (int i = 0; i < count; ++i)
+      if (-points[i].gap[lane] > deepest && other(i) == body && pushOf(i) < 1) deepest = -points[i].gap[lane];
+    return deepest;
+  };
+  for (int i = 0; i < count; ++i)
     if (points[i].spring[lane] > 0) return;
-    if (-points[i].gap[lane] > deepest && pushOf(i) < 1) deepest = -points[i].gap[lane];
-  }
-  if (!(deepest > wanted)) return;
+  const btCollisionObject* body = nullptr;
+  btScalar deepest = 0;
   for (int i = 0; i < count; ++i) {
-    const btScalar push = pushOf(i);
+    // Points of one body mostly follow each other.
+    if (other(i) != body) deepest = deepestOf(body = other(i));
+    const btScalar push = deepest > wanted ? pushOf(i) : btScalar(1);
     if (!(push < 1)) continue;
     points[i].friction[lane] *= Squeeze::friction(deepest, wanted);
     points[i].fastest[lane] *= push;
@@ -255,9 +270,9 @@ btVector3 ContactRows::wayAhead(const PointLanes& lanes, int lane, const Touchin
 }
 
 /// How the place goes along with them: to where normals agree, in the axes in which there is a top of the
-/// hill of the depth. Where surfaces are so flat together that it would roll off their ends, or fit each
-/// other, it stays: in the world if both bend, as that of a bore on its pin, else on the bodies, as at a
-/// corner or on a face. Sizes of 0 are of what does not turn.
+/// hill of the depth. Where surfaces fit each other, or are flat, it stays: in the world if both bend, as
+/// that of a bore on its pin, else on the bodies, as at a corner or on a face. Sizes of 0 are of what does
+/// not turn.
 void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, const TouchingPair& pair,
                             const SolverBodies& bodies) {
   const btVector3 normal = lanes.normal.get(lane);
@@ -276,7 +291,10 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
     *bend = {bend->xx * share, bend->xy * share, bend->yy * share};
   }
   const btScalar both = btFabs(bends.a.xx) + btFabs(bends.a.yy) + btFabs(bends.b.xx) + btFabs(bends.b.yy);
-  if (both == 0) return;
+  if (!(both * size > kFlatTogether)) {
+    lanes.goes[lane] = isOfStart(*source.point) ? btScalar(1) : btScalar(0);
+    return;
+  }
   const Across told(-source.point->m_normalWorldOnB);  // out of the first body of the manifold
   Across ahead(normal);
   ahead.x = wayAhead(lanes, lane, pair, both, bodies);
@@ -288,21 +306,29 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
   };
   Bend a = seenAhead(source.flipped ? bends.b : bends.a), b = seenAhead(source.flipped ? bends.a : bends.b);
   Hill hill(a, b, -source.point->getDistance(), ahead);
-  const auto rolls = [&](int i) { return hill.hasTop(i) && hill.fall(i) * size > 1; };
+  const auto along = [&](const Bend& bend, int i) {
+    return bend.turn(hill.axis(i), ahead).dot(hill.axis(i));
+  };
+  const auto common = [&](int i) { return std::min(btFabs(along(a, i)), btFabs(along(b, i))); };
+  const auto rolls = [&](int i) {
+    const btScalar fall = hill.fall(i);
+    return hill.hasTop(i) && (fall * size > 1 || (fall * size > kFlatTogether && fall > common(i)));
+  };
   // What is left of curvatures that cancel has axes of rounding: each surface has better ones.
   const bool any = rolls(0) || rolls(1);
   if (!any) hill = Hill({-a.xx, -a.xy, -a.yy}, b, 0, ahead);
   btVector3 axis[2];
-  btScalar fall[2] = {0, 0}, still[2] = {0, 0};
+  btScalar fall[2] = {0, 0}, most[2] = {BT_LARGE_FLOAT, BT_LARGE_FLOAT}, still[2] = {0, 0};
   for (int i = 0; i < 2; ++i) {
     axis[i] = hill.axis(i);
-    const btScalar bend_a = a.turn(axis[i], ahead).dot(axis[i]), bend_b = b.turn(axis[i], ahead).dot(axis[i]);
-    if (any && rolls(i))
+    if (any && rolls(i)) {
       fall[i] = 1 / hill.fall(i);
-    else if (std::min(btFabs(bend_a), btFabs(bend_b)) * size > 1)
-      still[i] = 1 / bend_b;
-    else
+      if (fall[i] > size) most[i] = kFarthestRoll * size;
+    } else if (common(i) * size > 1) {
+      still[i] = 1 / along(b, i);
+    } else {
       axis[i].setZero();
+    }
   }
   // Also of a hollow on a flat face, or its edge: else it would be lifted as it turns.
   const auto radius = [&](const Bend& bend, btScalar size_of_it) {
@@ -316,6 +342,8 @@ void ContactRows::fillBends(PointLanes& lanes, int lane, const Source& source, c
   lanes.axis_2.set(lane, axis[1]);
   lanes.fall_1[lane] = fall[0];
   lanes.fall_2[lane] = fall[1];
+  lanes.most_1[lane] = most[0];
+  lanes.most_2[lane] = most[1];
   lanes.still_1[lane] = still[0];
   lanes.still_2[lane] = still[1];
   lanes.a_11[lane] = a.xx;

@@ -165,9 +165,9 @@ int ContactRows::partOf(int first, int count, int part, int parts) const {
 /// bends A and B, to x on B where the normals agree again,
 ///   (A + B) x = A u + t_a - t_b = c,
 /// so that the normal turns by B x + t_b, and the gap, which is stationary there, grows by
-///   u A u / 2 + t_a u - c x / 2.
-/// That is of second order. What turns is taken about the centres of the strongest curvatures: for spheres
-/// and cylinders nothing is neglected.
+///   u A u / 2 + t_a u - c x / 2 - (c - (A + B) x) x / 2,
+/// of which the last is of a place that does not go as far as that. All is of second order. What turns is
+/// taken about the centres of the strongest curvatures: for spheres and cylinders nothing is neglected.
 /// Where next to nothing is left of A + B, x could be anything. There the normal keeps its direction,
 /// x = -t_b / B: the row is a plane between the centres of curvature. A bore that turns on its pin by t, and
 /// keeps the place, would be lifted by r t^2 / 2 in each step.
@@ -182,7 +182,8 @@ void ContactRows::roll(PointLanes& point, const LaneBodies& a, const LaneBodies&
   const Lanes au_1 = point.a_11 * u_1 + point.a_12 * u_2, au_2 = point.a_12 * u_1 + point.a_22 * u_2;
   const Lanes c_1 = au_1 + ta_1 - tb_1, c_2 = au_2 + ta_2 - tb_2;
   const Lanes still_1 = tb_1 * point.still_1, still_2 = tb_2 * point.still_2;
-  const Lanes x_1 = c_1 * point.fall_1 - still_1, x_2 = c_2 * point.fall_2 - still_2;
+  const Lanes x_1 = within(point.most_1, c_1 * point.fall_1) - still_1,
+              x_2 = within(point.most_2, c_2 * point.fall_2) - still_2;
   const Lanes n_1 = point.b_11 * x_1 + point.b_12 * x_2 + tb_1,
               n_2 = point.b_12 * x_1 + point.b_22 * x_2 + tb_2;
   // By how much A's normal differs there.
@@ -190,7 +191,7 @@ void ContactRows::roll(PointLanes& point, const LaneBodies& a, const LaneBodies&
               off_2 = au_2 + ta_2 - point.a_12 * x_1 - point.a_22 * x_2 - n_2;
   const Lanes grows = half * ((ta_1 * ta_1 + ta_2 * ta_2) * ra + (tb_1 * tb_1 + tb_2 * tb_2) * rb +
                               (au_1 + ta_1 + ta_1) * u_1 + (au_2 + ta_2 + ta_2) * u_2 - c_1 * x_1 -
-                              c_2 * x_2 + off_1 * still_1 + off_2 * still_2);
+                              c_2 * x_2 - off_1 * x_1 - off_2 * x_2);
   const Lanes way_1 = dot(way, axis_1), way_2 = dot(way, axis_2), aside = way_1 * way_1 + way_2 * way_2,
               left = aside + (grows + grows) * (point.gap - point.gap_0);
   const auto exact = (grows > Lanes{}) & (left > inAll(btScalar(0.1)) * aside);
@@ -202,20 +203,20 @@ void ContactRows::roll(PointLanes& point, const LaneBodies& a, const LaneBodies&
   point.normal = turned * (length > Lanes{} ? inAll(1) / length : Lanes{});
   point.side_1 = point.side_1 - point.normal * dot(point.side_1, point.normal);
   point.side_2 = point.side_2 - point.normal * dot(point.side_2, point.normal);
-  const Lanes3 swung_a = swing(a.axis, a.w, point.pivot_a), swung_b = swing(b.axis, b.w, point.pivot_b);
   const Lanes3 bent = point.normal - point.normal_0;
-  to_a = axis_1 * (dot(swung_a, axis_1) + x_1 - u_1 + (n_1 - ta_1) * ra) +
-         axis_2 * (dot(swung_a, axis_2) + x_2 - u_2 + (n_2 - ta_2) * ra) - bent * ra;
-  to_b = axis_1 * (dot(swung_b, axis_1) + x_1 - (n_1 - tb_1) * rb) +
-         axis_2 * (dot(swung_b, axis_2) + x_2 - (n_2 - tb_2) * rb) + bent * rb;
+  to_a =
+      to_a + axis_1 * (x_1 - u_1 + (n_1 - ta_1) * ra) + axis_2 * (x_2 - u_2 + (n_2 - ta_2) * ra) - bent * ra;
+  to_b = to_b + axis_1 * (x_1 - (n_1 - tb_1) * rb) + axis_2 * (x_2 - (n_2 - tb_2) * rb) + bent * rb;
 }
 
 /// Where the bodies touch now.
 void ContactRows::follow(const Block& block, PointLanes& point, const LaneBodies& a, const LaneBodies& b) {
   const Lanes3 moved = a.moved - b.moved;
-  const Lanes3 way = moved + swing(a.axis, a.w, point.pivot_a) - swing(b.axis, b.w, point.pivot_b);
+  const Lanes3 swung_a = swing(a.axis, a.w, point.pivot_a), swung_b = swing(b.axis, b.w, point.pivot_b);
+  const Lanes3 way = moved + swung_a - swung_b;
   point.gap = point.gap_0 + dot(way, point.normal_0);
-  Lanes3 to_a, to_b;  // as seen from their origins
+  // As seen from their origins.
+  Lanes3 to_a = point.turns(swung_a), to_b = point.turns(swung_b);
   if (block.bends) roll(point, a, b, way, to_a, to_b);
   // Both feel the push at one place, so that it turns them as much as it would turn one body: in the middle,
   // or where A is of what moves by itself.

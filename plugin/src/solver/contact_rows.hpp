@@ -92,7 +92,9 @@ class ContactRows {
     Lanes gap_0;                        ///< [m]
     Lanes radius_a, radius_b;           ///< from there to the place [m]
     Lanes3 axis_1, axis_2;              ///< of the hill of the depth; 0: the place stays on the bodies
+    Lanes goes;                         ///< 1: the place turns with the bodies; 0: only along the axes
     Lanes fall_1, fall_2;               ///< inverse of how fast its slope falls; 0: there is no top [m]
+    Lanes most_1, most_2;               ///< how far the place goes to the top, at most [m]
     Lanes still_1, still_2;             ///< radius of b where the place stays in the world, or 0 [m]
     Lanes a_11, a_12, a_22, b_11, b_12, b_22;     ///< how the bodies bend in these axes [1/m]
     Lanes3 normal, side_1, side_2, arm_a, arm_b;  ///< now
@@ -110,6 +112,11 @@ class ContactRows {
     Lanes impulse, impulse_1, impulse_2;  ///< of this substep [N s]
     Lanes roll_1, roll_2, spin;           ///< [N m s]
     Lanes sum, sum_1, sum_2;              ///< of the step [N s]
+    /// Of the way on which a body turns the place, what the place goes along with.
+    Lanes3 turns(const Lanes3& way) const {
+      const Lanes rest = inAll(1) - goes;
+      return way * goes + axis_1 * (dot(way, axis_1) * rest) + axis_2 * (dot(way, axis_2) * rest);
+    }
   };
   struct Block {
     int a[kLanes], b[kLanes];
@@ -156,7 +163,7 @@ class ContactRows {
   void fillSoftness(PointLanes& lanes, int lane, const btManifoldPoint& point, const TouchingPair& pair,
                     const SolverBodies& bodies) const;
   static void fillLoads(PointLanes* points, int count, int lane);
-  static void loosen(PointLanes* points, int count, int lane, btScalar wanted);
+  static void loosen(PointLanes* points, const Source* sources, int count, int lane, btScalar wanted);
   // Position-independent code inlines what is declared so.
   inline void renewMassesOf(const Block& block, const std::vector<BodyState>& states);
   inline void carryBlock(const Block& block, std::vector<BodyState>& states);

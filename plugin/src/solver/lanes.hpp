@@ -39,6 +39,10 @@ inline Lanes larger(Lanes a, Lanes b) {
 inline Lanes smaller(Lanes a, Lanes b) {
   return a < b ? a : b;
 }
+/// No further from 0 than `most`.
+inline Lanes within(Lanes most, Lanes value) {
+  return larger(Lanes{} - most, smaller(most, value));
+}
 inline Lanes root(Lanes a) {
   for (int lane = 0; lane < kLanes; ++lane) a[lane] = std::sqrt(a[lane]);
   return a;

@@ -336,5 +336,26 @@ TEST(Wedges, ComeOutOfWhatTheyAreDrivenInto) {
   }
 }
 
+// No wedge, though walls press against each other through it: a force that somebody needs.
+TEST(Wedges, AreNotWhatTwoBodiesGrip) {
+  constexpr double kSide = 0.2, kDeep = 0.001, kWall = 0.1;
+  const auto cube = makePackedShape(*makeBox({kSide, kSide, kSide}), 256);
+  const auto wall = std::make_shared<btBoxShape>(btVector3(kWall, kWall, kWall));
+  SubstepSolver solver;
+  for (const bool substeps : {false, true}) {
+    for (const double rate : {60.0, 240.0}) {
+      TestWorld world;
+      if (substeps) world.world.setConstraintSolver(&solver);
+      PackingCollisionAlgorithm::prepareWorld(world.world);
+      for (const double side : {-1.0, 1.0})
+        world.add(wall, 0, btVector3(btScalar(side * (kSide / 2 + kWall - kDeep)), 0, 0));
+      const btRigidBody& body = world.add(cube, 1, btVector3(0, 0, 0));
+      world.run(2, 1 / rate);
+      EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0, 0.01 * kSide)
+          << substeps << ", " << rate << " steps/s";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace innersphere::test
