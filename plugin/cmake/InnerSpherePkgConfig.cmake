@@ -31,7 +31,7 @@ innersphere_pc(innersphere-gpu innersphere_gpu "Overlap of inner-sphere packings
   PUBLIC innersphere-packing PRIVATE tbb LIBS ${cuda_libs} -pthread)
 if(TARGET innersphere_packer)
   innersphere_pc(innersphere-packer innersphere_packer "Fills meshes with spheres"
-    PUBLIC innersphere-packing PRIVATE tbb assimp)
+    PUBLIC innersphere-packing PRIVATE tbb assimp zlib)
 endif()
 if(TARGET innersphere_plugin)
   innersphere_pc(innersphere innersphere_plugin "${PROJECT_DESCRIPTION}" PUBLIC innersphere-gpu bullet)

@@ -336,7 +336,8 @@ TEST(Wedges, ComeOutOfWhatTheyAreDrivenInto) {
   }
 }
 
-// No wedge, though walls press against each other through it: a force that somebody needs.
+// No wedge, though walls press against each other through it: a force that somebody needs. It would fall by
+// 20 m; friction of Bullet's solver lets it creep.
 TEST(Wedges, AreNotWhatTwoBodiesGrip) {
   constexpr double kSide = 0.2, kDeep = 0.001, kWall = 0.1;
   const auto cube = makePackedShape(*makeBox({kSide, kSide, kSide}), 256);
@@ -351,7 +352,7 @@ TEST(Wedges, AreNotWhatTwoBodiesGrip) {
         world.add(wall, 0, btVector3(btScalar(side * (kSide / 2 + kWall - kDeep)), 0, 0));
       const btRigidBody& body = world.add(cube, 1, btVector3(0, 0, 0));
       world.run(2, 1 / rate);
-      EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0, 0.01 * kSide)
+      EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0, (substeps ? 0.005 : 0.05) * kSide)
           << substeps << ", " << rate << " steps/s";
     }
   }
