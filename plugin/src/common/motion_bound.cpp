@@ -10,7 +10,12 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// What forces that are not gravity add to the velocity in a step.
+btScalar speedBetween(const Motion& a, const Motion& b) {
+  return (a.velocity - b.velocity).length() + a.rim_speed + b.rim_speed;
+}
+
+}  // namespace
+
 btVector3 pushIn(const btCollisionObject& object, btScalar time_step) {
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (body == nullptr || !(body->getInvMass() > 0)) return {0, 0, 0};
@@ -22,19 +27,13 @@ btVector3 pushIn(const btCollisionObject& object, btScalar time_step) {
   return std::isfinite(push.length2()) ? push : btVector3(0, 0, 0);
 }
 
-btScalar speedBetween(const Motion& a, const Motion& b) {
-  return (a.velocity - b.velocity).length() + a.rim_speed + b.rim_speed;
-}
-
-}  // namespace
-
-Motion::Motion(const btCollisionObject& object, const BodyVelocity& now, btScalar time_step)
+Motion::Motion(const btCollisionObject& object, const BodyVelocity& now, const btVector3& push)
     : size(BT_LARGE_FLOAT) {
   if (object.getCollisionShape()->isInfinite()) return;
   size = object.getCollisionShape()->getAngularMotionDisc();
   if (object.isStaticObject()) return;
   if (object.getCcdMotionThreshold() > 0) swept_from = object.getCcdMotionThreshold();
-  velocity = now.linear + pushIn(object, time_step);
+  velocity = now.linear + push;
   rim_speed = now.spin.length() * size;
 }
 

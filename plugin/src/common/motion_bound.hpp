@@ -13,11 +13,15 @@ class btCollisionObject;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
-/// Tells how fast the points of a body move, with what the user's forces will add within the step of
-/// `time_step` [s]. Gravity is left out: all fall alike, and what rests on something would be looked for
-/// further away than it goes.
+/// Says what the user's forces add to the velocity of a body in a step of `time_step` [s]: all but gravity,
+/// with which all fall alike.
+btVector3 pushIn(const btCollisionObject& object, btScalar time_step);
+
+/// Tells how fast the points of a body move.
 struct Motion {
-  Motion(const btCollisionObject& object, const BodyVelocity& velocity_now, btScalar time_step);
+  /// `push` is what its velocity may change by within the step [m/s].
+  Motion(const btCollisionObject& object, const BodyVelocity& velocity_now,
+         const btVector3& push = btVector3(0, 0, 0));
 
   btVector3 velocity{0, 0, 0};  ///< of its origin [m/s]
   btScalar rim_speed = 0;       ///< by turning [m/s]

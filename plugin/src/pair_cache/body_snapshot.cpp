@@ -13,7 +13,7 @@ BodySnapshot::BodySnapshot(const btCollisionObject& object, btScalar time_step)
       body_(btRigidBody::upcast(&object)),
       transform_(object.getWorldTransform()),
       velocity_(object),
-      motion_(object, velocity_, 0) {
+      motion_(object, velocity_) {
   take(time_step);
 }
 
@@ -21,6 +21,17 @@ BodySnapshot::BodySnapshot(const btCollisionObjectWrapper& wrapper, btScalar tim
     : BodySnapshot(*wrapper.getCollisionObject(), time_step) {
   shape_place_ = wrapper.getWorldTransform();
 }
+
+namespace {
+
+/// What held a body in the last step, against forces that would have pushed it so: it goes on doing so.
+btVector3 heldOf(const btVector3& pushed, const btVector3& sped_up) {
+  const btScalar push2 = pushed.length2();
+  if (!(push2 > 0)) return {0, 0, 0};
+  return pushed * (1 - btMin(btScalar(1), btMax(btScalar(0), pushed.dot(sped_up) / push2)));
+}
+
+}  // namespace
 
 void BodySnapshot::take(btScalar time_step) {
   way_.store(0, std::memory_order_relaxed);
@@ -35,8 +46,10 @@ void BodySnapshot::take(btScalar time_step) {
     version_ = packing_->impl().version;
   }
   active_ = object_->isActive();
+  const btVector3 before = velocity_.linear, pushed = push_;
   velocity_ = BodyVelocity(*object_);
-  motion_ = Motion(*object_, velocity_, time_step);
+  push_ = pushIn(*object_, time_step);
+  motion_ = Motion(*object_, velocity_, push_ - heldOf(pushed, velocity_.linear - before));
   const btTransform& now = object_->getWorldTransform();
   if (!(now == transform_)) travel_ += travelBetween(transform_, now, motion_.size);
   transform_ = start_ = now;

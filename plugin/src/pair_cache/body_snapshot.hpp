@@ -82,6 +82,7 @@ class BodySnapshot {
   btTransform transform_, start_;
   std::optional<btTransform> shape_place_;
   BodyVelocity velocity_;
+  btVector3 push_{0, 0, 0};  ///< what forces add to it in a step [m/s]
   Motion motion_;
   double travel_ = 0;
   bool active_ = true;
