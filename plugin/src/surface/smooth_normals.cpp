@@ -26,6 +26,9 @@ constexpr btScalar kUneven = 8;
 constexpr btScalar kTurnsFar = 3;
 /// Ratio: where normals lean further than this times the angle at an edge, it is other edges that turn them.
 constexpr btScalar kOwn = 2;
+/// Ratio: bends at both ends of an edge that differ by more are of two surfaces that go over into each other,
+/// such as a tube and the ball in which it ends.
+constexpr btScalar kOneSurface = btScalar(0.25);
 /// How far beyond an edge, in weights, a line still meets a triangle, and a point is still over it: no
 /// rounding leaves a gap between two, or takes the bulge from a point on a rim.
 constexpr btScalar kBeyond = btScalar(1e-4);
@@ -78,6 +81,7 @@ SmoothNormals::SmoothNormals(const Surface& surface) : facets_(surface.triangles
   setCorners(surface);
   layOnNeighbours(surface, around);
   setNormals(surface, around);
+  setMixed(surface, around);
   countToSharp();
 }
 
@@ -324,6 +328,87 @@ void SmoothNormals::setNormals(const Surface& surface, const Around& around) {
   }
 }
 
+namespace {
+
+/// How normals turn around a vertex, by those of its neighbours.
+class VertexBend {
+ public:
+  VertexBend() = default;
+  explicit VertexBend(const btVector3& normal) : normal_(normal) { btPlaneSpace1(normal, x_, y_); }
+  void add(const btVector3& edge, const btVector3& turn) {
+    const btScalar weight = 1 / edge.length2(), ex = edge.dot(x_), ey = edge.dot(y_);
+    xx_ += weight * ex * ex;
+    xy_ += weight * ex * ey;
+    yy_ += weight * ey * ey;
+    by_x_ += turn * (weight * ex);
+    by_y_ += turn * (weight * ey);
+  }
+  /// False if the neighbours lie in one direction.
+  bool solve() {
+    const btScalar determinant = xx_ * yy_ - xy_ * xy_;
+    if (!(determinant > btScalar(0.01) * (xx_ + yy_) * (xx_ + yy_))) return false;
+    const btVector3 along_x = (by_x_ * yy_ - by_y_ * xy_) / determinant,
+                    along_y = (by_y_ * xx_ - by_x_ * xy_) / determinant;
+    by_x_ = along_x;
+    by_y_ = along_y;
+    return true;
+  }
+  /// Along a chord: on a ball exactly so.
+  btVector3 turn(const btVector3& edge) const {
+    const btScalar ex = edge.dot(x_), ey = edge.dot(y_), length2 = ex * ex + ey * ey;
+    if (!(length2 > 0)) return {0, 0, 0};
+    const btVector3 along = by_x_ * ex + by_y_ * ey;
+    const btScalar curvature = (along.dot(x_) * ex + along.dot(y_) * ey) / length2;
+    return along + normal_ * (normal_.dot(edge) * curvature);
+  }
+
+ private:
+  btVector3 normal_, x_, y_, by_x_{0, 0, 0}, by_y_{0, 0, 0};
+  btScalar xx_ = 0, xy_ = 0, yy_ = 0;
+};
+
+}  // namespace
+
+/// Normals that are linear within a triangle lack what bends along both of its sides at once, and lean to the
+/// side to which the diagonals of a mesh lead: a torus of triangles rolled as if it went downhill. With the
+/// bends B at both ends of an edge e from i to j they are right to second order:
+///   n = sum w_i n_i + sum w_i w_j (B_i - B_j) e / 2.
+void SmoothNormals::setMixed(const Surface& surface, const Around& around) {
+  std::vector<VertexBend> bends(around.size());
+  std::vector<bool> known(around.size());
+  for (std::size_t v = 0; v < around.size(); ++v) {
+    const auto corner = static_cast<std::uint32_t>(v);
+    known[v] = !around[v].empty();
+    for (const std::uint32_t t : around[v]) {
+      const Facet& facet = facets_[t];
+      const std::size_t at = placeOf(corner, surface.triangles[t]);
+      const btVector3& normal = facet.normals[at];
+      const btVector3 edge = facet.corners[next(at)] - facet.corners[at];
+      if (t == around[v].front()) bends[v] = VertexBend(normal);
+      known[v] =
+          known[v] && facet.across[at] < kSeam && facet.across[next(next(at))] < kSeam &&
+          edge.length2() > 0 &&
+          (normal - facets_[around[v].front()].normals[placeOf(corner, surface.triangles[around[v].front()])])
+                  .length() < kFlat;
+      if (known[v]) bends[v].add(edge, facet.normals[next(at)] - normal);
+    }
+    known[v] = known[v] && bends[v].solve();
+  }
+  mixed_.assign(facets_.size(), {});
+  for (std::size_t t = 0; t < facets_.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      btVector3& mixed = mixed_[t][k];
+      mixed.setZero();
+      const std::uint32_t from = surface.triangles[t][k], to = surface.triangles[t][next(k)];
+      if (facets_[t].curvature == 0 || !known[from] || !known[to]) continue;
+      const btVector3 edge = facets_[t].corners[next(k)] - facets_[t].corners[k];
+      const btVector3 turns[] = {bends[from].turn(edge), bends[to].turn(edge)};
+      const btVector3 differ = turns[0] - turns[1];
+      if (differ.length() < kOneSurface * btMax(turns[0].length(), turns[1].length())) mixed = differ / 2;
+    }
+  }
+}
+
 void SmoothNormals::countToSharp() {
   for (Facet& facet : facets_) {
     const bool sharp = *std::max_element(facet.across, facet.across + 3) >= kSharp;
@@ -387,7 +472,9 @@ SmoothNormals::Place SmoothNormals::at(std::size_t t, const Crossing& crossing) 
   btScalar bulge = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     sum += facet.normals[k] * crossing.weights[k];
-    bulge += crossing.weights[k] * crossing.weights[next(k)] * facet.bulges[k];
+    const btScalar both = crossing.weights[k] * crossing.weights[next(k)];
+    bulge += both * facet.bulges[k];
+    if (facet.curvature != 0) sum += mixed_[t][k] * both;
   }
   return {unit(sum), bulge};
 }

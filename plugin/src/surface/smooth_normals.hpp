@@ -132,6 +132,7 @@ class SmoothNormals {
   bool isTip(const Surface& surface, const std::vector<std::uint32_t>& around, std::uint32_t triangle,
              std::size_t corner) const;
   void setNormals(const Surface& surface, const Around& around);
+  void setMixed(const Surface& surface, const Around& around);
   void countToSharp();
   struct Exit {
     std::size_t edge;  ///< 3 if there is none
@@ -142,6 +143,8 @@ class SmoothNormals {
                          Crossing& crossing);
 
   std::vector<Facet> facets_;
+  /// By how much normals turn aside in the middle of each edge of a triangle, at weights of 1 of both ends.
+  std::vector<std::array<btVector3, 3>> mixed_;
 };
 
 }  // namespace INNERSPHERE_BULLET_PRECISION
