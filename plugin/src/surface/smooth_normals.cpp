@@ -26,8 +26,9 @@ constexpr btScalar kUneven = 8;
 constexpr btScalar kTurnsFar = 3;
 /// Ratio: where normals lean further than this times the angle at an edge, it is other edges that turn them.
 constexpr btScalar kOwn = 2;
-/// Ratio: bends at both ends of an edge that differ by more are of two surfaces that go over into each other,
-/// such as a tube and the ball in which it ends.
+/// Ratio: the bends at both ends of an edge are of one surface if their mean is by less than this, of what
+/// they differ by, another one than the edge's own. Where a tube goes over into the ball in which it ends it
+/// is 1/2.
 constexpr btScalar kOneSurface = btScalar(0.25);
 /// How far beyond an edge, in weights, a line still meets a triangle, and a point is still over it: no
 /// rounding leaves a gap between two, or takes the bulge from a point on a rim.
@@ -403,8 +404,8 @@ void SmoothNormals::setMixed(const Surface& surface, const Around& around) {
       if (facets_[t].curvature == 0 || !known[from] || !known[to]) continue;
       const btVector3 edge = facets_[t].corners[next(k)] - facets_[t].corners[k];
       const btVector3 turns[] = {bends[from].turn(edge), bends[to].turn(edge)};
-      const btVector3 differ = turns[0] - turns[1];
-      if (differ.length() < kOneSurface * btMax(turns[0].length(), turns[1].length())) mixed = differ / 2;
+      const btVector3 differ = turns[0] - turns[1], own = facets_[t].normals[next(k)] - facets_[t].normals[k];
+      if ((own - (turns[0] + turns[1]) / 2).length() < kOneSurface * differ.length()) mixed = differ / 2;
     }
   }
 }
