@@ -57,7 +57,7 @@ struct PointLaw {
 /// lay 0.00001 s ahead: a ball of 1 m loses 0.07 mm/s of its speed in a second. Links that bear several
 /// others tilt against a stiffness N s of their load N, which a step takes as it was when it began. Backward
 /// Euler takes it at the end, a way s w dt further ahead, with w the speed at which they tilt. So it does
-/// where bodies rock on each other, see rockingSpeed().
+/// where bodies rock on each other, as far as the step does not resolve it, see rockingSpeed().
 class ContactLaw {
  public:
   /// Makes the law of a pair. `reduced_mass` is in kg, and 0 counts as 1; `time_step` is in s, and 0 counts
