@@ -25,6 +25,13 @@ Across turned(const Across& axes, const btVector3& from, const btVector3& to) {
   return {quatRotate(turn, axes.x), quatRotate(turn, axes.y)};
 }
 
+/// Of an edge or a corner, of A or of B, on what bends below it.
+void setEdgeBends(bool of_a, const Bend& sharp, const Bend& below, const Across& axes, ContactPoint& point) {
+  point.bend_a = of_a ? sharp : below;
+  point.bend_b = of_a ? below : sharp;
+  point.bend_x = axes.x;
+}
+
 }  // namespace
 
 PatchContactPoints::PatchContactPoints(const EdgeProbe& probe, const SurfaceProbe& surfaces,
@@ -141,13 +148,9 @@ bool PatchContactPoints::addCorner(const EdgeContact& corner, bool of_a) {
                  bends_below = of_a ? points.curvature_b : points.curvature_a;
   if (bends_below != 0) {
     // It goes over what bends, whose normal it has.
-    ContactPoint& point = found_.back().point;
-    const Across axes(point.normal);
-    const Bend sharp = Bend::round(kEdgeSharpness * btFabs(bends_below)),
-               below = surfaces_.bend(!of_a, points, axes);
-    point.bend_a = of_a ? sharp : below;
-    point.bend_b = of_a ? below : sharp;
-    point.bend_x = axes.x;
+    const Across axes(found_.back().point.normal);
+    setEdgeBends(of_a, Bend::round(kEdgeSharpness * btFabs(bends_below)), surfaces_.bend(!of_a, points, axes),
+                 axes, found_.back().point);
   } else if (bends_here > 0) {
     layOnHill(points, found_.back());
   }
@@ -276,11 +279,8 @@ EdgeProbe::FaceEnd PatchContactPoints::addOverEdge(const ProbedSample& sample, b
   };
   if (std::any_of(found_.begin() + std::ptrdiff_t(first_), found_.end(), isSame)) return end;
   if (!add(edge.points, normal, sample.id, Kind::edge)) return end;
-  ContactPoint& point = found_.back().point;
-  const Bend sharp = Bend::about(edge.along, axes_there, kEdgeSharpness * btFabs(round));
-  point.bend_a = of_a ? sharp : there;
-  point.bend_b = of_a ? there : sharp;
-  point.bend_x = axes_there.x;
+  setEdgeBends(of_a, Bend::about(edge.along, axes_there, kEdgeSharpness * btFabs(round)), there, axes_there,
+               found_.back().point);
   return end;
 }
 

@@ -379,19 +379,19 @@ void SmoothNormals::setMixed(const Surface& surface, const Around& around) {
   std::vector<bool> known(around.size());
   for (std::size_t v = 0; v < around.size(); ++v) {
     const auto corner = static_cast<std::uint32_t>(v);
-    known[v] = !around[v].empty();
+    if (around[v].empty()) continue;
+    const std::uint32_t first = around[v].front();
+    const btVector3& normal = facets_[first].normals[placeOf(corner, surface.triangles[first])];
+    bends[v] = VertexBend(normal);
+    known[v] = true;
     for (const std::uint32_t t : around[v]) {
       const Facet& facet = facets_[t];
       const std::size_t at = placeOf(corner, surface.triangles[t]);
-      const btVector3& normal = facet.normals[at];
+      const btVector3& own = facet.normals[at];
       const btVector3 edge = facet.corners[next(at)] - facet.corners[at];
-      if (t == around[v].front()) bends[v] = VertexBend(normal);
-      known[v] =
-          known[v] && facet.across[at] < kSeam && facet.across[next(next(at))] < kSeam &&
-          edge.length2() > 0 &&
-          (normal - facets_[around[v].front()].normals[placeOf(corner, surface.triangles[around[v].front()])])
-                  .length() < kFlat;
-      if (known[v]) bends[v].add(edge, facet.normals[next(at)] - normal);
+      known[v] = known[v] && facet.across[at] < kSeam && facet.across[next(next(at))] < kSeam &&
+                 edge.length2() > 0 && (own - normal).length() < kFlat;
+      if (known[v]) bends[v].add(edge, facet.normals[next(at)] - own);
     }
     known[v] = known[v] && bends[v].solve();
   }

@@ -294,6 +294,20 @@ TEST(SolidsInTheSamePlace, Part) {
   }
 }
 
+/// Calls for a world with each solver, at 60 and at 240 steps a second.
+template <typename Run>
+void inEachWorld(const Run& run) {
+  SubstepSolver solver;
+  for (const bool substeps : {false, true}) {
+    for (const double rate : {60.0, 240.0}) {
+      TestWorld world;
+      if (substeps) world.world.setConstraintSolver(&solver);
+      PackingCollisionAlgorithm::prepareWorld(world.world);
+      run(world, substeps, rate);
+    }
+  }
+}
+
 // 2 % of its size deep between walls that lean by 10 degrees, with friction that would hold it between walls
 // of 27: no solid gives way by as much.
 TEST(Wedges, ComeOutOfWhatTheyAreDrivenInto) {
@@ -309,31 +323,24 @@ TEST(Wedges, ComeOutOfWhatTheyAreDrivenInto) {
           "wedge"),
       1000);
   const double size = std::hypot(2 * sideAt(0.9), 1, 0.5);
-  SubstepSolver solver;
-  for (const bool substeps : {false, true}) {
-    for (const double rate : {60.0, 240.0}) {
-      TestWorld world;
-      if (substeps) world.world.setConstraintSolver(&solver);
-      PackingCollisionAlgorithm::prepareWorld(world.world);
-      world.world.setGravity(btVector3(0, 0, 0));
-      const auto add = [&](const std::shared_ptr<PackingShape>& shape, double mass,
-                           double z) -> btRigidBody& {
-        const btTransform place =
-            shape->bodyTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(z))));
-        btRigidBody& body = world.add(shape, mass, place.getOrigin(), place.getRotation());
-        body.setFriction(btScalar(std::sqrt(kFriction)));
-        body.setActivationState(DISABLE_DEACTIVATION);
-        return body;
-      };
-      add(groove, 0, 0);
-      const btRigidBody& body = add(wedge, 1, -kDeep * size / std::sin(kSlope));
-      world.run(1, 1 / rate);
-      const double depth = -wedge->meshTransform(body.getWorldTransform()).getOrigin().z() * std::sin(kSlope);
-      EXPECT_LT(depth, 0.005 * size) << substeps << ", " << rate << " steps/s";
-      // By the law, along both walls as along one.
-      EXPECT_LT(body.getLinearVelocity().length(), 0.5 * size) << substeps << ", " << rate << " steps/s";
-    }
-  }
+  inEachWorld([&](TestWorld& world, bool substeps, double rate) {
+    world.world.setGravity(btVector3(0, 0, 0));
+    const auto add = [&](const std::shared_ptr<PackingShape>& shape, double mass, double z) -> btRigidBody& {
+      const btTransform place =
+          shape->bodyTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(z))));
+      btRigidBody& body = world.add(shape, mass, place.getOrigin(), place.getRotation());
+      body.setFriction(btScalar(std::sqrt(kFriction)));
+      body.setActivationState(DISABLE_DEACTIVATION);
+      return body;
+    };
+    add(groove, 0, 0);
+    const btRigidBody& body = add(wedge, 1, -kDeep * size / std::sin(kSlope));
+    world.run(1, 1 / rate);
+    const double depth = -wedge->meshTransform(body.getWorldTransform()).getOrigin().z() * std::sin(kSlope);
+    EXPECT_LT(depth, 0.005 * size) << substeps << ", " << rate << " steps/s";
+    // By the law, along both walls as along one.
+    EXPECT_LT(body.getLinearVelocity().length(), 0.5 * size) << substeps << ", " << rate << " steps/s";
+  });
 }
 
 // No wedge, though walls press against each other through it: a force that somebody needs. It would fall by
@@ -342,20 +349,14 @@ TEST(Wedges, AreNotWhatTwoBodiesGrip) {
   constexpr double kSide = 0.2, kDeep = 0.001, kWall = 0.1;
   const auto cube = makePackedShape(*makeBox({kSide, kSide, kSide}), 256);
   const auto wall = std::make_shared<btBoxShape>(btVector3(kWall, kWall, kWall));
-  SubstepSolver solver;
-  for (const bool substeps : {false, true}) {
-    for (const double rate : {60.0, 240.0}) {
-      TestWorld world;
-      if (substeps) world.world.setConstraintSolver(&solver);
-      PackingCollisionAlgorithm::prepareWorld(world.world);
-      for (const double side : {-1.0, 1.0})
-        world.add(wall, 0, btVector3(btScalar(side * (kSide / 2 + kWall - kDeep)), 0, 0));
-      const btRigidBody& body = world.add(cube, 1, btVector3(0, 0, 0));
-      world.run(2, 1 / rate);
-      EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0, (substeps ? 0.005 : 0.05) * kSide)
-          << substeps << ", " << rate << " steps/s";
-    }
-  }
+  inEachWorld([&](TestWorld& world, bool substeps, double rate) {
+    for (const double side : {-1.0, 1.0})
+      world.add(wall, 0, btVector3(btScalar(side * (kSide / 2 + kWall - kDeep)), 0, 0));
+    const btRigidBody& body = world.add(cube, 1, btVector3(0, 0, 0));
+    world.run(2, 1 / rate);
+    EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0, (substeps ? 0.005 : 0.05) * kSide)
+        << substeps << ", " << rate << " steps/s";
+  });
 }
 
 }  // namespace
