@@ -20,14 +20,20 @@ namespace {
 using namespace innersphere;
 using namespace innersphere::benchmarks;
 
-// Parts of the solid; the last ones where copies lie nearly upon it.
+// Parts of the solid; then where copies lie nearly upon it, and where one is inside another.
 const std::vector<double> kCells{1e-4, 3e-4, 0.001, 0.003, 0.01, 0.03, 0.1, 1},
-    kDeepCells{0.45, 0.6, 0.8, 0.95, 1};
+    kDeepCells{0.45, 0.6, 0.8, 0.95, 1}, kInsideCells{0.1, 0.25, 0.45, 0.7, 0.9, 1};
 constexpr std::array<std::uint32_t, 3> kCounts{256, 1024, 4096};
 constexpr std::size_t kFewest = 30;  // poses of a cell that says anything
 constexpr double kNestedTurn = 20;   // one over the tangent of half the angle: 6 degrees
 
-enum class Kind { any, nested, deep };
+enum class Kind { any, nested, deep, inside };
+
+/// Which poses to draw, and how large B is against A, by the diagonals of their boxes.
+struct Drawn {
+  Kind kind = Kind::any;
+  double size = 1;
+};
 
 struct Body {
   std::string name;
@@ -38,13 +44,15 @@ struct Body {
 
 /// Random rotations and directions, and what two bodies share in such poses. Nested: B is turned by a few
 /// degrees at most, and moved from where it lies upon A, as cups stand in each other. Deep: by a third moved
-/// only, by a third turned only, and by no more than leaves 45 to 100 % shared.
+/// only, by a third turned only, and by no more than leaves 45 to 100 % shared. Inside: turned at random, a
+/// random point of B on one of A.
 class Poses {
  public:
-  Poses(const Body& a, const Body& b, Kind kind) : a_(a), b_(b), kind_(kind), context_({Backend::cpu, 1}) {
+  Poses(const Body& a, const Body& b, const Drawn& drawn)
+      : a_(a), b_(b), kind_(drawn.kind), context_({Backend::cpu, 1}) {
     query_.a = a.model.get();
     query_.b = b.model.get();
-    query_.placement_b.scale = a.diagonal / b.diagonal;
+    query_.placement_b.scale = drawn.size * a.diagonal / b.diagonal;
     whole_ = std::min(a.volume, b.volume * std::pow(query_.placement_b.scale, 3));
   }
 
@@ -55,6 +63,7 @@ class Poses {
   /// smaller body, if it is not less from the start. Returns the volume.
   double next() {
     if (kind_ == Kind::deep) return nextDeep();
+    if (kind_ == Kind::inside) return nextInside();
     std::uniform_real_distribution<double> part(std::log(1e-5), std::log(0.45));
     const double wanted = std::exp(part(random_)) * whole_;
     turn();
@@ -96,6 +105,14 @@ class Poses {
       (volume > wanted ? small : large) = size;
     }
     return volume;
+  }
+
+  double nextInside() {
+    turn();
+    from_ = pointIn(a_);
+    to_ = pointIn(b_);
+    place(0, {});
+    return context_.overlap(query_, {Want::volume, Estimator::surface}).volume;
   }
 
   Vec3d direction() {
@@ -188,13 +205,13 @@ struct Verdict {
 };
 
 const std::vector<double>& cellsOf(Kind kind) {
-  return kind == Kind::deep ? kDeepCells : kCells;
+  return kind == Kind::deep ? kDeepCells : kind == Kind::inside ? kInsideCells : kCells;
 }
 
-void printPair(const Body& a, const Body& b, Kind kind, std::size_t poses, Verdict& verdict,
+void printPair(const Body& a, const Body& b, const Drawn& drawn, std::size_t poses, Verdict& verdict,
                Verdict& of_bare) {
-  Poses all(a, b, kind);
-  const std::vector<double>& cells = cellsOf(kind);
+  Poses all(a, b, drawn);
+  const std::vector<double>& cells = cellsOf(drawn.kind);
   std::array<std::vector<Cell>, kCounts.size()> table;
   table.fill(std::vector<Cell>(cells.size() - 1));
   for (std::size_t i = 0; i < poses; ++i) {
@@ -242,8 +259,8 @@ Body bodyOf(const std::string& source) {
           packing->solid.volume};
 }
 
-void run(const std::vector<std::string>& sources, Kind kind, std::size_t poses) {
-  const std::vector<double>& cells = cellsOf(kind);
+void run(const std::vector<std::string>& sources, const Drawn& drawn, std::size_t poses) {
+  const std::vector<double>& cells = cellsOf(drawn.kind);
   std::vector<Body> bodies;
   for (const std::string& source : sources) bodies.push_back(bodyOf(source));
   std::printf("| solid | spheres |");
@@ -253,16 +270,16 @@ void run(const std::vector<std::string>& sources, Kind kind, std::size_t poses) 
   for (std::size_t k = 0; k + 1 < cells.size(); ++k) std::printf("---|");
   std::printf("\n");
   Verdict copies, pairs, bare;
-  for (const Body& body : bodies) printPair(body, body, kind, poses, copies, bare);
-  const bool has_pairs = bodies.size() > 1 && kind == Kind::any;
+  for (const Body& body : bodies) printPair(body, body, drawn, poses, copies, bare);
+  const bool has_pairs = bodies.size() > 1 && (drawn.kind == Kind::any || drawn.kind == Kind::inside);
   for (std::size_t i = 0; i < bodies.size() && has_pairs; ++i)
-    printPair(bodies[i], bodies[(i + 1) % bodies.size()], Kind::any, poses, pairs, bare);
+    printPair(bodies[i], bodies[(i + 1) % bodies.size()], drawn, poses, pairs, bare);
   std::printf(
       "\n| | cells | foretold below measured | more than 3 times above | poses | single errors beyond their "
       "bound "
       "|\n|---|---|---|---|---|---|\n");
   copies.print("a solid and its copy");
-  if (has_pairs) pairs.print("two solids of one size");
+  if (has_pairs) pairs.print(drawn.size == 1 ? "two solids of one size" : "a solid in another");
   if (bare.cells > 0) bare.print("either, with too few spheres by the packing's own warning");
 }
 
@@ -273,11 +290,16 @@ int main(int argc, char** argv) {
   std::vector<std::string> sources;
   std::size_t poses = 500;
   bool nested = false, deep = false;
+  double size = 0;
   app.add_option("SOLID", sources, "Mesh files or names of solids; with :coverage behind it, in that order")
       ->required();
   app.add_option("--poses", poses, "Poses of each solid, and of each pair")->capture_default_str();
   app.add_flag("--nested", nested, "Copies that lie nearly upon each other, instead of any poses and pairs");
   app.add_flag("--deep", deep, "Copies that share 45 to 100 %, instead of any poses and pairs");
+  app.add_option(
+      "--inside", size,
+      "A copy of so many times the size, and the next solid as large, in each, instead of poses that "
+      "touch more often than not");
   CLI11_PARSE(app, argc, argv);
   try {
     std::printf("%s", heading("Foretold and measured errors", argc, argv).c_str());
@@ -285,7 +307,11 @@ int main(int argc, char** argv) {
         "Mean |error| of the volume relative to the larger of found and true, %% foretold / %% measured, by "
         "the part of the smaller solid that was "
         "found.\n\n");
-    run(sources, deep ? Kind::deep : nested ? Kind::nested : Kind::any, poses);
+    const Drawn drawn = size > 0 ? Drawn{Kind::inside, size}
+                                 : Drawn{deep     ? Kind::deep
+                                         : nested ? Kind::nested
+                                                  : Kind::any};
+    run(sources, drawn, poses);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

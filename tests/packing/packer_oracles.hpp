@@ -95,7 +95,7 @@ inline bool sameErrors(const std::vector<OverlapErrors::AtDepth>& a,
 
 inline bool sameEstimate(const OverlapErrors::Estimate& a, const OverlapErrors::Estimate& b) {
   return sameErrors(a.copies, b.copies) && sameErrors(a.deep, b.deep) && a.thickest == b.thickest &&
-         sameErrors(a.planes, b.planes);
+         sameErrors(a.planes, b.planes) && sameErrors(a.inside, b.inside);
 }
 
 inline bool sameBytes(const Packing& a, const Packing& b) {

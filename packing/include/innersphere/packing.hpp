@@ -93,7 +93,9 @@ double overlapDepth(double volume, const Vec3d& area);
 /// of both they are too large.
 ///
 /// Copies of a thin solid are thin: they do not tell how well its spheres fill what is deep in a thick body.
-/// So the solid is also cut by planes, which are as thick as any.
+/// So the solid is also cut by planes, which are as thick as any. And what is small in a large solid may be
+/// far from its surface, and as deep as the solid's own copies, but meets fewer of its spheres. So balls are
+/// put inside the solid, too.
 struct OverlapErrors {
   /// Holds the errors of kOverlapErrorPoses poses, next to each other in depth: a limit of 95 % for the mean
   /// of as many others, from the scatter of the poses of all depths, relative to their mean, and the largest
@@ -125,6 +127,11 @@ struct OverlapErrors {
     /// volumes.) True volumes are sampled if the surface is not closed or has another volume than the solid,
     /// to some percent if it is thin. Empty for the spheres' own radii, which do not overlap each other.
     std::vector<AtDepth> deep;
+    /// The errors of balls inside the solid, times the root of two as those of planes are, by the volume in
+    /// place of the depth. Errors beyond the last row fall with the root of the volume, as those of spheres
+    /// that know nothing of each other. Empty for the spheres' own radii, and from files that do not know
+    /// them: those of copies and planes are then all there is.
+    std::vector<AtDepth> inside;
   };
   /// Holds the errors of one prefix.
   struct Prefix {
@@ -193,7 +200,8 @@ const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count
 /// Returns the errors to expect at a depth that is relative to the cube root of the solid's volume. Between
 /// two depths of the estimate the logarithms are linear; beyond the first and the last their errors hold.
 /// Where lenses have a larger `thickness` than Estimate::thickest, those of planes count if they are smaller.
-/// Errors are those of overlaps of this `volume`, relative to the solid's; 0: as large as those measured.
+/// Errors are those of overlaps of this `volume`, relative to the solid's, and no smaller than those of balls
+/// inside the solid; 0: as large as those measured.
 /// Where they are more than kDeepOverlap `of_larger`, the part of the larger of both solids, those of copies
 /// that lie nearly upon the solid count instead; NaN if these were not measured.
 ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness = 0,

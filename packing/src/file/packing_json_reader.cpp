@@ -68,10 +68,11 @@ std::vector<OverlapErrors::AtDepth> errorsOf(const JsonEntry& entry) {
 }
 
 /// Returns the errors of a prefix with one kind of radii. The first files know nothing of planes, nor of
-/// copies that lie nearly upon the solid.
+/// copies that lie nearly upon the solid, nor of balls inside it.
 OverlapErrors::Estimate estimateOf(const JsonEntry& prefix, const std::string& radii) {
-  OverlapErrors::Estimate estimate{errorsOf(prefix[radii]), 0, {}, {}};
+  OverlapErrors::Estimate estimate{errorsOf(prefix[radii]), 0, {}, {}, {}};
   if (prefix.has(radii + "_deep")) estimate.deep = errorsOf(prefix[radii + "_deep"]);
+  if (prefix.has(radii + "_inside")) estimate.inside = errorsOf(prefix[radii + "_inside"]);
   if (prefix.has(radii + "_planes")) {
     const JsonEntry planes = prefix[radii + "_planes"];
     estimate.thickest = planes["thicker_than"].number();

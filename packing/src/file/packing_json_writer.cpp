@@ -96,6 +96,7 @@ json overlapErrorsEntry(const OverlapErrors& errors) {
                         {"raw", rowsOf(prefix.raw.copies)},
                         {"volume_true", rowsOf(prefix.volume_true.copies)},
                         {"volume_true_deep", rowsOf(prefix.volume_true.deep)},
+                        {"volume_true_inside", rowsOf(prefix.volume_true.inside)},
                         {"raw_planes", planesOf(prefix.raw)},
                         {"volume_true_planes", planesOf(prefix.volume_true)}});
   }

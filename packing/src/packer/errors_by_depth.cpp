@@ -150,6 +150,12 @@ std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings)
   return rows;
 }
 
+std::vector<OverlapErrors::AtDepth> errorsOfInside(std::vector<Finding> findings) {
+  std::vector<OverlapErrors::AtDepth> rows = errorsByDepth(std::move(findings));
+  for (OverlapErrors::AtDepth& at : rows) at.power = kMostPower;  // within a run volumes tell less
+  return rows;
+}
+
 std::vector<OverlapErrors::AtDepth> errorsOfDeep(std::vector<Finding> findings) {
   // Of a query that finds less the others tell.
   std::erase_if(findings, [](const Finding& one) { return !(one.volume > kDeepOverlap); });

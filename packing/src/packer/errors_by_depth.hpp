@@ -21,4 +21,7 @@ std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings)
 /// OverlapErrors::Estimate::deep. Nothing if only a few find more than kDeepOverlap.
 std::vector<OverlapErrors::AtDepth> errorsOfDeep(std::vector<Finding> findings);
 
+/// Returns the same for balls inside the solid, by rising volume: see OverlapErrors::Estimate::inside.
+std::vector<OverlapErrors::AtDepth> errorsOfInside(std::vector<Finding> findings);
+
 }  // namespace innersphere

@@ -84,6 +84,14 @@ class Prefix {
     return sum;
   }
 
+  /// What a ball shares with volume-true ones.
+  double shared(const Ball& ball) const {
+    double sum = 0;
+    for (const Ball& one : volume_true_)
+      sum += lens(one.radius, ball.radius, (one.centre - ball.centre).norm());
+    return sum;
+  }
+
   Sums below(const PlaneCut& plane) const {
     Sums sums;
     for (std::size_t i = 0; i < volume_true_.size(); ++i) {
@@ -123,6 +131,11 @@ double errorOf(double found, double truth) {
   return std::abs(found - truth) / std::max(found, truth);
 }
 
+/// What counts of an error that is of one body only, as planes have none: the other may err as much.
+double ofOne(double error) {
+  return std::min(std::numbers::sqrt2 * error, 1.0);
+}
+
 /// What was found in one pose.
 Finding findingOf(const Found& found, double truth, double volume) {
   const double depth =
@@ -151,7 +164,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
   for (const VolumeTrueRadii& prefix : radii) {
     const Prefix spheres(balls, prefix, container.side());
     std::vector<Prefix::Sums> copies(trials.size()), cuts(planes.size());
-    std::vector<Finding> deep(made.deep.size());
+    std::vector<Finding> deep(made.deep.size()), inside(made.inside.size());
     tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
       container.goOn();
       copies[i] = spheres.overlap(trials[i].pose);
@@ -164,6 +177,10 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
     });
     tbb::parallel_for(std::size_t{0}, planes.size(),
                       [&](std::size_t i) { cuts[i] = spheres.below(planes[i]); });
+    tbb::parallel_for(std::size_t{0}, inside.size(), [&](std::size_t i) {
+      const double truth = made.inside[i].volume(), found = spheres.shared(made.inside[i]);
+      inside[i] = {truth / volume, ofOne(errorOf(found, truth)), truth / volume};
+    });
     const auto estimate = [&](Found Prefix::Sums::*sum) {
       OverlapErrors::Estimate result;
       std::vector<Finding> findings;
@@ -179,8 +196,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
       findings = {};
       for (std::size_t i = 0; i < planes.size(); ++i) {
         Finding one = findingOf(cuts[i].*sum, planes[i].truth * volume, volume);
-        // A plane has no error, but the other body may have one as large.
-        one.error = std::min(std::numbers::sqrt2 * one.error, 1.0);
+        one.error = ofOne(one.error);
         findings.push_back(one);
       }
       result.planes = errorsByDepth(std::move(findings));
@@ -189,6 +205,7 @@ OverlapErrors findOverlapErrors(const Container& container, const Surface& surfa
     errors.prefixes.push_back(
         {prefix.count, estimate(&Prefix::Sums::raw), estimate(&Prefix::Sums::volume_true)});
     errors.prefixes.back().volume_true.deep = errorsOfDeep(std::move(deep));
+    errors.prefixes.back().volume_true.inside = errorsOfInside(std::move(inside));
   }
   return errors;
 }

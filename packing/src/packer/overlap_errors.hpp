@@ -10,7 +10,7 @@
 
 namespace innersphere {
 
-/// Overlaps the solid with copies of itself and with planes that are the same for every run, and compares
+/// Overlaps the solid with copies of itself, planes and balls that are the same for every run, and compares
 /// sums of lenses with the true volumes (see OverlapErrors). `surface` is the solid's, in the packing's
 /// frame, `samples` are points of it; `balls` and `radii` are a packing and its volume-true radii [m];
 /// `volume` is the solid's, in units of the unit cube. Returns nothing if the solid cannot be overlapped

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -39,6 +40,9 @@ constexpr double kShallowest = 3e-5;
 
 // Walls that lie along walls are turned by 1 to 20 degrees: their logarithms are evenly spread.
 constexpr double kLeastTurned = std::numbers::pi / 180, kMostTurned = 20 * kLeastTurned;
+
+// The least ball inside the solid, as a part of the largest about its centre. Others touch the surface.
+constexpr double kLeastBall = 0.1;
 
 // A face that touches is pushed in by this, and then so many times as far each time, in units of the cube.
 constexpr double kFirstPush = 1e-3, kPushes = 2, kLastPush = 0.3;
@@ -280,6 +284,13 @@ PlaneCut cutSolid(const TrueOverlap& overlap, std::size_t number) {
   return {normal, height, overlap.below(normal, height)};
 }
 
+/// A ball inside the solid, about a random point of it.
+Ball ballInside(const Container& container, const TrueOverlap& overlap, std::size_t number) {
+  const Point places = random(number, 6), centre = overlap.point(places[0]);
+  const double clearance = container.closest(centre, std::numeric_limits<double>::infinity()).distance;
+  return {centre, (kLeastBall + places[1] * (1 - kLeastBall)) * clearance};
+}
+
 }  // namespace
 
 OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface,
@@ -288,7 +299,8 @@ OverlapTrials makeOverlapTrials(const Container& container, const Surface& surfa
   const TrueOverlap overlap(container, surface, volume);
   const double least = overlap.knowsSurface() ? kLeastByTriangles : kLeastBySamples;
   OverlapTrials result{std::vector<OverlapTrial>(count), std::vector<OverlapTrial>(deep),
-                       std::vector<PlaneCut>(count / 3), overlap.knowsSurface() ? kShallowest : least};
+                       std::vector<PlaneCut>(count / 3), std::vector<Ball>(count / 3),
+                       overlap.knowsSurface() ? kShallowest : least};
   if (!overlap.knowsSurface()) result.planes.clear();
   const auto start = [&](std::size_t i) {
     if (i % 3 == 0) return anyStart(overlap, i);
@@ -306,6 +318,8 @@ OverlapTrials makeOverlapTrials(const Container& container, const Surface& surfa
   });
   tbb::parallel_for(std::size_t{0}, result.planes.size(),
                     [&](std::size_t i) { result.planes[i] = cutSolid(overlap, i); });
+  tbb::parallel_for(std::size_t{0}, result.inside.size(),
+                    [&](std::size_t i) { result.inside[i] = ballInside(container, overlap, i); });
   std::erase_if(result.trials, [](const OverlapTrial& trial) { return !(trial.truth.fraction > 0); });
   return result;
 }

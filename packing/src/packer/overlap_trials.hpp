@@ -1,5 +1,5 @@
-// Places copies of a solid so that they share given parts of it, cuts it by planes, and tells exactly how
-// much they share.
+// Places copies of a solid so that they share given parts of it, cuts it by planes and puts balls inside it,
+// and tells exactly how much they share.
 #pragma once
 
 #include <cstddef>
@@ -24,11 +24,12 @@ struct PlaneCut {
   double height, truth;
 };
 
-/// Holds copies at poses that are the same for every run, by rising depth, and planes.
+/// Holds copies at poses that are the same for every run, by rising depth, planes, and balls inside.
 struct OverlapTrials {
   std::vector<OverlapTrial> trials;
   std::vector<OverlapTrial> deep;
   std::vector<PlaneCut> planes;
+  std::vector<Ball> inside;
   double shallowest = 0;  ///< See OverlapErrors::shallowest.
 };
 
@@ -38,7 +39,8 @@ struct OverlapTrials {
 /// from where they lie upon the solid, or both, and share more than kDeepOverlap of it. What all share is
 /// found from `surface`, in the packing's frame, if it is closed and has the solid's volume; more than 1 % of
 /// the solid is found from sample points if it has another, and all if it is open: from few for the deep
-/// ones. If it is closed, there are a third as many planes through random points of the solid. `samples` are
+/// ones. If it is closed, there are a third as many planes through random points of the solid. As many balls
+/// are about random points of it, from a tenth to all as large as fits there. `samples` are
 /// points of the surface; without any no face lies on a face. `volume` is the solid's, in units of the unit
 /// cube. Runs in the current TBB arena.
 OverlapTrials makeOverlapTrials(const Container& container, const Surface& surface,

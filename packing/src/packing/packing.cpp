@@ -59,10 +59,14 @@ ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double dept
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     return estimate.deep.empty() ? ExpectedError{kNan, kNan} : errorAt(estimate.deep, of_larger, of_larger);
   }
-  const ExpectedError copies = errorAt(estimate.copies, depth, volume);
-  if (!(thickness > estimate.thickest)) return copies;
-  const ExpectedError planes = errorAt(estimate.planes, depth, volume);
-  return {std::min(copies.mean, planes.mean), std::min(copies.bound, planes.bound)};
+  ExpectedError error = errorAt(estimate.copies, depth, volume);
+  if (thickness > estimate.thickest) {
+    const ExpectedError planes = errorAt(estimate.planes, depth, volume);
+    error = {std::min(error.mean, planes.mean), std::min(error.bound, planes.bound)};
+  }
+  if (estimate.inside.empty() || !(volume > 0)) return error;
+  const ExpectedError inside = errorAt(estimate.inside, volume, volume);
+  return {std::max(error.mean, inside.mean), std::max(error.bound, inside.bound)};
 }
 
 const Coverage* coverageOf(const Packing& packing, std::size_t count) {
@@ -142,6 +146,7 @@ void validateEstimate(const OverlapErrors::Estimate& estimate) {
   validateErrors(estimate.copies);
   validateErrors(estimate.deep);
   validateErrors(estimate.planes);
+  validateErrors(estimate.inside);
   if (!std::isfinite(estimate.thickest)) notFinite("a number of the overlap errors");
 }
 

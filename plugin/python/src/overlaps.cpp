@@ -479,8 +479,8 @@ Returns two fields of the same shape, parts of the larger of the found and the t
 mean   expected |error|
 bound  what |error| exceeds in 1 of 20 cases: else the truth lies between volume (1 - bound) and volume / (1 - bound)
 
-Errors of A and B are independent, as each was measured with copies of itself and cut by planes when it was packed. nan where nothing
-overlaps, nothing so shallow was measured or area and energy are 0, as with want="volume", for packings without
+Errors of A and B are independent, as each was measured with copies of itself, cut by planes and with balls inside it when it was packed. nan where
+nothing overlaps, nothing so shallow was measured or area and energy are 0, as with want="volume", for packings without
 overlap_errors, and with "volume_true" where more than 45 % of both are shared if a packing is of an older file; 0 with "surface".
 Raises InvalidArgumentError if shared is what "surface" finds and another estimator is named.)");
   module.def("cuda_device_count", &cudaDeviceCount, "The number of CUDA devices that answer.");

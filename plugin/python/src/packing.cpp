@@ -451,7 +451,7 @@ largest_missing_radius: no larger sphere fits between those that are there [m].)
           nb::sig("def overlap_errors(self) -> tuple[tuple[int, list[tuple[float, float]], list[tuple[float, "
                   "float]]], ...]"),
           R"(How far off volumes of overlaps are: the mean |error|, relative to the larger of the found and the true volume, measured
-with copies of the solid when it was packed. expected_error() looks them up, with bounds, and knows of planes that cut the solid.
+with copies of the solid when it was packed. expected_error() looks them up, with bounds, and knows of planes that cut the solid and of balls inside it.
 
 A row for each number of spheres: that number, the errors with estimator="raw", and those with "volume_true". Of each some
 pairs: how deep overlaps are, volume over area [m], and the error there. Empty with pack(overlap_errors=False).)")

@@ -46,8 +46,12 @@ Packing somePacking(std::size_t n, unsigned seed = 1) {
       1e-5,
       1.0 / 3,
       {{2,
-        {{{1e-3, {0.5, 1.0 / 3}, 1.0 / 7, 1.0 / 9}, {0.1, {0.4, 0.6}}}, 0.1 + 0.2, {}, {}},
-        {{}, 0, {{0.2, {1e-17, 0.7}, 1e-9, 0.5}}, {{0.7, {0.1, 0.3}, 0.7, -1.5}}}}}};
+        {{{1e-3, {0.5, 1.0 / 3}, 1.0 / 7, 1.0 / 9}, {0.1, {0.4, 0.6}}}, 0.1 + 0.2, {}, {}, {}},
+        {{},
+         0,
+         {{0.2, {1e-17, 0.7}, 1e-9, 0.5}},
+         {{0.7, {0.1, 0.3}, 0.7, -1.5}},
+         {{0.01, {0.2, 0.4}, 0.01, 0.5}, {0.04, {0.1, 0.2}, 0.04, 0.5}}}}}};
   for (std::size_t i = 0; i < n; ++i) packing.mass_weights.push_back(1 + 1 / static_cast<float>(i + 3));
   packing.warnings = {"a \"part\" is empty", ""};
   packing.provenance = {"some \"mesh\".obj", "0123456789abcdef", "--spheres 5", "0.1.0"};
@@ -238,6 +242,27 @@ TEST(FilePacking, EstimatesWithoutDeepCopiesAreRead) {
   EXPECT_EQ(expectedError(read, 0.5, 0, 0.7, 0.4).bound, expectedError(known, 0.5, 0, 0.7, 0.4).bound);
 }
 
+// Of balls inside they know nothing: copies and planes are all there is. Where balls are known, no less is
+// foretold than for a ball as large: between two of them, and beyond by the root of the volume.
+TEST(FilePacking, EstimatesWithoutBallsInsideAreRead) {
+  Packing packing = somePacking(3);
+  OverlapErrors::Estimate& known = packing.overlap_errors.prefixes.at(0).volume_true;
+  known.copies = {{0.1, {0.03, 0.15}, 0.1, 0}};
+  nlohmann::json document = nlohmann::json::parse(toJson(packing));
+  EXPECT_EQ(document["errors_by_depth"]["prefixes"][0].erase("volume_true_inside"), 1u);
+  const OverlapErrors::Estimate read = fromJson(document.dump()).overlap_errors.prefixes.at(0).volume_true;
+  for (const double volume : {0.02, 0.16, 0.4}) {
+    EXPECT_EQ(expectedError(read, 0.1, 0, volume).mean, 0.03);
+    EXPECT_EQ(expectedError(read, 0.1, 0, volume).bound, 0.15);
+  }
+  EXPECT_EQ(expectedError(known, 0.1).mean, 0.03);
+  EXPECT_NEAR(expectedError(known, 0.1, 0, 0.02).mean, std::sqrt(0.2 * 0.1), 1e-9);
+  EXPECT_NEAR(expectedError(known, 0.1, 0, 0.02).bound, std::sqrt(0.4 * 0.2), 1e-9);
+  EXPECT_NEAR(expectedError(known, 0.1, 0, 0.16).mean, 0.05, 1e-9);
+  EXPECT_EQ(expectedError(known, 0.1, 0, 0.16).bound, 0.15);
+  EXPECT_EQ(expectedError(known, 0.1, 0, 0.45).mean, 0.03);
+}
+
 // Nor do they know how errors fall with the volume.
 TEST(FilePacking, EstimatesWithoutVolumesAreRead) {
   nlohmann::json document = nlohmann::json::parse(toJson(somePacking(3)));
@@ -298,6 +323,8 @@ TEST(FilePacking, BadMeasuresAreRefused) {
   refused("/errors_by_depth/prefixes/0/volume_true/0/bound", nullptr);
   refused("/errors_by_depth/prefixes/0/raw_planes", 1);
   refused("/errors_by_depth/prefixes/0/raw_planes/thicker_than", "thick");
+  refused("/errors_by_depth/prefixes/0/volume_true_inside", 1);
+  refused("/errors_by_depth/prefixes/0/volume_true_inside/1/depth", 0.01);
   refused("/errors_by_depth/prefixes/0/volume_true_planes/errors", 1);
   refused("/errors_by_depth/prefixes/0/volume_true_planes/errors/0/depth", -1);
 }

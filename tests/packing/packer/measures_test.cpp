@@ -310,6 +310,58 @@ TEST(PackerMeasures, OverlapErrorsKnowPlanes) {
   }
 }
 
+// A sphere in a box stands for it: what it shares with balls inside the box is known.
+TEST(PackerMeasures, OverlapErrorsKnowBallsInside) {
+  const Vec3d size{1, 0.5, 0.4};
+  const auto solid = makeSolid(boxMesh({}, size), "box");
+  const Container container(*solid);
+  const double volume = 0.2, unit = 1 / container.side(), radius = 0.2;
+  const Surface surface = container.toSurface(solid->surface());
+  const SurfaceSamples samples(solid->surface(), container);
+  const std::vector<Ball> balls{{container.fromWorld({0.4, 0.3, 0.2}), radius * unit}};
+  const auto in_cube = volume * std::pow(unit, 3);
+  const OverlapErrors errors =
+      findOverlapErrors(container, surface, samples, balls, {{1, {static_cast<float>(radius)}, 0}}, in_cube);
+  const OverlapTrials trials = makeOverlapTrials(container, surface, samples, in_cube, 266, 0);
+  const std::vector<Ball>& inside = trials.inside;
+  ASSERT_EQ(inside.size(), 88u);
+  std::vector<std::pair<double, double>> found;  // volumes and errors
+  double least = 1, most = 0;
+  for (const Ball& ball : inside) {
+    const Vec3d at = container.toWorld(ball.centre);
+    double clearance = 1;
+    for (std::size_t k = 0; k < 3; ++k) clearance = std::min({clearance, at[k], size[k] - at[k]});
+    const double r = ball.radius / unit, part = r / clearance;
+    least = std::min(least, part);
+    most = std::max(most, part);
+    const double whole = 4 * std::numbers::pi / 3 * r * r * r,
+                 d = std::hypot(at[0] - 0.4, at[1] - 0.3, at[2] - 0.2);
+    const auto shared = d < std::abs(r - radius) ? whole : static_cast<double>(lens(radius, r, d));
+    found.emplace_back(whole / volume, std::min(1.0, std::sqrt(2.0) * (whole - shared) / whole));
+  }
+  EXPECT_NEAR(least, 0.1, 0.05);
+  EXPECT_GE(least, 0.1 - 1e-6);
+  EXPECT_NEAR(most, 1, 0.05);
+  EXPECT_LE(most, 1 + 1e-6);
+  std::sort(found.begin(), found.end());
+  const std::vector<OverlapErrors::AtDepth>& rows = errors.prefixes.at(0).volume_true.inside;
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_TRUE(errors.prefixes.at(0).raw.inside.empty());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double largest = 0, mean = 0, at = 0;
+    for (std::size_t k = i * found.size() / 4; k < i * found.size() / 4 + 19; ++k) {
+      largest = std::max(largest, found[k].second);
+      mean += found[k].second / 19;
+      at += std::log(found[k].first) / 19;
+    }
+    EXPECT_NEAR(rows[i].depth, std::exp(at), 1e-5 * std::exp(at));
+    EXPECT_EQ(rows[i].volume, rows[i].depth);
+    EXPECT_NEAR(rows[i].error.bound, largest, 1e-5);
+    EXPECT_GE(rows[i].error.mean, mean - 1e-5);
+    EXPECT_EQ(rows[i].power, 0.5);
+  }
+}
+
 // Copies of a blade never get as deep into each other as it gets into a thick body.
 TEST(PackerMeasures, ThickBodiesAreForetoldByPlanes) {
   const Packing packing = packed(*makeNamedSolid("blade"), 1024, true);
@@ -402,12 +454,12 @@ TEST(PackerMeasures, ErrorsFallWithTheVolumeAsTheyWereFoundTo) {
   for (const OverlapErrors::AtDepth& at : rowsWith(1, 0)) EXPECT_EQ(at.power, 0.5);
 
   const OverlapErrors::Estimate estimate{
-      {{0.1, {0.2, 0.4}, 0.01, 0.5}, {0.4, {0.1, 0.3}, 0.04, 0}}, 1, {}, {}};
+      {{0.1, {0.2, 0.4}, 0.01, 0.5}, {0.4, {0.1, 0.3}, 0.04, 0}}, 1, {}, {}, {}};
   EXPECT_NEAR(expectedError(estimate, 0.1, 0, 0.04).mean, 0.1, 1e-12);
   EXPECT_NEAR(expectedError(estimate, 0.1, 0, 0.04).bound, 0.2, 1e-12);
   EXPECT_EQ(expectedError(estimate, 0.1, 0, 1e-6).bound, 1);
   EXPECT_EQ(expectedError(estimate, 0.4, 0, 1e-6).mean, 0.1);
-  const OverlapErrors::Estimate rising{{{0.1, {0.2, 0.4}, 0.01, -0.5}}, 1, {}, {}};
+  const OverlapErrors::Estimate rising{{{0.1, {0.2, 0.4}, 0.01, -0.5}}, 1, {}, {}, {}};
   EXPECT_NEAR(expectedError(rising, 0.1, 0, 0.04).mean, 0.4, 1e-12);
   EXPECT_NEAR(expectedError(rising, 0.1, 0, 0.0025).bound, 0.2, 1e-12);
   const double between = expectedError(estimate, 0.2).mean;  // the volume there is 0.02, the power a quarter
@@ -451,7 +503,7 @@ OverlapErrors::Estimate foretoldOfDeep(const ErrorAt& error_at) {
     const double volume = 0.46 + 0.54 * i / 39;
     findings.push_back({volume, error_at(volume, i), volume});
   }
-  return {{}, 0, {}, errorsOfDeep(findings)};
+  return {{}, 0, {}, errorsOfDeep(findings), {}};
 }
 
 // Errors may rise with the volume, or fall to nothing where a thin solid comes upon itself.
@@ -505,7 +557,7 @@ TEST(PackerMeasures, DeepCopiesThatFindAllCountTogether) {
 
 // As of the first files that know them.
 TEST(PackerMeasures, OneRowOfDeepCopiesHoldsForAllVolumes) {
-  const OverlapErrors::Estimate estimate{{}, 0, {}, {{0.7, {0.1, 0.2}, 0.7, -2}}};
+  const OverlapErrors::Estimate estimate{{}, 0, {}, {{0.7, {0.1, 0.2}, 0.7, -2}}, {}};
   EXPECT_NEAR(expectedError(estimate, 0.1, 0, 0.9, 0.9).mean, 0.1 * 0.81 / 0.49, 1e-12);
   EXPECT_NEAR(expectedError(estimate, 0.1, 0, 0.5, 0.5).bound, 0.2 * 0.25 / 0.49, 1e-12);
 }
