@@ -116,6 +116,10 @@ class EdgePair {
 
 }  // namespace
 
+bool LineCrossing::isOnBoth() const {
+  return isOn(share_first) && isOn(share_second);
+}
+
 bool crossLines(const SharpEdges::Edge& first, const SharpEdges::Edge& second, LineCrossing& crossing) {
   const btVector3 across = first.along.cross(second.along);
   const btScalar across2 = across.length2();

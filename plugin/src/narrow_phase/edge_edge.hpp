@@ -17,6 +17,9 @@ struct LineCrossing {
   btScalar share_first;   ///< of the first edge
   btScalar share_second;  ///< of the second
   btVector3 across;       ///< unit, of both
+
+  /// Returns true if it is not beyond an end of either.
+  bool isOnBoth() const;
 };
 /// Finds it. Returns false if they are parallel, but for 5 degrees.
 bool crossLines(const SharpEdges::Edge& first, const SharpEdges::Edge& second, LineCrossing& crossing);

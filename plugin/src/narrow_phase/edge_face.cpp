@@ -25,12 +25,12 @@ class BearingFace {
   }
   const SharpEdges& solid() const { return solid_; }
 
-  /// Goes to near the place under a place. Returns false if the face ends before. In a valley the edge may be
-  /// in the solid.
+  /// Goes to near the place under a place. Returns false if the face ends before. In a valley the edge may
+  /// have sunk into the solid.
   bool goUnder(const btVector3& place) {
     const btVector3 way = under(place) - place_;
     Walked walked;
-    if (!walk(way, walked) || (ends(walked) && !solid_.isValley(solid_.edgeOf(walked)))) return false;
+    if (!walk(way, walked) || (ends(walked) && !sinksIntoValley(place, solid_.edgeOf(walked)))) return false;
     const btVector3 inside = way * (walked.share * (1 - kStartInside));
     if (!walk(inside, walked) || ends(walked)) return false;
     triangle_ = walked.triangle;
@@ -48,15 +48,30 @@ class BearingFace {
     const SharpEdges::Edge valley = solid_.edgeOf(end);
     if (!solid_.isValley(valley)) return std::nullopt;
     const SharpEdges::Faces faces = solid_.facesOf(valley);
-    btVector3 outwards = valley.along.cross(faces.inwards[1]).normalized();
-    if (outwards.dot(faces.inwards[0]) < 0) outwards = -outwards;
-    const btVector3 middle = solid_.middle(faces.across);
+    const btVector3 outwards = outwardsBeyond(valley, faces), middle = solid_.middle(faces.across);
     return BearingFace(solid_, faces.across, lerp(place_ + way * end.share, middle, kStartInside),
                        middle + outwards * solid_.margin, outwards);
   }
 
  private:
   static bool ends(const Walked& walked) { return walked.edge != SmoothNormals::kNoEdge; }
+  /// The normal of the face beyond a valley.
+  static btVector3 outwardsBeyond(const SharpEdges::Edge& valley, const SharpEdges::Faces& faces) {
+    const btVector3 outwards = valley.along.cross(faces.inwards[1]).normalized();
+    return outwards.dot(faces.inwards[0]) < 0 ? -outwards : outwards;
+  }
+  /// Whether a place is in the solid behind an edge, and no other face is nearer than the two of that valley:
+  /// an edge far beyond it, on the other side of the solid, does not lie on this face.
+  bool sinksIntoValley(const btVector3& place, const SharpEdges::Edge& edge) const {
+    if (!solid_.isValley(edge)) return false;
+    const SharpEdges::Faces faces = solid_.facesOf(edge);
+    const btScalar below = (through_ - place).dot(outwards_),
+                   behind = (solid_.middle(faces.across) - place).dot(outwardsBeyond(edge, faces));
+    const btScalar least = below > 0 ? btMin(below, behind) : behind;
+    btScalar distance = 0;
+    return solid_.isIn(place, BT_LARGE_FLOAT) && solid_.distanceOf(place, distance) &&
+           distance > (1 - kStartInside) * least;
+  }
   /// Returns false if the walk goes over a bend.
   bool walk(const btVector3& way, Walked& walked) const {
     return solid_.walk(triangle_, place_, way, 1, walked) &&
@@ -122,7 +137,7 @@ class LyingEdge {
     btVector3 out = -face.outwards(), on_own = lerp(top_, end, met.share), on_other = face.under(on_own);
     // Where the edge gets deeper to the end, it lies on the rim alone.
     LineCrossing crossing;
-    if ((end - top_).dot(out) > 0 && crossLines(edge_, rim, crossing)) {
+    if ((end - top_).dot(out) > 0 && crossLines(edge_, rim, crossing) && crossing.isOnBoth()) {
       out = crossing.across.dot(out) > 0 ? crossing.across : -crossing.across;
       on_own = edge_.from + edge_.along * crossing.share_first;
       on_other = rim.from + rim.along * crossing.share_second - out * face.solid().margin;

@@ -225,6 +225,8 @@ void ShapeProbe::tips(const OpposedPoints& points, std::vector<std::uint32_t>& v
     EdgeContact tip{points, kCornerId + 2 * std::uint64_t(vertex)};
     tip.points.on_a = at;
     tip.points.on_b = at - into_b * depth;
+    // A vertex of what is round is on the hill that the round surface is.
+    layOnRim(a_, vertex, into_b, true, tip.points);
     tips.push_back(tip);
   }
 }

@@ -25,6 +25,10 @@ constexpr btScalar kFarthestSlip = btScalar(0.2);
 /// rest is that of their errors.
 constexpr btScalar kSureCurvature = btScalar(0.3);
 
+/// Ratio: what bends by no more than this part of the other surface is flat, not hollow. Curvatures of flat
+/// triangles are those of rounding.
+constexpr btScalar kFlat = btScalar(1e-5);
+
 /// In sizes of the smaller body: what is no further below its top, or behind it, meets with it, and its
 /// normal is no more than a degree off.
 constexpr btScalar kAtTop = btScalar(1e-4);
@@ -118,11 +122,24 @@ void removeIfEmpty(int place, btPersistentManifold& manifold) {
     manifold.removeContactPoint(place);
 }
 
+btScalar inverseMassOf(const btCollisionObject& object) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  return body != nullptr ? body->getInvMass() : btScalar(0);
+}
+
+/// B's share of what the places on both bodies are told to be further apart, for the solver's sake. Where
+/// they are is a lever, too, and would turn the lighter one: what rolls would gain speed from a slip, and
+/// what bounces spin from a gap.
+btScalar shareOfHeavier(const btCollisionObject& a, const btCollisionObject& b) {
+  const btScalar of_a = inverseMassOf(a), of_b = inverseMassOf(b);
+  return of_a > 0 ? of_a / (of_a + of_b) : btScalar(0);
+}
+
 /// Stiffness, damping and the depth they act on, and the slip that friction is to undo, unless the user has
 /// set a law of their own, through the bodies or in a material callback. The callback has seen the true
 /// depth.
 void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObject& a,
-            const PairMotion& motion, const SolverSettings& solver) {
+            const btCollisionObject& b, const PairMotion& motion, const SolverSettings& solver) {
   constexpr int kUsersOwn = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
                             BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   const PointLaw& law = from.law;
@@ -194,9 +211,12 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   if (held) point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
   if (depth == from.depth && !held && from.aside.isZero()) return;
   point.m_distance1 = -depth;
-  point.m_positionWorldOnA = from.on_b + from.normal * depth;
-  if (!from.aside.isZero()) point.m_positionWorldOnA += from.aside;
-  if (held) point.m_positionWorldOnA += from.slip;
+  const btVector3 slip = held ? from.slip : btVector3(0, 0, 0);
+  const btVector3 apart = from.normal * (depth - from.depth) + slip;
+  const btScalar of_b = solver.substeps ? btScalar(0) : shareOfHeavier(a, b);
+  point.m_positionWorldOnA = from.on_b + from.normal * from.depth + from.aside + apart * (1 - of_b);
+  point.m_positionWorldOnB = from.on_b - apart * of_b;
+  point.m_localPointB = b.getWorldTransform().invXform(point.m_positionWorldOnB);
   point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
 }
 
@@ -283,10 +303,10 @@ btScalar turnsAway(const ContactPoint& point, const btVector3& place, const Pair
     const Across axes = bendAxes(point);
     const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
     for (int i = 0; i < 2; ++i) {
-      if (!hill.hasTop(i) || !(hill.fall(i) * size > 1)) continue;
+      if (!hill.hasTop(i) || !(2 * size * hill.fall(i) > 1)) continue;
       const Curves curves(point, axes, hill.axis(i), place, motion);
       const btScalar k = curves.k, l = curves.l;
-      if (k < 0 || l < 0) continue;
+      if (btMin(k, l) < -kFlat * btMax(k, l)) continue;
       acceleration += curves.approach();
       // Of circles, what the second order leaves out. Flat ones have none.
       if (!(2 * size * btMin(k, l) > 1)) continue;
@@ -394,7 +414,7 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     }
     result->addContactPoint(-point.normal, point.on_b, -point.depth);
     if (!known) removeIfEmpty(place, manifold);
-    if (btManifoldPoint* added = pointAt(manifold, point.on_b)) setLaw(*added, point, a, motion, solver);
+    if (btManifoldPoint* added = pointAt(manifold, point.on_b)) setLaw(*added, point, a, b, motion, solver);
   }
   result->refreshContactPoints();
   if (motion.a().has_arrived || motion.b().has_arrived) takeToStart(start, manifold);

@@ -32,6 +32,31 @@ btScalar yieldsAt(const btCollisionObject& object, btScalar height, const btVect
 
 }  // namespace
 
+namespace {
+
+/// The way over a body's surface from where it touched to where it does, which are a chord apart now that it
+/// has turned, laid out in the plane in which it touches [m]. The surface bends between both normals as a
+/// circle does, along an axis across them.
+btVector3 laidOut(const btVector3& chord, const btVector3& old_normal, const btVector3& normal,
+                  const btVector3& turn) {
+  const btScalar turned = turn.length();
+  const btVector3 was = turned > 0 ? old_normal.rotate(turn / turned, turned) : old_normal;
+  const btVector3 bend = was.cross(normal);
+  const btScalar sine = bend.length();
+  btVector3 way = chord;
+  if (sine > 0) {
+    const btVector3 axis = bend / sine, along = axis.cross(normal);
+    const btScalar half = btAtan2(sine, was.dot(normal)) / 2;
+    way = way.rotate(axis, half);
+    way += along * (along.dot(way) * (half / btSin(half) - 1));
+  }
+  way -= normal * normal.dot(way);
+  // About the normal it has turned half as far, in the mean of the way.
+  return way - normal.cross(way) * (turn.dot(normal) / 2);
+}
+
+}  // namespace
+
 btScalar mostFriction(const btPersistentManifold& manifold) {
   btScalar friction = 0;
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
@@ -46,9 +71,11 @@ btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const PairM
                  btScalar farthest) {
   if (!(cached.m_combinedFriction * cached.m_appliedImpulse > 0)) return btVector3(0, 0, 0);
   const btVector3 was_a = start.a * cached.m_localPointA, was_b = start.b * cached.m_localPointB;
-  const btVector3 turned = motion.a().spin.cross(place - was_a) - motion.b().spin.cross(place - was_b);
-  const auto across = [&](const btVector3& way) { return way - normal * normal.dot(way); };
-  const btVector3 apart = across(was_a - was_b), slip = apart + across(turned) * (time_step / 2);
+  const btVector3 across = was_a - was_b, apart = across - normal * normal.dot(across);
+  const auto way = [&](const btVector3& chord, const btVector3& spin) {
+    return laidOut(chord, -cached.m_normalWorldOnB, normal, spin * time_step);
+  };
+  const btVector3 slip = way(place - was_b, motion.b().spin) - way(place - was_a, motion.a().spin);
   const btScalar length = slip.length();
   if (length > farthest || apart.length() > farthest) return btVector3(0, 0, 0);
   return length > largest ? slip * (largest / length) : slip;

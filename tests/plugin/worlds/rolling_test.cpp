@@ -1,8 +1,12 @@
-// What brakes balls: next to nothing where they roll, the friction of a small round contact where they spin.
+// What brakes balls, or drives them: next to nothing where they roll, the friction of a small round contact
+// where they spin.
 #include <cmath>
 #include <memory>
+#include <random>
 #include <string>
+#include <vector>
 
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <gtest/gtest.h>
 
 #include "innersphere/mesh.hpp"
@@ -165,6 +169,118 @@ INSTANTIATE_TEST_SUITE_P(Of, Wheels,
                                           testing::Bool(), testing::Values(60.0, 240.0)),
                          [](const testing::TestParamInfo<Wheels::ParamType>& info) {
                            return std::get<0>(info.param).name +
+                                  (std::get<1>(info.param) ? "Substeps" : "Bullet") +
+                                  std::to_string(int(std::get<2>(info.param)));
+                         });
+
+/// What a ball rolls on.
+enum class Floor { plane, box, packed, triangles, heights };
+
+std::string nameOf(Floor floor) {
+  switch (floor) {
+    case Floor::plane:
+      return "Plane";
+    case Floor::box:
+      return "Box";
+    case Floor::packed:
+      return "Packed";
+    case Floor::triangles:
+      return "Triangles";
+    default:
+      return "Heights";
+  }
+}
+
+/// A ball that turns by a third of a radian in a step of 1/60 s.
+class FastBalls : public testing::TestWithParam<std::tuple<Floor, bool, double>> {
+ protected:
+  static constexpr double kBall = 0.1, kSpeed = 2, kSeconds = 2, kFar = 8, kCell = 0.1;
+  static constexpr int kCells = 80;
+
+  void addFloor(TestWorld& world) {
+    const btVector3 half(kFar, kFar, btScalar(0.2)), middle(0, 0, btScalar(-0.2));
+    switch (std::get<0>(GetParam())) {
+      case Floor::plane:
+        world.addFloor();
+        break;
+      case Floor::box:
+        world.add(std::make_shared<btBoxShape>(half), 0, middle);
+        break;
+      case Floor::packed:
+        world.add(makePackedShape(*makeBox({2 * kFar, 2 * kFar, 0.4}), 256), 0, middle);
+        break;
+      case Floor::triangles:
+        addTriangles();
+        world.add(std::make_shared<btBvhTriangleMeshShape>(&triangles_, true), 0, btVector3(0, 0, 0));
+        break;
+      case Floor::heights: {
+        auto shape =
+            std::make_shared<btHeightfieldTerrainShape>(kCells + 1, kCells + 1, heights_.data(), btScalar(1),
+                                                        btScalar(-0.1), btScalar(0.1), 2, PHY_FLOAT, false);
+        shape->setLocalScaling(btVector3(btScalar(kCell), btScalar(kCell), 1));
+        world.add(shape, 0, btVector3(0, 0, 0));
+      }
+    }
+    world.bodies.back()->setFriction(1);
+  }
+
+ private:
+  /// Flat, of no regular shape.
+  void addTriangles() {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> aside(-0.3, 0.3);
+    std::vector<btVector3> places;
+    for (int i = 0; i < (kCells + 1) * (kCells + 1); ++i)
+      places.emplace_back(btScalar((i % (kCells + 1) - kCells / 2 + aside(random)) * kCell),
+                          btScalar((i / (kCells + 1) - kCells / 2 + aside(random)) * kCell), btScalar(0));
+    for (int row = 0; row < kCells; ++row) {
+      for (int k = row * (kCells + 1); k < row * (kCells + 1) + kCells; ++k) {
+        triangles_.addTriangle(places[k], places[k + 1], places[k + kCells + 2]);
+        triangles_.addTriangle(places[k], places[k + kCells + 2], places[k + kCells + 1]);
+      }
+    }
+  }
+
+  btTriangleMesh triangles_;
+  std::vector<btScalar> heights_ = std::vector<btScalar>((kCells + 1) * (kCells + 1), btScalar(0));
+};
+
+// With Bullet's solver at 60 steps/s it gained a tenth of its speed on planes, as the slip of a circle was
+// reckoned along its chord, and lost a fifth on triangles: a vertex of the ball bore beside its lowest place,
+// and from a gap it was told to turn away by 5 mm, as a triangle's curvature of -1e-14 made it hollow.
+TEST_P(FastBalls, KeepTheirSpeedAndDoNotHop) {
+  const auto [floor, substeps, rate] = GetParam();
+  TestWorld world;
+  SubstepSolver solver;
+  if (substeps) world.world.setConstraintSolver(&solver);
+  PackingCollisionAlgorithm::prepareWorld(world.world);
+  addFloor(world);
+  constexpr double kGap = 5e-4;
+  btRigidBody& ball =
+      world.add(makeMeshBallShape(kBall, 256), 1, btVector3(-2, btScalar(0.013), btScalar(kBall + kGap)));
+  ball.setFriction(1);
+  ball.setLinearVelocity(btVector3(kSpeed, 0, 0));
+  ball.setAngularVelocity(btVector3(0, kSpeed / kBall, 0));
+  double lowest = 1, highest = 0;
+  for (int i = 0; i < int(kSeconds * rate); ++i) {
+    world.run(1 / rate, 1 / rate);
+    const double height = ball.getWorldTransform().getOrigin().z() - kBall;
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  EXPECT_GT(lowest, -2.5e-4);
+  EXPECT_LT(highest, kGap);
+  EXPECT_GT(double(ball.getLinearVelocity().x()), (substeps ? 0.994 : 0.999) * kSpeed);
+  EXPECT_LT(double(ball.getLinearVelocity().x()), 1.0005 * kSpeed);
+  world.world.setConstraintSolver(&world.solver);
+}
+
+INSTANTIATE_TEST_SUITE_P(On, FastBalls,
+                         testing::Combine(testing::Values(Floor::plane, Floor::box, Floor::packed,
+                                                          Floor::triangles, Floor::heights),
+                                          testing::Bool(), testing::Values(60.0, 240.0)),
+                         [](const testing::TestParamInfo<FastBalls::ParamType>& info) {
+                           return nameOf(std::get<0>(info.param)) +
                                   (std::get<1>(info.param) ? "Substeps" : "Bullet") +
                                   std::to_string(int(std::get<2>(info.param)));
                          });
