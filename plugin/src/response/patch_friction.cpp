@@ -30,10 +30,6 @@ btScalar yieldsAt(const btCollisionObject& object, btScalar height, const btVect
   return yields / (1 + yields * height * height / body->getInvMass());
 }
 
-}  // namespace
-
-namespace {
-
 /// The way over a body's surface from where it touched to where it does, which are a chord apart now that it
 /// has turned, laid out in the plane in which it touches [m]. The surface bends between both normals as a
 /// circle does, along an axis across them.

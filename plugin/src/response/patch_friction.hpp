@@ -18,12 +18,12 @@ btScalar mostFriction(const btPersistentManifold& manifold);
 /// Returns how far A has slipped on B at this point, along the surface [m]. The cached point carries it from
 /// step to step, as the distance of its two places on the bodies, which are at `start`: Bullet's friction
 /// knows no more than speeds, and what ten iterations leave of them adds up to bodies that creep. Bodies that
-/// roll touch at `place` now: the slip is the mean of how far the places where they touched, and those where
-/// they do, went apart in a step of `time_step` [s] in which they turned as they do in `motion`. By those
-/// where they touched alone, what rolls in a groove slips towards its axis, and friction would press it into
-/// the groove. As a bristle that bends until it slides, it is no longer than `largest` [m]: a longer one
-/// would ask for more than friction bears, in all directions that the solver's pyramid has, whose corners
-/// bear more than the cone does. It is 0 beyond `farthest` [m], and where bodies turn so far in a step.
+/// roll touch at `place` now, with another `normal`: the slip is how much further the place has gone on B's
+/// surface than on A's in a step of `time_step` [s] in which they turned as in `motion`. Each way is that of
+/// a circle between its two normals: by its chord, what rolls fast would slip. As a bristle that bends until
+/// it slides, it is no longer than `largest` [m]: a longer one would ask for more than friction bears, in all
+/// directions that the solver's pyramid has, whose corners bear more than the cone does. It is 0 beyond
+/// `farthest` [m], and where bodies turn so far in a step.
 btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const PairMotion& motion,
                  const btVector3& place, const btVector3& normal, btScalar time_step, btScalar largest,
                  btScalar farthest);
