@@ -307,10 +307,8 @@ int main(int argc, char** argv) {
         "Mean |error| of the volume relative to the larger of found and true, %% foretold / %% measured, by "
         "the part of the smaller solid that was "
         "found.\n\n");
-    const Drawn drawn = size > 0 ? Drawn{Kind::inside, size}
-                                 : Drawn{deep     ? Kind::deep
-                                         : nested ? Kind::nested
-                                                  : Kind::any};
+    Drawn drawn{deep ? Kind::deep : nested ? Kind::nested : Kind::any};
+    if (size > 0) drawn = {Kind::inside, size};
     run(sources, drawn, poses);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -68,9 +68,8 @@ class BearingFace {
     const btScalar below = (through_ - place).dot(outwards_),
                    behind = (solid_.middle(faces.across) - place).dot(outwardsBeyond(edge, faces));
     const btScalar least = below > 0 ? btMin(below, behind) : behind;
-    btScalar distance = 0;
-    return solid_.isIn(place, BT_LARGE_FLOAT) && solid_.distanceOf(place, distance) &&
-           distance > (1 - kStartInside) * least;
+    btScalar depth = 0;
+    return solid_.depthOf(place, depth) && depth > 0 && depth > (1 - kStartInside) * least;
   }
   /// Returns false if the walk goes over a bend.
   bool walk(const btVector3& way, Walked& walked) const {

@@ -58,18 +58,6 @@ bool isRound(const std::vector<ContactPatch>& patches) {
   return point.bend_a.mean() != 0 && point.bend_b.mean() != 0;
 }
 
-btScalar inverseMass(const btCollisionObject& object) {
-  if (object.isStaticOrKinematicObject()) return 0;
-  if (const btRigidBody* body = btRigidBody::upcast(&object)) return body->getInvMass();
-  if (const btMultiBodyLinkCollider* collider = btMultiBodyLinkCollider::upcast(&object)) {
-    const btMultiBody* body = collider->m_multiBody;
-    if (collider->m_link < 0 && body->hasFixedBase()) return 0;
-    const btScalar mass = collider->m_link < 0 ? body->getBaseMass() : body->getLinkMass(collider->m_link);
-    return mass > 0 ? 1 / mass : btScalar(0);
-  }
-  return 0;
-}
-
 /// Whether a solver may move it. Parts of a multi-body may move though they have no mass themselves.
 bool canBeMoved(const btCollisionObject& object) {
   const btMultiBodyLinkCollider* collider = btMultiBodyLinkCollider::upcast(&object);
@@ -210,6 +198,18 @@ btScalar depthAtRest(const btCollisionObject& object, btScalar time_step) {
   const btRigidBody* body = btRigidBody::upcast(&object);
   const bool falls = body != nullptr && !body->isStaticOrKinematicObject();
   return falls ? body->getGravity().length() * time_step * time_step / kStiffness : btScalar(0);
+}
+
+btScalar inverseMass(const btCollisionObject& object) {
+  if (object.isStaticOrKinematicObject()) return 0;
+  if (const btRigidBody* body = btRigidBody::upcast(&object)) return body->getInvMass();
+  if (const btMultiBodyLinkCollider* collider = btMultiBodyLinkCollider::upcast(&object)) {
+    const btMultiBody* body = collider->m_multiBody;
+    if (collider->m_link < 0 && body->hasFixedBase()) return 0;
+    const btScalar mass = collider->m_link < 0 ? body->getBaseMass() : body->getLinkMass(collider->m_link);
+    return mass > 0 ? 1 / mass : btScalar(0);
+  }
+  return 0;
 }
 
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b) {

@@ -109,6 +109,10 @@ class ContactLaw {
   bool solved_;
 };
 
+/// Returns 0 for static and kinematic bodies, and for parts of a multi-body that have no mass themselves
+/// [1/kg].
+btScalar inverseMass(const btCollisionObject& object);
+
 /// Returns 1 / (1/m_a + 1/m_b) [kg], static and kinematic bodies counting as infinitely heavy; 0 if both are.
 btScalar reducedMass(const btCollisionObject& a, const btCollisionObject& b);
 

@@ -27,7 +27,7 @@ constexpr btScalar kSureCurvature = btScalar(0.3);
 
 /// Ratio: what bends by no more than this part of the other surface is flat, not hollow. Curvatures of flat
 /// triangles are those of rounding.
-constexpr btScalar kFlat = btScalar(1e-5);
+constexpr btScalar kNotHollow = btScalar(1e-5);
 
 /// In sizes of the smaller body: what is no further below its top, or behind it, meets with it, and its
 /// normal is no more than a degree off.
@@ -122,16 +122,11 @@ void removeIfEmpty(int place, btPersistentManifold& manifold) {
     manifold.removeContactPoint(place);
 }
 
-btScalar inverseMassOf(const btCollisionObject& object) {
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  return body != nullptr ? body->getInvMass() : btScalar(0);
-}
-
 /// B's share of what the places on both bodies are told to be further apart, for the solver's sake. Where
 /// they are is a lever, too, and would turn the lighter one: what rolls would gain speed from a slip, and
 /// what bounces spin from a gap.
 btScalar shareOfHeavier(const btCollisionObject& a, const btCollisionObject& b) {
-  const btScalar of_a = inverseMassOf(a), of_b = inverseMassOf(b);
+  const btScalar of_a = inverseMass(a), of_b = inverseMass(b);
   return of_a > 0 ? of_a / (of_a + of_b) : btScalar(0);
 }
 
@@ -213,6 +208,7 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   point.m_distance1 = -depth;
   const btVector3 slip = held ? from.slip : btVector3(0, 0, 0);
   const btVector3 apart = from.normal * (depth - from.depth) + slip;
+  // A SubstepSolver takes places along with the bodies, and asks for no slip.
   const btScalar of_b = solver.substeps ? btScalar(0) : shareOfHeavier(a, b);
   point.m_positionWorldOnA = from.on_b + from.normal * from.depth + from.aside + apart * (1 - of_b);
   point.m_positionWorldOnB = from.on_b - apart * of_b;
@@ -306,7 +302,7 @@ btScalar turnsAway(const ContactPoint& point, const btVector3& place, const Pair
       if (!hill.hasTop(i) || !(2 * size * hill.fall(i) > 1)) continue;
       const Curves curves(point, axes, hill.axis(i), place, motion);
       const btScalar k = curves.k, l = curves.l;
-      if (btMin(k, l) < -kFlat * btMax(k, l)) continue;
+      if (btMin(k, l) < -kNotHollow * btMax(k, l)) continue;
       acceleration += curves.approach();
       // Of circles, what the second order leaves out. Flat ones have none.
       if (!(2 * size * btMin(k, l) > 1)) continue;

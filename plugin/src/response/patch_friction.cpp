@@ -67,7 +67,7 @@ btVector3 slipOf(const btManifoldPoint& cached, const Placed& start, const PairM
                  btScalar farthest) {
   if (!(cached.m_combinedFriction * cached.m_appliedImpulse > 0)) return btVector3(0, 0, 0);
   const btVector3 was_a = start.a * cached.m_localPointA, was_b = start.b * cached.m_localPointB;
-  const btVector3 across = was_a - was_b, apart = across - normal * normal.dot(across);
+  const btVector3 between = was_a - was_b, apart = between - normal * normal.dot(between);
   const auto way = [&](const btVector3& chord, const btVector3& spin) {
     return laidOut(chord, -cached.m_normalWorldOnB, normal, spin * time_step);
   };

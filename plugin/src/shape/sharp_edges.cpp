@@ -63,10 +63,16 @@ bool SharpEdges::nearestTriangle(const btVector3& place, std::size_t& triangle) 
   return true;
 }
 
-bool SharpEdges::distanceOf(const btVector3& place, btScalar& distance) const {
+bool SharpEdges::depthOf(const btVector3& place, btScalar& depth) const {
   SurfaceQueries::Nearest nearest;
   if (!nearestFace(place, BT_LARGE_FLOAT, nearest)) return false;
-  distance = btFabs(nearest.distance) * scale;
+  depth = (inside_out ? nearest.distance : -nearest.distance) * scale;
+  return true;
+}
+
+bool SharpEdges::distanceOf(const btVector3& place, btScalar& distance) const {
+  if (!depthOf(place, distance)) return false;
+  distance = btFabs(distance);
   return true;
 }
 

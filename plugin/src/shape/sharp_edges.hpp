@@ -57,6 +57,9 @@ struct SharpEdges {
   bool isIn(const btVector3& place, btScalar max_distance) const;
   /// Finds the triangle that is nearest to a place. Returns false if there is none.
   bool nearestTriangle(const btVector3& place, std::size_t& triangle) const;
+  /// Finds how deep a place is in what the faces enclose, from the nearest of them; negative outside [m].
+  /// Returns false if there are none.
+  bool depthOf(const btVector3& place, btScalar& depth) const;
   /// Finds how far away from the faces a place is, on either side [m]. Returns false if there are none.
   bool distanceOf(const btVector3& place, btScalar& distance) const;
 

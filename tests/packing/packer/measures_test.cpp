@@ -255,19 +255,25 @@ double cutOff(Vec3d size, const Point& normal, double height) {
   return volume / (6 * n[0] * n[1] * n[2]);
 }
 
-// A sphere in a box stands for it: what planes cut off from both is known.
-TEST(PackerMeasures, OverlapErrorsKnowPlanes) {
-  const Vec3d size{1, 0.5, 0.4};
-  const auto solid = makeSolid(boxMesh({}, size), "box");
-  const Container container(*solid);
-  const double volume = 0.2, unit = 1 / container.side(), radius = 0.2;
+/// A sphere in a box stands for it.
+class OneSphereInABox : public testing::Test {
+ protected:
+  static constexpr Vec3d size{1, 0.5, 0.4}, middle{0.4, 0.3, 0.2};
+  static constexpr double volume = 0.2, radius = 0.2;
+
+  const std::unique_ptr<Solid> solid = makeSolid(boxMesh({}, size), "box");
+  const Container container{*solid};
+  const double unit = 1 / container.side(), in_cube = volume * std::pow(unit, 3);
   const Surface surface = container.toSurface(solid->surface());
-  const SurfaceSamples samples(solid->surface(), container);
-  const std::vector<Ball> balls{{container.fromWorld({0.4, 0.3, 0.2}), radius * unit}};
-  const auto in_cube = volume * std::pow(unit, 3);
+  const SurfaceSamples samples{solid->surface(), container};
+  const std::vector<Ball> balls{{container.fromWorld(middle), radius* unit}};
   const OverlapErrors errors =
       findOverlapErrors(container, surface, samples, balls, {{1, {static_cast<float>(radius)}, 0}}, in_cube);
   const OverlapTrials trials = makeOverlapTrials(container, surface, samples, in_cube, 266, 0);
+};
+
+// What planes cut off from both is known.
+TEST_F(OneSphereInABox, TellsErrorsOfPlanes) {
   const std::vector<PlaneCut>& planes = trials.planes;
   ASSERT_EQ(planes.size(), 88u);
   std::vector<double> thicknesses;
@@ -286,7 +292,8 @@ TEST(PackerMeasures, OverlapErrorsKnowPlanes) {
     const double height = (plane.height - plane.normal.dot(container.fromWorld({}))) / unit;
     const double truth = cutOff(size, plane.normal, height);
     EXPECT_NEAR(plane.truth, truth / volume, 1e-6);
-    const double below = std::clamp(height - plane.normal.dot(Point(0.4, 0.3, 0.2)), -radius, radius);
+    const double below =
+        std::clamp(height - plane.normal.dot(Point(middle[0], middle[1], middle[2])), -radius, radius);
     const double cap =
         std::numbers::pi * (2 * std::pow(radius, 3) / 3 + below * radius * radius - std::pow(below, 3) / 3);
     const double area = std::numbers::pi * (radius * radius - below * below);
@@ -310,19 +317,8 @@ TEST(PackerMeasures, OverlapErrorsKnowPlanes) {
   }
 }
 
-// A sphere in a box stands for it: what it shares with balls inside the box is known.
-TEST(PackerMeasures, OverlapErrorsKnowBallsInside) {
-  const Vec3d size{1, 0.5, 0.4};
-  const auto solid = makeSolid(boxMesh({}, size), "box");
-  const Container container(*solid);
-  const double volume = 0.2, unit = 1 / container.side(), radius = 0.2;
-  const Surface surface = container.toSurface(solid->surface());
-  const SurfaceSamples samples(solid->surface(), container);
-  const std::vector<Ball> balls{{container.fromWorld({0.4, 0.3, 0.2}), radius * unit}};
-  const auto in_cube = volume * std::pow(unit, 3);
-  const OverlapErrors errors =
-      findOverlapErrors(container, surface, samples, balls, {{1, {static_cast<float>(radius)}, 0}}, in_cube);
-  const OverlapTrials trials = makeOverlapTrials(container, surface, samples, in_cube, 266, 0);
+// What it shares with balls inside the box is known.
+TEST_F(OneSphereInABox, TellsErrorsOfBallsInside) {
   const std::vector<Ball>& inside = trials.inside;
   ASSERT_EQ(inside.size(), 88u);
   std::vector<std::pair<double, double>> found;  // volumes and errors
@@ -334,8 +330,7 @@ TEST(PackerMeasures, OverlapErrorsKnowBallsInside) {
     const double r = ball.radius / unit, part = r / clearance;
     least = std::min(least, part);
     most = std::max(most, part);
-    const double whole = 4 * std::numbers::pi / 3 * r * r * r,
-                 d = std::hypot(at[0] - 0.4, at[1] - 0.3, at[2] - 0.2);
+    const double whole = 4 * std::numbers::pi / 3 * r * r * r, d = norm(at - middle);
     const auto shared = d < std::abs(r - radius) ? whole : static_cast<double>(lens(radius, r, d));
     found.emplace_back(whole / volume, std::min(1.0, std::sqrt(2.0) * (whole - shared) / whole));
   }

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "each_world.hpp"
 #include "innersphere/mesh.hpp"
 #include "innersphere/solids.hpp"
 #include "innersphere/substep_solver.hpp"
@@ -290,20 +291,6 @@ TEST(SolidsInTheSamePlace, Part) {
               << name << (substeps ? ", substeps, " : ", ") << rate << " steps/s, turned by " << turned;
         }
       }
-    }
-  }
-}
-
-/// Calls for a world with each solver, at 60 and at 240 steps a second.
-template <typename Run>
-void inEachWorld(const Run& run) {
-  SubstepSolver solver;
-  for (const bool substeps : {false, true}) {
-    for (const double rate : {60.0, 240.0}) {
-      TestWorld world;
-      if (substeps) world.world.setConstraintSolver(&solver);
-      PackingCollisionAlgorithm::prepareWorld(world.world);
-      run(world, substeps, rate);
     }
   }
 }
