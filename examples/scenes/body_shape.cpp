@@ -47,7 +47,7 @@ BulletShape::BulletShape(const BodyOptions& options, const Solid& solid, const P
   } else if (options.shape == BodyShape::spheres) {
     addSpheres(packing, spheres, to_body);
   } else {
-    addHulls(solid, options.concavity * size, to_body, btScalar(kHullMargin * size));
+    addHulls(solid, packing.origin, options.concavity * size, to_body, btScalar(kHullMargin * size));
   }
 }
 
@@ -78,12 +78,13 @@ void BulletShape::addSpheres(const Packing& packing, std::size_t spheres, const 
   shape_ = std::move(compound);
 }
 
-void BulletShape::addHulls(const Solid& solid, double concavity, const btTransform& to_body,
-                           btScalar margin) {
+void BulletShape::addHulls(const Solid& solid, const Vec3d& from, double concavity,
+                           const btTransform& to_body, btScalar margin) {
   auto compound = std::make_unique<btCompoundShape>();
   for (const std::vector<Vec3d>& part : convexParts(solid, concavity)) {
     std::vector<btVector3> points;
-    for (const Vec3d& p : part) points.push_back(to_body * vec(p[0], p[1], p[2]));
+    for (const Vec3d& p : part)
+      points.push_back(to_body * vec(p[0] - from[0], p[1] - from[1], p[2] - from[2]));
     btConvexHullComputer hull;
     const btScalar shrunk = hull.compute(&points[0][0], sizeof(btVector3), static_cast<int>(points.size()),
                                          margin, btScalar(0.5));

@@ -36,7 +36,7 @@ struct BodyOptions {
 /// One of Bullet's own shapes for a solid, and what it is made of.
 class BulletShape {
  public:
-  /// `shape` is not BodyShape::packing. `to_body` places the solid in the frame of the body.
+  /// `shape` is not BodyShape::packing. `to_body` takes the packing's frame to the body's.
   BulletShape(const BodyOptions& options, const Solid& solid, const Packing& packing, std::size_t spheres,
               const btTransform& to_body);
   ~BulletShape();
@@ -50,7 +50,8 @@ class BulletShape {
  private:
   void addTriangles(const Packing& packing, const btTransform& to_body, btScalar margin);
   void addSpheres(const Packing& packing, std::size_t spheres, const btTransform& to_body);
-  void addHulls(const Solid& solid, double concavity, const btTransform& to_body, btScalar margin);
+  void addHulls(const Solid& solid, const Vec3d& from, double concavity, const btTransform& to_body,
+                btScalar margin);
 
   std::size_t parts_ = 0;
   btTriangleMesh mesh_;

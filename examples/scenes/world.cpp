@@ -106,7 +106,8 @@ std::size_t SceneWorld::addSolid(const Solid& solid, std::size_t spheres, const 
   const btTransform& to_body = entry.shape->principalTransform();
   const Bounds box = solid.bounds();
   entry.size = diagonalOf(box);
-  for (int k = 0; k < 3; ++k) entry.centre[k] = btScalar((box.min[k] + box.max[k]) / 2);
+  for (int k = 0; k < 3; ++k)
+    entry.centre[k] = btScalar((box.min[k] + box.max[k]) / 2 - entry.packing->origin[k]);
   entry.look = static_cast<std::uint32_t>(film.shapes.size());
   film.shapes.push_back(lookOf(solid.name(), *entry.packing, spheres, to_body));
   if (body_options_.shape != BodyShape::packing) {

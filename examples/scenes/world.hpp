@@ -41,7 +41,7 @@ struct SceneSolid {
       shape;  ///< also says what moves how: mass properties are the same for all shapes
   std::unique_ptr<BulletShape> other;  ///< what collides in its place; null: nothing does
   std::uint32_t look = 0;              ///< index into Film::shapes
-  btVector3 centre;                    ///< of its bounding box, in the solid's own frame [m]
+  btVector3 centre;                    ///< of its bounding box, in the packing's frame [m]
   double size = 0;                     ///< diagonal of its bounding box [m]
 };
 

@@ -1,6 +1,7 @@
 // Bullet's own ways to collide, which scenes offer to compare with, are good ones.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include <LinearMath/btConvexHullComputer.h>
@@ -10,6 +11,7 @@
 #include "innersphere/solids.hpp"
 #include "scenes/convex_parts.hpp"
 #include "scenes/scene.hpp"
+#include "scenes/shapes.hpp"
 #include "scenes/world.hpp"
 
 namespace innersphere::test {
@@ -71,6 +73,37 @@ TEST(BodyShape, AllOfThemHangInAChain) {
       EXPECT_GT(play.recording.last(i).position[2], play.recording.first(i).position[2] - 0.26) << i;
     }
     EXPECT_GT(play.recording.steps.back().contacts, 0);
+  }
+}
+
+// Packings of solids far from their origins have frames of their own.
+TEST(BodyShape, AllOfThemStartWhereTheyDoWithAMeshAtItsOrigin) {
+  const Mesh near = demo::prism(demo::gridOutline({0, 1, 3, 4}, {0, 1, 3}, {"###", "#.."}), 1);
+  Mesh far = near;
+  for (Vec3d& v : far.vertices) v = {v[0] + 4096, v[1] - 1024, v[2] + 512};
+  for (const auto shape : {demo::BodyShape::packing, demo::BodyShape::gimpact, demo::BodyShape::spheres,
+                           demo::BodyShape::convex}) {
+    const auto started = [shape](const Mesh& mesh) {
+      demo::SceneOptions options;
+      options.bodies.shape = shape;
+      options.solids = {makeSolid(mesh, "angle")};
+      options.spheres = 64;
+      options.seconds = 0.001;
+      options.dt = 0.001;
+      return demo::play(demo::sceneNamed("pile"), options);
+    };
+    const demo::ScenePlay expected = started(near), found = started(far);
+    EXPECT_NE(found.world->solids().front().packing->origin, Vec3d{});
+    ASSERT_EQ(found.world->bodies().size(), expected.world->bodies().size());
+    for (std::size_t i = 0; i < expected.world->bodies().size(); ++i) {
+      const auto boxOf = [i](const demo::ScenePlay& play) {
+        std::array<btVector3, 2> box;
+        play.world->bodies()[i].body->getAabb(box[0], box[1]);
+        return box;
+      };
+      const auto a = boxOf(expected), b = boxOf(found);
+      for (int side = 0; side < 2; ++side) EXPECT_LT(a[side].distance(b[side]), 0.01) << i;
+    }
   }
 }
 
