@@ -133,6 +133,16 @@ std::uint32_t prefixOf(const Arguments& arguments, const Packing& packing, const
   return 0;
 }
 
+// Triangles are exact unless they enclose a part of the solid twice, or chords leave one out.
+void sayIfInexact(const CollisionModel& model, const std::string& name) {
+  PairQuery with_itself;
+  with_itself.a = with_itself.b = &model;
+  if (!std::isnan(expectedError(with_itself, Estimator::surface, {}).mean)) return;
+  say("the triangles of " + name +
+      " enclose another volume than the solid has, as those of shells that overlap or of round faces do: "
+      "errors of overlaps are unknown (nan)");
+}
+
 std::shared_ptr<const CollisionModel> modelOf(const std::string& source, std::size_t spheres) {
   const std::size_t to_pack = spheres > 0 ? spheres : PackOptions().spheres;
   return std::make_shared<CollisionModel>(std::make_shared<Packing>(loadOrPack(source, to_pack)));
@@ -233,6 +243,10 @@ void run(Arguments& arguments) {
     }
   }
   clearProgressBar();
+  if (on_surfaces) {
+    sayIfInexact(*a, arguments.a);
+    if (b != a) sayIfInexact(*b, arguments.b);
+  }
   writeTextOutput(arguments.output, arguments.force, table);
 }
 
@@ -275,7 +289,8 @@ Command overlapCommand() {
       "[m^2]) or of force density (volume, [m^3]). error and error_bound: the expected |error| of the "
       "volume,\n"
       "relative to the larger of found and true, and what it exceeds in 1 of 20 cases; nan where nothing\n"
-      "overlaps or no error was measured. Everything is in A's coordinates.";
+      "overlaps or no error was measured, and with surface if the triangles do not have the solid's volume. "
+      "Everything\nis in A's coordinates.";
   command.examples = {"innersphere overlap cow.cbor cow.cbor --poses poses.csv --spheres 4000 -o overlap.csv",
                       "innersphere overlap cow.cbor cow.cbor --poses poses.csv --shard 3/8 -o part-3.csv"};
   command.run = [arguments] {

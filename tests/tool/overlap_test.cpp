@@ -197,6 +197,25 @@ TEST_F(Overlap, FarFromTheOriginItIsTheSame) {
   }
 }
 
+// The second shell reaches into the first one: a corner of both is enclosed twice.
+TEST_F(Overlap, TrianglesThatCountTwiceAreNoted) {
+  writeFile(path("one.obj"), kTetrahedron);
+  writeFile(path("two.obj"), kTetrahedron +
+                                 "v .1 .1 .1\nv 1.1 .1 .1\nv .1 1.1 .1\nv .1 .1 1.1\nf 5 7 6\nf 5 6 8\n"
+                                 "f 5 8 7\nf 6 7 8\n");
+  run("pack one.obj --spheres 64 -o one.cbor");
+  run("pack two.obj --spheres 64 -o two.cbor");
+  writeFile(path("poses.csv"), kHeader + "0,1,0,0,0.1,0,1,0,0.1,0,0,1,0\n");
+  const std::string rest = " --poses poses.csv --estimator surface --force -o out.csv";
+  succeed("overlap one.cbor one.cbor" + rest);
+  EXPECT_EQ(readTable(readFile(path("out.csv")))[0].error, 0);
+  const Outcome noted = run("overlap one.cbor two.cbor" + rest);
+  EXPECT_EQ(noted.exit_code, 0);
+  EXPECT_NE(noted.err.find("two.cbor"), std::string::npos) << noted.err;
+  EXPECT_EQ(noted.err.find("one.cbor"), std::string::npos) << noted.err;
+  EXPECT_TRUE(std::isnan(readTable(readFile(path("out.csv")))[0].error));
+}
+
 TEST_F(Overlap, TablesMayHaveAByteOrderMark) {
   writeFile(path("ball.xyzr"), "0 0 0 1\n");
   // Two equal balls at a distance of one radius share 5/16 of their volume.

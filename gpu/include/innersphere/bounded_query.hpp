@@ -31,8 +31,10 @@ struct BoundedOverlap {
 /// Theirs are independent: the logarithms of found over true have half the variance of each. That takes area,
 /// stiffness and energy: NaN without area and energy, as Want::volume gives none. NaN also if nothing
 /// overlaps, nothing was measured, or nothing so shallow, and with volume-true radii from kDeepOverlap of
-/// both bodies on if one packing is of a file that knows no errors there; 0 with Estimator::surface. Margins
-/// and CollisionModel::update() are not considered. Throws Error bad_argument for a null model.
+/// both bodies on if one packing is of a file that knows no errors there. With Estimator::surface 0, but NaN
+/// if the triangles of a packing enclose another volume than its solid has, by more than 1e-3 of it: shells
+/// that overlap enclose a part twice, chords of a curve leave one out. Margins and CollisionModel::update()
+/// are not considered. Throws Error bad_argument for a null model.
 ExpectedError expectedError(const PairQuery& query, Estimator estimator, const Overlap& found);
 
 /// Runs single queries with the longest prefixes that a budget allows. Both bodies use 64, 128, 256, ...

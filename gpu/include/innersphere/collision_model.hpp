@@ -15,7 +15,8 @@ enum class Estimator {
   /// Radii whose volumes sum to the solid's, right in the mean. Raw radii where none are stored.
   volume_true,
   /// The triangles that both packings carry, which must be closed: volume, centroid and area are exact for
-  /// these, however thin the solids and however small the overlap. The law of force is another one than with
+  /// these, however thin the solids and however small the overlap. What shells of one surface enclose twice
+  /// counts twice; expectedError() is then NaN. The law of force is another one than with
   /// spheres: energy is the volume, force is area, torque is minus the gradient of the volume by a rotation
   /// about the origin of B, and stiffness is the area of B's surface in A. pair_count are pairs of triangles
   /// that meet: none where one solid is wholly inside the other. Spheres (volume-true ones) give Want::touch,

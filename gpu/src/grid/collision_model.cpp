@@ -40,6 +40,20 @@ bool allUsable(const Sphere* spheres, std::size_t count, float least, float most
   return bad == 0;
 }
 
+/// By the divergence theorem: the tetrahedra from one corner to all triangles.
+double volumeOf(const Surface& surface) {
+  if (surface.triangles.empty()) return 0;
+  const auto corner = [&](std::uint32_t vertex) {
+    const auto& v = surface.vertices[vertex];
+    return Vec3d{v[0], v[1], v[2]};
+  };
+  const Vec3d from = corner(surface.triangles[0][0]);
+  double sum = 0;
+  for (const auto& t : surface.triangles)
+    sum += dot(corner(t[0]) - from, cross(corner(t[1]) - from, corner(t[2]) - from)) / 6;
+  return sum;
+}
+
 void checkMoved(const Sphere& s, std::size_t number) {
   const auto where = [&] { return "sphere " + std::to_string(number); };
   if (!std::isfinite(s.x) || !std::isfinite(s.y) || !std::isfinite(s.z) || !std::isfinite(s.radius))
@@ -105,6 +119,16 @@ const SurfaceTree& CollisionModel::Impl::surface() {
   const std::lock_guard lock(mutex_);
   if (!surface_) surface_.emplace(packing->surface);
   return *surface_;
+}
+
+bool CollisionModel::Impl::surfaceHasVolumeOfSolid() {
+  constexpr double kOff = 1e-3;  ///< well above single precision; the packer trusts triangles up to there
+  const std::lock_guard lock(mutex_);
+  if (!surface_has_volume_of_solid_) {
+    const double volume = packing->solid.volume;
+    surface_has_volume_of_solid_ = std::abs(volumeOf(packing->surface) - volume) < kOff * volume;
+  }
+  return *surface_has_volume_of_solid_;
 }
 
 void CollisionModel::Impl::withSpheres(std::size_t count, const VolumeTrueRadii* radii, const Use& use) {

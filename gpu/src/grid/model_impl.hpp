@@ -28,6 +28,11 @@ struct CollisionModel::Impl : GridSource {
   /// threads at once. Throws Error: what SurfaceTree throws, and bad_argument after update().
   const SurfaceTree& surface();
 
+  /// Tells whether the packing's triangles enclose as much as the solid has, to 1e-3: they do not where they
+  /// enclose parts of it twice or are chords of a curve. The first call adds them up. Safe to call from
+  /// several threads at once.
+  bool surfaceHasVolumeOfSolid();
+
   /// Does what CollisionModel::update() says.
   void update(const Sphere* spheres, std::size_t count);
 
@@ -52,6 +57,7 @@ struct CollisionModel::Impl : GridSource {
   std::mutex mutex_;
   std::map<Key, ModelGrid> grids_;
   std::optional<SurfaceTree> surface_;
+  std::optional<bool> surface_has_volume_of_solid_;
   std::uint64_t version_ = newVersion();  ///< of the spheres
   std::vector<Sphere> moved_;             ///< those of the last update; empty: those of the packing
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "grid/model_impl.hpp"
 #include "innersphere/error.hpp"
 
 namespace innersphere {
@@ -75,7 +76,10 @@ double together(double a, double b) {
 ExpectedError expectedError(const PairQuery& query, Estimator estimator, const Overlap& found) {
   const std::uint32_t prefix_a = limitOf(query.a, query.prefix_a),
                       prefix_b = limitOf(query.b, query.prefix_b);
-  if (estimator == Estimator::surface) return {0, 0};
+  if (estimator == Estimator::surface) {
+    const bool exact = query.a->impl().surfaceHasVolumeOfSolid() && query.b->impl().surfaceHasVolumeOfSolid();
+    return exact ? ExpectedError{0, 0} : kUnknown;
+  }
   if (found.area == Vec3d{} && found.energy == 0) return kUnknown;
   const Packing &in_a = query.a->packing(), &in_b = query.b->packing();
   const double scale_a = query.placement_a.scale, scale_b = query.placement_b.scale;

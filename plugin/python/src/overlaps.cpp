@@ -481,7 +481,9 @@ bound  what |error| exceeds in 1 of 20 cases: else the truth lies between volume
 
 Errors of A and B are independent, as each was measured with copies of itself, cut by planes and with balls inside it when it was packed. nan where
 nothing overlaps, nothing so shallow was measured or area and energy are 0, as with want="volume", for packings without
-overlap_errors, and with "volume_true" where more than 45 % of both are shared if a packing is of an older file; 0 with "surface".
+overlap_errors, and with "volume_true" where more than 45 % of both are shared if a packing is of an older file. With "surface" 0, but nan
+if the triangles of a packing enclose another volume than its solid has, by more than 0.1 %: shells that overlap enclose a part twice,
+chords of a curve leave one out.
 Raises InvalidArgumentError if shared is what "surface" finds and another estimator is named.)");
   module.def("cuda_device_count", &cudaDeviceCount, "The number of CUDA devices that answer.");
   module.def("cuda_available", &cudaAvailable, "Whether CUDA is built in and a device answers.");

@@ -125,10 +125,10 @@ TEST_P(BoundedQueryConformance, ErrorIsThatOfThePackings) {
               2e-5);
   EXPECT_NEAR(errorOf(1000, 0.1).mean, 0.4 * 0.01 / 0.5, 1e-9);
   EXPECT_NEAR(errorOf(1000, 1e9).mean, 0.4, 1e-9);
-  EXPECT_TRUE(std::isnan(errorOf(0.1 * 7 / 11, 1).mean));  // too shallow for A
-  EXPECT_TRUE(std::isnan(errorOf(0.1 * 7, 1).mean));       // too shallow for B
-  EXPECT_TRUE(std::isnan(errorOf(volume, 0).bound));       // as Want::volume leaves it
-  EXPECT_EQ(errorOf(volume, area, Estimator::surface).bound, 0);
+  EXPECT_TRUE(std::isnan(errorOf(0.1 * 7 / 11, 1).mean));                    // too shallow for A
+  EXPECT_TRUE(std::isnan(errorOf(0.1 * 7, 1).mean));                         // too shallow for B
+  EXPECT_TRUE(std::isnan(errorOf(volume, 0).bound));                         // as Want::volume leaves it
+  EXPECT_TRUE(std::isnan(errorOf(volume, area, Estimator::surface).bound));  // there are no triangles
   // Lenses that are thicker than those of copies are foretold by planes, for each body by itself.
   stiffness = volume / (1e9 * std::cbrt(7.0)) / 2;
   EXPECT_NEAR(errorOf(volume, area).mean, together(0.04, 0.01), 1e-9);  // not for B, which is larger

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "conformance.hpp"
+#include "innersphere/bounded_query.hpp"
 #include "innersphere/error.hpp"
 
 namespace innersphere::test {
@@ -106,6 +107,31 @@ TEST_P(SurfaceConformance, TurnedThinPlates) {
   expectNear(got.area, {0, 0, octagon}, 1e-9);
   expectNear(got.force, got.area, 0);
   expectNear(got.torque, {0, 0, 0}, 1e-9);
+}
+
+// Two boxes, which are one solid, have a half of each in common.
+TEST_P(SurfaceConformance, ErrorsAreUnknownWhereShellsOverlap) {
+  const auto expected = [this](const CollisionModel& a, const CollisionModel& b) {
+    PairQuery query;
+    query.a = &a;
+    query.b = &b;
+    return expectedError(query, Estimator::surface, makeContext().overlap(query, kSurface));
+  };
+  const auto packing = boxPacking({1, 1, 1});
+  packing->solid.volume = 1;
+  const CollisionModel box(packing);
+  const auto crossing = std::make_shared<Packing>(*packing);
+  const Surface first = packing->surface;
+  for (const auto& v : first.vertices) crossing->surface.vertices.push_back({v[0] + 0.5F, v[1], v[2]});
+  for (const auto& t : first.triangles) crossing->surface.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  crossing->solid.volume = 1.5;
+  const CollisionModel both(crossing);
+  EXPECT_NEAR(overlap(both, box, at({0.25, 0, 0})).volume, 1.5, 1e-12) << "of 1";
+  EXPECT_EQ(expected(box, box).bound, 0);
+  for (const ExpectedError& error : {expected(both, box), expected(box, both)}) {
+    EXPECT_TRUE(std::isnan(error.mean));
+    EXPECT_TRUE(std::isnan(error.bound));
+  }
 }
 
 // By 10^-12 of a cube: one corner inside the other's corner, both turned about z, far from the world's
