@@ -14,7 +14,8 @@ bool isSurfaceFile(const std::string& path);
 /// has none.
 Mesh surfaceOf(const Packing& packing);
 
-/// Writes Wavefront OBJ, or binary STL, whose numbers have single precision. Throws Error.
+/// Writes Wavefront OBJ, or STL: binary, or as text, with a note, where single precision would bend the
+/// surface. Throws Error.
 void writeSurface(const Mesh& mesh, const std::string& path, bool force);
 
 }  // namespace innersphere::tool

@@ -207,6 +207,20 @@ def test_curobo_yaml(inside, tmp_path):
         )
 
 
+def test_numbers_far_away_have_all_digits(tmp_path):
+    """A part of 0.2 m, 1000 km from its origin: its spheres would lie in each other, rounded to 1 mm."""
+    corners = np.array([[0, 0, 0], [0.2, 0, 0], [0, 0.2, 0], [0, 0, 0.2]]) + [1e6, -1e6, 0.1]
+    packing = innersphere.pack((corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), spheres=20, overlap_errors=False)
+    expected = robots.spheres_of(packing)
+    robots.write_mjcf(tmp_path / "a.xml", packing)
+    read = [[*map(float, g.get("pos").split()), float(g.get("size"))] for g in ET.parse(tmp_path / "a.xml").iter("geom")]
+    np.testing.assert_array_equal(read, expected.spheres)
+    robots.write_srdf(tmp_path / "a.srdf", "arm", {"a": expected})
+    balls = ET.parse(tmp_path / "a.srdf").iter("sphere")
+    read = [[*map(float, s.get("center").split()), float(s.get("radius"))] for s in balls]
+    np.testing.assert_array_equal(read, expected.spheres)
+
+
 def test_srdf(inside, tmp_path):
     """As srdfdom reads it: link_sphere_approximation with the link, spheres with center (three numbers) and radius."""
     robots.write_srdf(tmp_path / "arm.srdf", "arm", inside)

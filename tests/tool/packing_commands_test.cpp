@@ -330,6 +330,23 @@ TEST_F(PackingCommands, SurfacesAreWrittenForOtherPrograms) {
   refuse("convert none.obj none.ply", 3, {"none.obj"});
 }
 
+// A part of 0.2 m, 1000 km from its origin, keeps its shape: %.9g would round its corners to 1 mm, single
+// precision to 62 mm.
+TEST_F(PackingCommands, SurfacesFarAwayKeepTheirShape) {
+  writeFile(path("far.obj"),
+            "v 1000000.1 0 0\nv 1000000.3 0 0\nv 1000000.1 0.2 0\nv 1000000.1 0 0.2\n"
+            "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  succeed("pack far.obj --spheres 20 -o far.cbor");
+  for (const std::string file : {"again.obj", "again.stl"}) {
+    const Outcome outcome = run("convert far.cbor " + file);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find("as text") != std::string::npos, file == "again.stl") << outcome.err;
+    const Outcome packed = run("pack " + file + " --spheres 20 --json -o again.cbor --force");
+    ASSERT_EQ(packed.exit_code, 0) << file << packed.err;
+    EXPECT_NEAR(nlohmann::json::parse(packed.out)["volume"].get<double>() / (0.008 / 6), 1, 1e-6) << file;
+  }
+}
+
 TEST_F(PackingCommands, TheSameBytesForAnyNumberOfThreads) {
   // More threads than cores make oneTBB warn on stderr.
   EXPECT_EQ(run("pack torus --spheres 200 --threads 1 -o one.json").exit_code, 0);

@@ -179,8 +179,9 @@ def _write(path: str | os.PathLike[str], text: str, overwrite: bool) -> None:
         raise WriteError(f"cannot write {path}: {error.strerror}") from error
 
 
-def _words(numbers: Any) -> str:
-    return " ".join(f"{x:.9g}" for x in numbers)
+def _words(numbers: Any, between: str = " ") -> str:
+    """With all digits: they are read back as the same numbers."""
+    return between.join(repr(float(x)).removesuffix(".0") for x in numbers)
 
 
 def _to_text(root: ET.Element) -> str:
@@ -238,8 +239,7 @@ def write_curobo(path: str | os.PathLike[str], links: Mapping[str, Spheres], *, 
     for name, found in links.items():
         lines.append(f"  {json.dumps(name)}:")
         for ball in found.spheres:
-            x, y, z, r = (f"{number:.9g}" for number in ball)
-            lines += [f'    - "center": [{x}, {y}, {z}]', f'      "radius": {r}']
+            lines += [f'    - "center": [{_words(ball[:3], ", ")}]', f'      "radius": {_words(ball[3:])}']
     _write(path, "\n".join(lines) + "\n", overwrite)
 
 
@@ -303,8 +303,8 @@ def write_dem_engine(
     balls = found.spheres.copy()
     balls[:, :3] = (balls[:, :3] - packing.origin - packing.center_of_mass) @ axes
     mass = density * packing.volume
-    lines = ["x,y,z,r", *(",".join(f"{x:.9g}" for x in ball) for ball in balls)]
-    lines += [f"# mass = {mass:.9g}", f"# Ixx, yy, zz = {', '.join(f'{x:.9g}' for x in moments)}"]
+    lines = ["x,y,z,r", *(_words(ball, ",") for ball in balls)]
+    lines += [f"# mass = {_words([mass])}", f"# Ixx, yy, zz = {_words(moments, ', ')}"]
     _write(path, "\n".join(lines) + "\n", overwrite)
     return mass, moments.tolist()
 
@@ -331,7 +331,7 @@ def write_liggghts(
     i = density * packing.inertia
     words = (
         f"nspheres {len(balls)} ntry 1000000 spheres file {os.path.basename(os.fspath(path))} scale 1.0 type 1 "
-        f"mass {density * packing.volume:.9g} inertia_tensor "
+        f"mass {_words([density * packing.volume])} inertia_tensor "
         f"{_words([i[0, 0], i[0, 1], i[0, 2], i[1, 1], i[1, 2], i[2, 2]])} use_volume"
     )
     _write(path, f"# {words}\n" + "".join(_words(ball) + "\n" for ball in balls), overwrite)
