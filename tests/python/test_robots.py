@@ -122,6 +122,16 @@ def test_covering_spheres_leave_no_point_of_the_surface_out(covering):
         assert 0 < out < 1.05 * overhang + 4e-3
 
 
+def test_covers_are_of_spheres_all_over_the_surface(tmp_path):
+    (tmp_path / "arm.urdf").write_text(ROBOT.replace("0.4 0.2 0.6", "0.4 1 0.03").replace("package://arm/ring", "none"))
+    (tmp_path / "none.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    by_default, by_radius = (
+        robots.spheres_of_urdf(tmp_path / "arm.urdf", spheres=40, cover=True, **options)["base"].overhang
+        for options in ({}, {"order": "radius"})
+    )
+    assert by_default < by_radius / 2  # of a plate
+
+
 def test_meshes_are_mirrored_and_stretched(folder, tmp_path):
     (tmp_path / "arm.urdf").write_text(
         ROBOT.replace("package://arm/ring.obj", str(folder / "ring.obj"))

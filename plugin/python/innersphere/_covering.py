@@ -36,7 +36,8 @@ def spheres_of(
     packing: packing[:n] gives n spheres.
     cover: inner spheres leave the surface out, by quality["gap_max"] at most. Planners that must not miss a collision
         want all of the solid in the spheres: these move and grow until no point of it is left out, on the surface and
-        inside, as `innersphere pack --cover` does. They overlap each other.
+        inside, as `innersphere pack --cover` does. They overlap each other. Pack with order="coverage", as it does: covers of
+        spheres that are chosen by radius reach out up to four times as far.
     clump: for grains and haptics: spheres that may overlap and reach out a little, of which the union is as near to
         the solid as can be, as `innersphere pack --clump` does. 1,000 at most.
     resolution: side of the smallest cells for which a cover is proven, relative to the diagonal of the solid, 1e-4 to

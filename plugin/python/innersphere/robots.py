@@ -55,13 +55,14 @@ def spheres_of_urdf(
     spheres: for each collision element; a ball has one.
     cover: whether they cover the surface, as in spheres_of(); else they lie inside.
     packages: folders that ``package://NAME`` stands for.
-    options: those of innersphere.pack(), such as cache and repair.
+    options: those of innersphere.pack(), such as cache and repair. order is "coverage" for a cover, as with
+        `innersphere pack --cover`: spheres that are chosen by radius make covers that reach out up to four times as far.
 
     Returns the spheres of each link that collides, in the frame of the link. Raises FormatError, which names the link, for
     what is no URDF or has a shape that is none of these; FileMissingError; and what pack() raises.
     """
     tree = _parsed(urdf)
-    options = {"overlap_errors": False, **options}
+    options = {"overlap_errors": False, "order": "coverage" if cover else "radius", **options}
     found = {}
     for link in tree.getroot().iter("link"):
         name = link.get("name") or ""
