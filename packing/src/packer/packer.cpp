@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -209,19 +210,47 @@ void addQuality(const Problem& problem, const Chosen& chosen, tbb::task_arena& a
   packing.quality.gap_max = all.max;
 }
 
-/// Warns if parts of the surface have no sphere near them, with the number of spheres that would do.
+/// Says which spheres are left out.
+std::string smallestOf(const Problem& problem) {
+  return "no sphere has less than the smallest allowed radius, " +
+         text(problem.smallest * problem.container.side()) + " m";
+}
+
+/// Warns if parts of the surface have no sphere near them, with the number of spheres that would do, or how
+/// near those of the smallest radius and more would come.
 void warnOfBareSurface(const Problem& problem, const Chosen& chosen, Packing& packing) {
   const std::string bare = bareSurface(packing, chosen.balls.size());
   if (bare.empty()) return;
+  const double wanted = kCoverageDistance * problem.diagonal;
   SphereGrid grid(chosen.balls);
-  Cover(problem.container, problem.samples, grid, problem.smallest)
-      .upTo(kCoverageDistance * problem.diagonal, [&](const Ball& ball) {
-        grid.insert(ball);
-        return false;
-      });
-  packing.warnings.push_back(bare + "; about " + text(static_cast<double>(grid.balls().size())) +
+  Cover(problem.container, problem.samples, grid, problem.smallest).upTo(wanted, [&](const Ball& ball) {
+    grid.insert(ball);
+    return false;
+  });
+  const std::array<std::size_t, 1> all{grid.balls().size()};
+  const double nearest = problem.samples.coverage(grid.balls(), all, wanted).back().max;
+  if (nearest > (1 + 1e-6) * wanted) {
+    packing.warnings.push_back(bare + "; any number of spheres would come within " +
+                               text(100 * nearest / problem.diagonal) + " % everywhere and no nearer, as " +
+                               smallestOf(problem));
+    return;
+  }
+  packing.warnings.push_back(bare + "; about " + text(static_cast<double>(all[0])) +
                              " in the order of coverage would come within " + text(100 * kCoverageDistance) +
                              " % everywhere");
+}
+
+/// Warns if spheres that are small enough to close a gap are not allowed.
+void warnOfMissedGap(const Problem& problem, const Chosen& chosen, Packing& packing) {
+  const PackOptions& options = problem.options;
+  const bool other_limit =
+      (options.spheres > 0 && chosen.balls.size() >= options.spheres) || chosen.filled >= problem.enough;
+  const double left = packing.quality.gap_max;
+  if (options.gap == 0 || other_limit || left <= (1 + 1e-6) * options.gap) return;
+  const double part = left / (problem.diagonal * problem.container.side());
+  packing.warnings.push_back("the largest distance from the surface to a sphere is " + text(left) + " m, " +
+                             text(100 * part) + " % of the diagonal, and not the " + text(options.gap) +
+                             " m that were asked for, as " + smallestOf(problem));
 }
 
 /// Adds the volume-true radii of all prefixes. Returns the volumes of the cells of all spheres [m^3].
@@ -287,7 +316,10 @@ Packing pack(const Solid& solid, const PackOptions& options, const Progress& pro
 
   report("quality", 0);
   addQuality(problem, chosen, arena, packing);
-  warnOfBareSurface(problem, chosen, packing);
+  arena.execute([&] {
+    warnOfBareSurface(problem, chosen, packing);
+    warnOfMissedGap(problem, chosen, packing);
+  });
   const std::vector<double> cell_volumes = addVolumeTrueRadii(problem, chosen, arena, report, packing);
   report("measuring", 0);
   if (options.overlap_errors) {

@@ -164,5 +164,25 @@ TEST(Coverage, BareWallsAreNamedWithTheNumberThatWouldDo) {
   EXPECT_EQ(bareSurface(covering, 256), "");
 }
 
+// Spheres of 0.04 m and more fit into the foot, and not into the walls: their rim is 0.9 m above it.
+TEST(Coverage, WhatTheSmallestRadiusLeavesOutIsSaid) {
+  PackOptions options;
+  options.gap = 0.05;
+  options.min_radius = 0.04;
+  options.overlap_errors = false;
+  const std::string within = "would come within ", asked = "not the 0.05 m that were asked for";
+  for (const std::size_t spheres : {0, 20}) {
+    options.spheres = spheres;
+    std::string warnings;
+    for (const std::string& warning : pack(*makeSolid(cupMesh(), "cup"), options).warnings)
+      warnings += warning + '\n';
+    ASSERT_NE(warnings.find(within), std::string::npos) << warnings;
+    EXPECT_NEAR(std::stod(warnings.substr(warnings.find(within) + within.size())), 100 * 0.9 / kDiagonal, 1);
+    EXPECT_NE(warnings.find("smallest allowed radius, 0.04 m"), std::string::npos) << warnings;
+    EXPECT_EQ(warnings.find(asked) == std::string::npos, spheres > 0)
+        << "the number came first: " << warnings;
+  }
+}
+
 }  // namespace
 }  // namespace innersphere::test
