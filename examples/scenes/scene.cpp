@@ -16,14 +16,19 @@ const Scene& sceneNamed(const std::string& name) {
   throw Error(ErrorCode::bad_argument, "there is no scene \"" + name + "\"; the scenes are " + known);
 }
 
+std::string namesOfScenesThatTakeSolids() {
+  std::string names;
+  for (const Scene& scene : scenes()) {
+    if (scene.takes_solids) names += (names.empty() ? "" : ", ") + scene.name;
+  }
+  return names;
+}
+
 SceneOptions completed(const Scene& scene, SceneOptions options) {
   if (!options.solids.empty() && !scene.takes_solids) {
-    std::string others;
-    for (const Scene& other : scenes()) {
-      if (other.takes_solids) others += (others.empty() ? "" : ", ") + other.name;
-    }
-    throw Error(ErrorCode::bad_argument,
-                "the scene " + scene.name + " has solids of its own; yours can be used in " + others);
+    throw Error(ErrorCode::bad_argument, "the scene " + scene.name +
+                                             " has solids of its own; yours can be used in " +
+                                             namesOfScenesThatTakeSolids());
   }
   if (options.plain && options.dt != 0 && std::abs(options.dt * kPlainRate - 1) > 1e-6) {
     throw Error(ErrorCode::bad_argument,

@@ -53,6 +53,9 @@ const std::vector<Scene>& scenes();
 /// Throws Error bad_argument with the known names.
 const Scene& sceneNamed(const std::string& name);
 
+/// Of those that take a user's solids, with commas between them.
+std::string namesOfScenesThatTakeSolids();
+
 /// The options with the scene's own values where the caller has none. Throws Error bad_argument if the scene
 /// cannot use them.
 SceneOptions completed(const Scene& scene, SceneOptions options);

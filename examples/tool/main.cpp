@@ -81,7 +81,7 @@ Command Tool::helpCommand() {
 
 Command Tool::completionCommand() {
   Command command("completion", "Print a script that completes command lines in a shell");
-  command.argument("SHELL", shell, "Which shell").oneOf({"bash", "zsh", "fish"});
+  command.argument("SHELL", shell, "bash, zsh or fish").oneOf({"bash", "zsh", "fish"});
   command.examples = {"innersphere completion bash > ~/.local/share/bash-completion/completions/innersphere"};
   command.run = [this] {
     const auto write = shell == "bash" ? bashCompletion : shell == "zsh" ? zshCompletion : fishCompletion;

@@ -113,7 +113,7 @@ void appendRow(std::string& table, const std::string& name, const Overlap& overl
   table += name;
   const auto number = [&table](double value) {
     char text[40];
-    std::snprintf(text, sizeof text, ",%.12g", value);
+    std::snprintf(text, sizeof text, ",%.12g", std::isnan(value) ? std::abs(value) : value);  // never -nan
     table += text;
   };
   number(overlap.volume);

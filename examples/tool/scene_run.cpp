@@ -114,7 +114,8 @@ Command sceneRunCommand() {
   addSceneOptions(command, arguments->options);
   command
       .texts("--mesh", arguments->meshes,
-             "Mesh file to use instead of the scene's own solids; may be repeated")
+             "Mesh file to use instead of the scene's own solids, in the scenes " +
+                 demo::namesOfScenesThatTakeSolids() + "; may be repeated")
       .withFile()
       .withSuggestions(namedSolids());
   addRepairOption(command, arguments->mesh);

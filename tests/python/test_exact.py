@@ -80,14 +80,21 @@ def test_the_triangles_of_packings_share_what_manifold_says():
     np.testing.assert_allclose(found["centroid"], exact["centroid"], atol=1e-4)
 
 
+def test_a_repaired_packing_does_in_place_of_an_open_mesh():
+    pytest.importorskip("manifold3d")
+    repaired = innersphere.pack((CUBE[0], BOX_FACES[1:]), spheres=20, overlap_errors=False, repair=True)
+    assert innersphere.exact_overlap(repaired, CUBE)["volume"] == pytest.approx(1)
+
+
 @pytest.mark.parametrize(
     "mesh, pose, error, message",
     [
-        ((CUBE[0], BOX_FACES[1:]), None, innersphere.NotASolidError, "open"),
+        ((CUBE[0], BOX_FACES[1:]), None, innersphere.NotASolidError, r"open.*give pack\(a, repair=True\) in its place"),
         (CUBE, 2 * np.eye(4), innersphere.InvalidArgumentError, "query 0: the placement of B"),
         (CUBE, ([np.nan, 0, 0], [0, 0, 0, 1]), innersphere.NotFiniteError, "query 0: the placement of B"),
         (CUBE, np.eye(3), ValueError, "pose_b has the shape"),
         (CUBE, (np.zeros(3),), ValueError, "a tuple"),
+        (CUBE, [[0, 0, 0], [0, 0, 0, 1]], ValueError, "pose_b has rows of different lengths.*a tuple of positions"),
         (3, None, TypeError, "mesh"),
     ],
 )
@@ -114,6 +121,17 @@ def test_the_command(tmp_path):
     header, *lines = got.stdout.splitlines()
     assert header == "pose,volume" and len(lines) == 3 and lines[2] == "2,0"
     assert run("nothing", "box").returncode == 1
+    (tmp_path / "bad.csv").write_text(",".join(names) + "\n" + ",".join(["1"] * 11 + ["x"]) + "\n")
+    (tmp_path / "other.csv").write_text("x,y\n1,2\n")
+    (tmp_path / "empty.csv").write_text(",".join(names) + "\n")
+    for words, message in (
+        (["nope.obj", "box"], "there is no file nope.obj"),
+        (["box", "box", "--poses", "bad.csv"], 'bad.csv, line 2, column m23: "x" is not a number'),
+        (["box", "box", "--poses", "other.csv"], "other.csv has no column m00"),
+        (["box", "box", "--poses", "empty.csv"], "empty.csv holds no poses"),
+    ):
+        refused = run(*words, "--spheres", "20")
+        assert refused.returncode == 1 and message in refused.stderr, refused.stderr
     exact = run("box", "box", "--poses", "poses.csv", "--spheres", "500", "--exact")
     try:
         import manifold3d  # noqa: F401

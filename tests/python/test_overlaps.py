@@ -286,6 +286,7 @@ def test_any_strides_and_types(box):
         (([0, 0], NO_TURN), ValueError, "the position of pose_b"),
         ((np.eye(4), np.eye(4)), ValueError, "the position of pose_b"),
         (([0, 0, 0],), ValueError, "tuple of 1"),
+        ([[0, 0, 0], [0, 0, 0, 1]], ValueError, "pose_b has rows of different lengths.*a tuple of positions"),
         ((np.zeros((2, 3)), np.zeros((3, 4))), ValueError, "broadcast"),
     ],
 )

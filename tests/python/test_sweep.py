@@ -356,6 +356,8 @@ def test_random_poses_do_not_depend_on_the_block():
     assert not np.array_equal(innersphere.random_poses(1000, 0, 1, seed=4)[1], quaternions)
     with pytest.raises(innersphere.InvalidArgumentError):
         innersphere.random_poses(-1, 0, 1)
+    with pytest.raises(innersphere.NotFiniteError, match="high"):
+        innersphere.random_poses(1, 0, [1, np.nan, 1])
 
 
 def test_random_poses_are_spread_evenly():

@@ -221,8 +221,9 @@ TEST_F(Overlap, TablesMayHaveAByteOrderMark) {
   // Two equal balls at a distance of one radius share 5/16 of their volume.
   const std::string rows = kHeader + "near,1,0,0,1,0,1,0,0,0,0,1,0\n";
   writeFile(path("marked.csv"), "\xef\xbb\xbf" + rows);
-  const auto table =
-      readTable(succeed("overlap ball.xyzr ball.xyzr --estimator raw --poses marked.csv -o -").out);
+  const std::string out = succeed("overlap ball.xyzr ball.xyzr --estimator raw --poses marked.csv -o -").out;
+  EXPECT_EQ(out.find("-nan"), std::string::npos) << "what is not known has no sign: " << out;
+  const auto table = readTable(out);
   ASSERT_EQ(table.size(), 1u);
   EXPECT_EQ(table[0].pose, "near");
   EXPECT_NEAR(table[0].volume, 5.0 / 16 * 4 * M_PI / 3, 1e-5);

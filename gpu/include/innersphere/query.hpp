@@ -89,7 +89,8 @@ struct QueryContextOptions {
   int threads = 0;
   bool time_kernels = false;  ///< Whether kernelTime() is measured, which takes some microseconds a run.
   /// The CUDA device: a number from 0 on, kCurrentDevice, or kAllDevices, which share a batch or a sweep.
-  /// Results do not depend on it. Each device keeps copies of the models that it has worked on.
+  /// Results do not depend on it. It need not be there as long as queries run on the CPU. Each device keeps
+  /// copies of the models that it has worked on.
   int device = kCurrentDevice;
   /// How long a kernel stays on the device after a single query without pairs or contacts [s], from 0 to
   /// kMostResidentSeconds, waiting for the next one with the same models: then none has to be launched, which

@@ -10,26 +10,46 @@ from typing import Any
 
 import numpy as np
 
-from . import Error, Packing, Query, exact_overlap, pack, random_poses, read, solid
+from . import EmptyInputError, Error, FormatError, Packing, Query, exact_overlap, pack, random_poses, read, solid
 
 
 def _solid_and_packing(name: str, spheres: int) -> tuple[Any, Packing]:
     if os.path.splitext(name)[1] in (".cbor", ".json"):
         packing = read(name)
         return packing, packing[:spheres] if spheres < len(packing) else packing
-    mesh: Any = name if os.path.exists(name) else solid(name)
+    is_path = os.path.exists(name) or os.path.splitext(name)[1] or os.path.dirname(name)
+    mesh: Any = name if is_path else solid(name)
     return mesh, pack(mesh, spheres=spheres, overlap_errors=False)
+
+
+def _read_poses(path: str) -> Any:
+    with open(path, encoding="utf-8-sig") as file:
+        rows = [
+            (number, [cell.strip(' \t\r\n"') for cell in line.split(",")])
+            for number, line in enumerate(file, 1)
+            if line.strip() and not line.startswith("#")
+        ]
+    if len(rows) < 2:
+        raise EmptyInputError(f"{path} holds no poses: it needs a header row and data rows")
+    names = rows[0][1]
+    poses = np.tile(np.eye(4), (len(rows) - 1, 1, 1))
+    for i, j in np.ndindex(3, 4):
+        name = f"m{i}{j}"
+        if name not in names:
+            raise FormatError(f"{path} has no column {name}; its header row must name m00 to m23")
+        column = names.index(name)
+        for pose, (number, cells) in zip(poses, rows[1:]):
+            text = cells[column] if column < len(cells) else ""
+            try:
+                pose[i, j] = float(text)
+            except ValueError:
+                raise FormatError(f'{path}, line {number}, column {name}: "{text}" is not a number') from None
+    return poses
 
 
 def _poses(path: str | None, a: Packing, b: Packing) -> Any:
     if path is not None:
-        with open(path) as file:
-            rows = [line for line in file if line.strip() and not line.startswith("#")]
-        table = np.genfromtxt(rows, delimiter=",", names=True, ndmin=1)
-        poses = np.tile(np.eye(4), (len(table), 1, 1))
-        for i, j in np.ndindex(3, 4):
-            poses[:, i, j] = table[f"m{i}{j}"]
-        return poses
+        return _read_poses(path)
     reach = (np.ptp(a.vertices, axis=0) + np.ptp(b.vertices, axis=0)) / 4
     middle = a.center_of_mass - b.center_of_mass
     return random_poses(100, middle - reach, middle + reach, seed=1)

@@ -12,12 +12,13 @@ _CPU, _CUDA, _PINNED = 1, 2, 3  # devices of DLPack
 _DEFAULT_STREAM = 1
 
 
-def as_float64(values: Any, name: str) -> NDArray[np.float64]:
-    """Makes an array of doubles, also of what lies on a device. Raises TypeError for anything but real numbers."""
+def as_float64(values: Any, name: str, wanted: str = "") -> NDArray[np.float64]:
+    """Makes an array of doubles, also of what lies on a device. Raises TypeError for anything but real numbers, and
+    ValueError, with what is `wanted`, for rows of different lengths."""
     try:
         array = np.asarray(_on_host(values))
-    except ValueError as error:  # rows of different lengths
-        raise ValueError(f"{name}: {error}") from None
+    except ValueError:
+        raise ValueError(f"{name} has rows of different lengths{wanted}") from None
     if array.dtype.kind not in "fiu" and array.size > 0:
         raise TypeError(f"{name} has the dtype {array.dtype}; it must be of real numbers")
     return array.astype(np.float64, copy=False)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._errors import InvalidArgumentError, MissingLibraryError, NotFiniteError
+from ._errors import InvalidArgumentError, MissingLibraryError, NotASolidError, NotFiniteError
 from ._pack import triangles_of
 from ._poses import parts_of_pose
 
@@ -65,7 +65,11 @@ def _manifold(manifold3d: Any, mesh: Any, name: str) -> Any:
             raise InvalidArgumentError(f"{name} is a packing without a surface")
         vertices, faces = mesh.vertices + mesh.origin, mesh.faces
     else:
-        vertices, faces = _core.surface_of_mesh(triangles_of(mesh, 1.0), name)
+        try:
+            vertices, faces = _core.surface_of_mesh(triangles_of(mesh, 1.0), name)
+        except NotASolidError as error:
+            advice = f"give pack({name}, repair=True) in its place"
+            raise NotASolidError(str(error).replace("ask for repair=True", advice)) from None
     whole = _manifold_of_shells(manifold3d, vertices, faces, name)
     # Manifold counts what shells share once for each of them: bodies are found, with their cavities, and united.
     shells = [shell.to_mesh64() for shell in whole.decompose()]

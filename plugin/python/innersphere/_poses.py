@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import as_float64
-from ._errors import InvalidArgumentError
+from ._errors import InvalidArgumentError, NotFiniteError
 
 _STEPS = 2  # of Philox's counter for a pose; each gives four numbers
 
@@ -22,11 +22,13 @@ def random_poses(
     first: the number of the first pose. Pose n of a seed is the same, in whichever block it is made.
 
     Returns positions (count, 3) and unit quaternions (count, 4), x y z w, as Query.overlap() takes them. Raises
-    InvalidArgumentError for a negative count or first.
+    InvalidArgumentError for a negative count or first, NotFiniteError for corners.
     """
     if count < 0 or first < 0:
         raise InvalidArgumentError(f"count is {count} and first is {first}; both must be 0 or more")
     low, high = np.broadcast_to(low, 3).astype(float), np.broadcast_to(high, 3).astype(float)
+    if not np.isfinite([low, high]).all():
+        raise NotFiniteError(f"low is {low.tolist()} and high is {high.tolist()}; both must be finite")
     source = np.random.Philox(key=seed)
     source.advance(_STEPS * first)
     u = np.random.Generator(source).random((count, 4 * _STEPS))
@@ -42,7 +44,7 @@ def parts_of_pose(pose: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np
     if pose is None:
         return np.zeros(3), np.eye(3)
     if not isinstance(pose, tuple):
-        matrix = _shaped(pose, (4, 4), name)
+        matrix = _shaped(pose, (4, 4), name, "; it must be (..., 4, 4), or a tuple of positions and quaternions")
         return matrix[..., :3, 3], matrix[..., :3, :3]
     if len(pose) != 2:
         raise ValueError(f"{name} is a tuple of {len(pose)}; a tuple holds positions and quaternions")
@@ -52,8 +54,8 @@ def parts_of_pose(pose: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np
     return _shaped(pose[0], (3,), f"the position of {name}"), np.stack(columns, axis=-1)
 
 
-def _shaped(values: Any, inner: tuple[int, ...], name: str) -> NDArray[np.float64]:
-    array = as_float64(values, name)
+def _shaped(values: Any, inner: tuple[int, ...], name: str, wanted: str = "") -> NDArray[np.float64]:
+    array = as_float64(values, name, wanted)
     if array.shape[-len(inner) :] != inner:
         raise ValueError(f"{name} has the shape {array.shape}; it must be (..., {', '.join(map(str, inner))})")
     return array

@@ -371,7 +371,7 @@ backend: "auto" (the CPU or, if there is enough work and a device, CUDA; both gi
     which raises NoDeviceError where there is none.
 threads: of the CPU, up to 4,096; 0 are all cores. Results do not depend on it.
 device: the CUDA device, from 0 on; "all": they share the poses of a query; None: the current one, as a rule 0. Results
-    do not depend on it.
+    do not depend on it. It need not be there as long as queries run on the CPU.
 
 A query is fastest where A stands still and the poses of B are one array of doubles in C's order, of matrices or of
 positions and quaternions: it is then read in place, by a device, too.

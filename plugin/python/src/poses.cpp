@@ -77,7 +77,9 @@ Poses::Operand Poses::operand(nb::handle object, const std::vector<std::size_t>&
     const bool stays = where == Where::anywhere && cudaAvailable() &&
                        nb::try_cast(arrays.attr("on_device")(object), one.array, false);
     // Lists, and arrays of other types: numpy makes an array of doubles, or a TypeError.
-    if (!stays) one.array = nb::cast<Array>(arrays.attr("as_float64")(object, name));
+    const char* wanted =
+        inner_shape.size() == 2 ? "; it must be (..., 4, 4), or a tuple of positions and quaternions" : "";
+    if (!stays) one.array = nb::cast<Array>(arrays.attr("as_float64")(object, name, wanted));
   }
   const std::size_t inner = inner_shape.size();
   std::vector<std::size_t> shape;
