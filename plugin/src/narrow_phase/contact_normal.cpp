@@ -77,8 +77,10 @@ std::optional<bool> isFaceOfA(const OpposedPoints& points, const FaceExtents* ex
 
 }  // namespace
 
-ContactNormal::ContactNormal(const std::vector<ProbedSample>& samples, const FaceExtents* extents)
+ContactNormal::ContactNormal(const std::vector<ProbedSample>& samples, const FaceExtents* extents,
+                             const SurfaceProbe* bends)
     : extents_(extents),
+      bends_(bends),
       flat_a_(bend(samples, &OpposedPoints::normal_a) < kOneNormal),
       flat_b_(bend(samples, &OpposedPoints::normal_b) < kOneNormal) {
   if (flat_a_ != flat_b_) {
@@ -99,13 +101,43 @@ btVector3 ContactNormal::at(const ProbedSample& sample) const {
   if (one_is_flat && extents_ != nullptr && sample.points.areFlat() && a.distance(b) > kOneNormal) {
     if (const std::optional<bool> on_a = isFaceOfA(sample.points, extents_)) return *on_a ? a : b;
   }
-  if (opposed(sample.points) || isOnEdge(sample.points)) return mean(sample.points, face_a_);
+  const bool lies_on_it = opposed(sample.points) || isOnEdge(sample.points);
+  if (bends_ != nullptr && bend_a != 0 && bend_b != 0 && a.distance2(b) > kOneNormal * kOneNormal) {
+    if (const std::optional<btVector3> normal = betweenBends(sample.points, lies_on_it)) return *normal;
+  }
+  if (lies_on_it) return mean(sample.points, face_a_);
   if (one_is_flat && extents_ == nullptr) return flat_a_ ? a : b;
   if (const std::optional<bool> on_a = isFaceOfA(sample.points, extents_)) return *on_a ? a : b;
   if (one_is_flat) return flat_a_ ? a : b;
   const btVector3& nearest = a.dot(sample.direction) > b.dot(sample.direction) ? a : b;
   const bool edges = !flat_a_ && nearest.dot(sample.direction) < kBearingFaceCosine;
   return edges ? sample.direction : nearest;
+}
+
+/// The same where the surfaces bend otherwise along other axes: the normal is turned by as much as one of
+/// them bends on the way on which both, if convex, turn by what is between them. If they are not `opposed`,
+/// nothing where they meet at an angle that no bend explains, or where a face ends in an edge on that way.
+std::optional<btVector3> ContactNormal::betweenBends(const OpposedPoints& points, bool opposed) const {
+  const Across axes((points.normal_a + points.normal_b).normalized());
+  const SurfaceProbe::Bends bends = bends_->bends(points, axes);
+  const Bend a = bends.a.magnitude(), b = bends.b.magnitude();
+  const Hill hill(a, b, 0, axes);
+  const btVector3 apart = points.normal_a - points.normal_b, way = hill.toTop(apart);
+  btVector3 normal = points.normal_a - a.turn(way, axes);
+  for (int i = 0; i < 2; ++i) {
+    if (hill.hasTop(i)) continue;
+    const btScalar angle = apart.dot(hill.axis(i));
+    if (!opposed && btFabs(angle) > kOneNormal) return std::nullopt;
+    normal -= hill.axis(i) * (angle / 2);
+  }
+  if (opposed) return normal.normalized();
+  // Further along than by the least radius the surfaces are not what they are here.
+  if (way.length() * hill.fall(0) > 2) return std::nullopt;
+  if (extents_ != nullptr) {
+    const FaceExtents::EdgeDistances ends = extents_->edgeDistances(points, -apart.normalized());
+    if (btMin(ends.a, ends.b) < way.length()) return std::nullopt;
+  }
+  return normal.normalized();
 }
 
 bool opposed(const OpposedPoints& points) {

@@ -1,6 +1,7 @@
 // Finds the direction of contact between two surfaces that were probed.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "narrow_phase/surface_probe.hpp"
@@ -34,14 +35,19 @@ class FaceExtents {
 class ContactNormal {
  public:
   /// Takes the samples of one patch. `extents` is null where nothing is known of B but its distance: its
-  /// faces are then taken as endless.
-  ContactNormal(const std::vector<ProbedSample>& samples, const FaceExtents* extents);
+  /// faces are then taken as endless. `bends` is null where it is not known how B bends along each axis: it
+  /// is then taken as round.
+  ContactNormal(const std::vector<ProbedSample>& samples, const FaceExtents* extents,
+                const SurfaceProbe* bends = nullptr);
 
   /// Returns the direction at a sample: unit, from A to B.
   btVector3 at(const ProbedSample& sample) const;
 
  private:
+  std::optional<btVector3> betweenBends(const OpposedPoints& points, bool opposed) const;
+
   const FaceExtents* extents_;
+  const SurfaceProbe* bends_;
   bool flat_a_;  ///< all of the patch is one face of A
   bool flat_b_;
   btScalar face_a_ = btScalar(0.5);  ///< weight of A's normal where two faces meet

@@ -147,7 +147,7 @@ void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separa
   const LineStarts lines(probe, samples.indices, scratch.line_starts);
   appendDeepestPoints(lines, separation, scratch.tops, tops_of_patch, scratch.probed);
   keepAscents(scratch, samples);
-  const ContactNormal normals(scratch.probed, &probe);
+  const ContactNormal normals(scratch.probed, &probe, &probe);
   PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
   for (std::size_t i = 0; i < scratch.probed.size(); ++i) {
     const ProbedSample& sample = scratch.probed[i];

@@ -16,8 +16,14 @@ constexpr btScalar kStraight = btScalar(1e-5);
 }  // namespace
 
 bool Bend::isHollow() const {
-  const btScalar half = (xx - yy) / 2, spread = btSqrt(half * half + xy * xy);
-  return mean() < 0 && mean() + spread <= kConvex * (spread - mean());
+  return mean() < 0 && mean() + spread() <= kConvex * (spread() - mean());
+}
+
+Bend Bend::magnitude() const {
+  const btScalar middle = mean(), apart = spread();  // the bends along both axes are middle +- apart
+  if (btFabs(middle) >= apart) return middle < 0 ? Bend{-xx, -xy, -yy} : *this;
+  const btScalar part = middle / apart;
+  return {apart + part * (xx - middle), part * xy, apart + part * (yy - middle)};
 }
 
 Hill::Hill(const Bend& a, const Bend& b, btScalar depth, const Across& axes) {

@@ -27,8 +27,12 @@ struct Bend {
     return {curvature * y * y, -curvature * x * y, curvature * x * x};
   }
   btScalar mean() const { return (xx + yy) / 2; }
+  /// Returns by how much it is more, or less, than the mean along the axes along which it is most and least.
+  btScalar spread() const { return btSqrt((xx - yy) * (xx - yy) / 4 + xy * xy); }
   /// Returns true if it is hollow, at least along one axis, and along none convex, but for rounding.
   bool isHollow() const;
+  /// Returns the bend of a surface that is convex by as much along each axis as this one is convex or hollow.
+  Bend magnitude() const;
   /// Returns the turn of the normal along `way`.
   btVector3 turn(const btVector3& way, const Across& axes) const {
     const btScalar wx = way.dot(axes.x), wy = way.dot(axes.y);
@@ -55,7 +59,8 @@ class Hill {
   btScalar fall(int i) const { return fall_[i]; }
   /// Returns false if surfaces are flat along an axis, or one lies in the other, so that there is no top.
   bool hasTop(int i) const { return has_top_[i]; }
-  /// Returns true if there is a top along the first axis only, and neither surface bends along the second one.
+  /// Returns true if there is a top along the first axis only, and neither surface bends along the second
+  /// one.
   bool isStraightRidge() const { return straight_ridge_; }
   /// Returns the way from where the slope is this to the top, as far as there is one [m].
   btVector3 toTop(const btVector3& slope) const;

@@ -42,6 +42,27 @@ class Faces : public FaceExtents {
   mutable btVector3 towards_{0, 0, 0};
 };
 
+/// Surfaces that are straight along an axis each, as tubes.
+class Tubes : public SurfaceProbe {
+ public:
+  Tubes(const btVector3& axis_a, double curvature_a, const btVector3& axis_b, double curvature_b)
+      : axis_a_(axis_a), axis_b_(axis_b), a_(btScalar(curvature_a)), b_(btScalar(curvature_b)) {}
+  bool probeLine(std::size_t, const btVector3&, const btVector3&, OpposedPoints&) const override {
+    return false;
+  }
+  btVector3 lineStart(std::size_t) const override { return {0, 0, 0}; }
+  btScalar reach(std::size_t) const override { return 0; }
+  bool nearest(std::size_t, btVector3&, OpposedPoints&) const override { return false; }
+  btScalar meets(bool, const btVector3&, const btVector3&) const override { return -1; }
+  Bend bend(bool of_a, const OpposedPoints&, const Across& axes) const override {
+    return of_a ? Bend::about(axis_a_, axes, a_) : Bend::about(axis_b_, axes, b_);
+  }
+
+ private:
+  btVector3 axis_a_, axis_b_;
+  btScalar a_, b_;
+};
+
 TEST(Opposed, MeansLessThan20Degrees) {
   EXPECT_TRUE(opposed(sampleOf(kUp, leaning(19)).points));
   EXPECT_FALSE(opposed(sampleOf(kUp, leaning(21)).points));
@@ -101,6 +122,36 @@ TEST(ContactNormal, OfTwoEdgesIsTheDirectionOfTheProbe) {
   const Faces alike(1, 1);
   EXPECT_NEAR(ContactNormal(samples, &alike).at(samples[0]).distance(kUp), 0, kRounding);
   EXPECT_NEAR(normalAlone(samples[0].points, kUp).distance(kUp), 0, kRounding);
+}
+
+TEST(ContactNormal, OfCrossingTubesIsThatOfTheirTop) {
+  // Tubes of 0.2 m and 0.05 m one over the other, whose axes cross at any angle, at a line beside the middle.
+  for (const double degrees : {90.0, 45.0, 20.0}) {
+    const double angle = degrees * M_PI / 180, ra = 0.2, rb = 0.05;
+    const btVector3 axis_a(1, 0, 0), axis_b(btScalar(std::cos(angle)), btScalar(std::sin(angle)), 0);
+    const Tubes tubes(axis_a, 1 / ra, axis_b, 1 / rb);
+    const btVector3 place(btScalar(0.004), btScalar(0.006), 0);
+    const auto normal = [&](const btVector3& axis, double radius) {
+      const btVector3 aside = (place - axis * place.dot(axis)) / btScalar(radius);
+      return aside + kUp * btSqrt(1 - aside.length2());
+    };
+    const ProbedSample sample = sampleOf(normal(axis_a, ra), normal(axis_b, -rb), 1 / ra / 2, 1 / rb / 2);
+    EXPECT_NEAR(ContactNormal({sample}, nullptr, &tubes).at(sample).distance(kUp), 0, 1e-3) << degrees;
+  }
+}
+
+TEST(ContactNormal, OfATubeBesideARodIsThatOfTheRod) {
+  // The tube runs around the rod, a ring: along the rod, which is straight, it leans by any angle.
+  const btVector3 around(1, 0, 0), along(0, 1, 0);
+  for (const double lean : {5.0, 15.0, 40.0}) {
+    const double angle = lean * M_PI / 180;
+    const btVector3 leans(0, btScalar(std::sin(angle)), btScalar(std::cos(angle)));
+    const Tubes ring(along, 20, around, 60);
+    const ProbedSample sample = sampleOf(kUp, leans, 10, 30);
+    const Faces endless(BT_LARGE_FLOAT, BT_LARGE_FLOAT), ends_above(1, BT_LARGE_FLOAT);
+    for (const Faces* faces : {&endless, &ends_above})
+      EXPECT_NEAR(ContactNormal({sample}, faces, &ring).at(sample).distance(kUp), 0, 0.1 * angle) << lean;
+  }
 }
 
 TEST(ContactNormal, IsAUnitVector) {
