@@ -160,6 +160,10 @@ void climb(const LineStarts& lines, btScalar steepest, int steps, btVector3 shif
     Hillside next = hillsideAt(points, sample.direction);
     next.slope = uphill(next.slope);
     const btScalar gain = next.depth - here.depth, promised = here.slope.dot(step);
+    if (gain > kLeaps * promised + kFacets * step.length()) {
+      falls.shorten();
+      continue;
+    }
     const bool climbs = gain > kClimbs * promised, sinks = gain < -kSinks * promised;
     if ((over_edges && next.slope.length() > steepest) ||
         (!climbs && (next.slope.length2() > here.slope.length2() || (over_edges && sinks)))) {

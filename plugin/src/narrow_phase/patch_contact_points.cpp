@@ -339,9 +339,10 @@ bool PatchContactPoints::keepInHollow(const OpposedPoints& points, WeightedPoint
   const bool goes_on = surfaces_.nearestWall(!in_b, in_b ? on_a : on_b, btFabs(depth) + bulge, wall) &&
                        wall.distance < bulge - depth &&
                        wall.normal.dot(normal) * (in_b ? -1 : 1) > points.normal_a.dot(points.normal_b);
-  if (!goes_on) return false;
+  // What is apart touches no hollow either: there its plane says nothing.
+  if (!goes_on || (point.point.depth < 0 && depth > 0)) return false;
   point.point.normal = normal;
-  point.point.depth = point.point.depth < 0 ? btMin(depth, btScalar(0)) : over;
+  point.point.depth = point.point.depth < 0 ? depth : over;
   // There, so that the push leads through its centre.
   point.point.on_b = in_b ? on_a - normal * point.point.depth : on_b;
   point.moved = point.point.on_b - points.on_b;
