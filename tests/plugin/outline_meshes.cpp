@@ -68,6 +68,33 @@ Mesh prismMesh(const std::vector<std::array<double, 2>>& outline) {
   return mesh;
 }
 
+Mesh prismBetween(const std::vector<std::array<double, 2>>& outer,
+                  const std::vector<std::array<double, 2>>& inner, bool closed) {
+  Mesh mesh;
+  for (const double y : {-0.5, 0.5}) {
+    for (const auto* outline : {&outer, &inner}) {
+      for (const auto& p : *outline) mesh.vertices.push_back({p[0], y, p[1]});
+    }
+  }
+  const auto n = static_cast<std::uint32_t>(outer.size()), back = 2 * n;
+  const auto addQuad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  for (std::uint32_t i = 0; i < (closed ? n : n - 1); ++i) {
+    const std::uint32_t j = (i + 1) % n;
+    addQuad(i, j, n + j, n + i);
+    addQuad(back + i, back + n + i, back + n + j, back + j);
+    addQuad(i, back + i, back + j, j);
+    addQuad(n + i, n + j, back + n + j, back + n + i);
+  }
+  if (!closed) {
+    addQuad(0, n, back + n, back);
+    addQuad(n - 1, back + n - 1, back + 2 * n - 1, 2 * n - 1);
+  }
+  return mesh;
+}
+
 Surface surfaceOf(const Mesh& mesh) {
   Surface surface;
   for (const Vec3d& v : mesh.vertices)

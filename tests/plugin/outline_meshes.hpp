@@ -19,6 +19,10 @@ Mesh ringMesh(const std::vector<std::array<double, 2>>& section, std::uint32_t a
 /// A prism along y, 1 m long, with this outline in x and z, counter-clockwise seen from y = -infinity, and
 /// seen as a whole from its first place. Its sides, two triangles each, come first.
 Mesh prismMesh(const std::vector<std::array<double, 2>>& outline);
+/// A prism along y, 1 m long, between two outlines in x and z of as many places: of a ring, both closed and
+/// counter-clockwise seen from y = -infinity, the first one outside; or of a channel, from end to end.
+Mesh prismBetween(const std::vector<std::array<double, 2>>& outer,
+                  const std::vector<std::array<double, 2>>& inner, bool closed);
 /// The same in single precision.
 Surface surfaceOf(const Mesh& mesh);
 /// Adds all triangles of a mesh to one of Bullet's.

@@ -24,6 +24,7 @@ bool PackingProbe::probe(const btVector3& patch_normal, btScalar separation, Pro
   if (!nearest(sample.index, to_nearest, start)) return false;
   bool found = probeAlong(to_nearest);
   if (found && sample.isFarFromBend(separation)) return true;
+  if (found && runsBelowFace(sample)) return false;
   // A patch may hold a ledge beside its wall: spheres that are pushed to the ledge go there. Not through all
   // of a plate: small spheres at the rim of a thin one are pushed any way, also to the side of what stands on
   // it.
@@ -56,6 +57,15 @@ bool PackingProbe::probeAgain(const btVector3& patch_normal, btScalar separation
     return probe(patch_normal, separation, sample);
   align(sample);
   return !isPastValley(sample) || probe(patch_normal, separation, sample);
+}
+
+bool PackingProbe::runsBelowFace(const ProbedSample& sample) const {
+  const bool of_a = sample.index < count_a_;
+  const btScalar depth = sample.points.depthAlong(sample.direction);
+  SurfaceQueries::Nearest face;
+  return depth > 0 &&
+         nearestWall(of_a, of_a ? sample.points.on_b : sample.points.on_a, kSliver * depth, face) &&
+         btFabs(face.normal.dot(sample.direction)) < kPatchCosine;
 }
 
 bool PackingProbe::isPastValley(const ProbedSample& sample) const {

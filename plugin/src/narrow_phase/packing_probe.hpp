@@ -67,6 +67,9 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
   }
 
  private:
+  /// Returns true if a line goes in its own solid along one of its faces, and meets what has sunk in there by
+  /// far less than by the line: all that it tells is how far that face goes on.
+  bool runsBelowFace(const ProbedSample& sample) const;
   /// Returns true if one of the solids is thin there.
   bool isThinAt(const OpposedPoints& points) const;
   btVector3 apart() const { return b_.origin() - a_.origin(); }
