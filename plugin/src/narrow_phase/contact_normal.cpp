@@ -18,6 +18,10 @@ btScalar bend(const std::vector<ProbedSample>& samples, btVector3 OpposedPoints:
   return btSqrt(squares / count);
 }
 
+/// Ratio: along a way on which surfaces bend so many times less than across it, their bend is not known well
+/// enough to tell how far the top is.
+constexpr btScalar kWeakBend = 10;
+
 /// Where the surfaces oppose each other. `face_a`: weight of A's normal if both are flat.
 btVector3 mean(const OpposedPoints& points, btScalar face_a) {
   const btScalar a = btFabs(points.curvature_a), b = btFabs(points.curvature_b);
@@ -130,10 +134,8 @@ std::optional<btVector3> ContactNormal::betweenBends(const OpposedPoints& points
     if (!opposed && btFabs(angle) > kOneNormal) return std::nullopt;
     normal -= hill.axis(i) * (angle / 2);
   }
-  if (opposed) return normal.normalized();
-  // Further along than by the least radius the surfaces are not what they are here.
-  if (way.length() * hill.fall(0) > 2) return std::nullopt;
-  if (extents_ != nullptr) {
+  if (way.length() * hill.fall(0) > kWeakBend * apart.length()) return std::nullopt;
+  if (!opposed && extents_ != nullptr) {
     const FaceExtents::EdgeDistances ends = extents_->edgeDistances(points, -apart.normalized());
     if (btMin(ends.a, ends.b) < way.length()) return std::nullopt;
   }
