@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "each_world.hpp"
 #include "innersphere/mesh.hpp"
 #include "innersphere/solids.hpp"
 #include "innersphere/substep_solver.hpp"
@@ -69,6 +70,27 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{true, true, false, 60, 0.004}, Case{false, true, false, 120, 0.002},
                     Case{true, true, true, 60, 0.01}, Case{false, true, true, 240, 0.002}),
     nameOf);
+
+// The post is straight where the ring's tube bends: its normals are those of what is near.
+TEST(PassingRing, FallsFreelyAroundAPost) {
+  constexpr double kPost = 0.05, kTube = 0.015, kFalls = 0.25;
+  const auto post =
+      makePackedShape(*makeSolid(turnedMesh({{0, 0}, {kPost, 0}, {kPost, 0.5}, {0, 0.5}}), "post"), 256);
+  for (const double gap : {0.004, 0.01, 0.02}) {
+    const auto ring = makeTorusShape(kPost + gap + kTube, kTube, 256);
+    inEachWorld([&](TestWorld& world, bool substeps, double rate) {
+      const btTransform stands = post->bodyTransform(btTransform::getIdentity());
+      btRigidBody& fixed = world.add(post, 0, stands.getOrigin(), stands.getRotation());
+      btRigidBody& body = world.add(ring, 0.01, btVector3(0, btScalar(0.7 * gap), btScalar(0.42)));
+      fixed.setFriction(0);
+      body.setFriction(0);
+      world.run(kFalls, 1 / rate);
+      EXPECT_NEAR(body.getLinearVelocity().z(), -kGravity * kFalls, 0.001)
+          << gap << " m, " << (substeps ? "substeps, " : "") << rate << " steps/s";
+      EXPECT_LT(body.getAngularVelocity().length(), 0.001);
+    });
+  }
+}
 
 class Tiles : public testing::TestWithParam<Case> {};
 
