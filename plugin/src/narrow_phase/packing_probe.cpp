@@ -171,9 +171,17 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
     (of_a ? corner.points.on_a : corner.points.on_b) = at + offset;
     (of_a ? corner.points.on_b : corner.points.on_a) = under.at + to_other + offset;
     (of_a ? corner.points.normal_b : corner.points.normal_a) = under.normal * btScalar(of_a ? -1 : 1);
-    corner.is_beside = !layOnRim(own, vertex, way, of_a, corner.points) && !is_peak;
+    corner.is_tip = normalsOf(own).isTip(vertex);
+    if (corner.is_tip)
+      (of_a ? corner.points.curvature_a : corner.points.curvature_b) = 0;
+    else
+      corner.is_beside = !layOnRim(own, vertex, way, of_a, corner.points) && !is_peak;
     corners.push_back(corner);
   }
+}
+
+bool PackingProbe::hasTips(bool of_a) const {
+  return normalsOf(of_a ? a_ : b_).hasTips();
 }
 
 void PackingProbe::overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,

@@ -13,6 +13,11 @@ bool rises(const btVector3& face, btScalar curvature, const btVector3& normal) {
   return curvature == 0 && face.distance2(normal) > kLeaning * kLeaning;
 }
 
+/// Whether a surface that bends leans so far that a tip of it may be deeper.
+bool leansFar(const btVector3& face, btScalar curvature, const btVector3& normal) {
+  return curvature != 0 && face.dot(normal) < kOpposedCosine;
+}
+
 /// The normal turns with the face that it belongs to.
 btScalar shareOfA(const OpposedPoints& points, const btVector3& normal) {
   const btScalar from_a = points.normal_a.distance(normal), from_b = points.normal_b.distance(normal);
@@ -54,19 +59,27 @@ void PatchContactPoints::addSample(const ProbedSample& sample, const btVector3& 
              rises_b = rises(points.normal_b, points.curvature_b, normal);
   std::vector<EdgeContact>& corners = scratch_.corners;
   corners.clear();
+  bool of_a = rises_a;
   if (rises_a != rises_b) probe_.corners(sample.index, points, normal, rises_a, scratch_.vertices, corners);
+  if (corners.empty()) {
+    of_a = leansFar(points.normal_a, points.curvature_a, normal) && probe_.hasTips(true);
+    if (of_a || (leansFar(points.normal_b, points.curvature_b, normal) && probe_.hasTips(false))) {
+      probe_.corners(sample.index, points, normal, of_a, scratch_.vertices, corners);
+      std::erase_if(corners, [](const EdgeContact& corner) { return !corner.is_tip; });
+    }
+  }
   EdgeContact crossing;
   const bool lie = points.normal_a.dot(points.normal_b) > kAlignedOnFacesCosine;
   const bool crosses = points.areFlat() && !lie && addCrossing(points, crossing);
   if (points.areFlat() && lie) addOverlap(points, normal);
   if (crosses && crossing.is_alone) corners.clear();
-  for (const EdgeContact& corner : corners) addCorner(corner, rises_a);
+  for (const EdgeContact& corner : corners) addCorner(corner, of_a);
   bool has_corners = !corners.empty();
   if (points.areFlat() && !lie && !crosses && rises_a != rises_b && !has_corners)
     has_corners = addEdge(points, rises_a, normal);
   // Where neither face lies flat, a corner of the one may be deep in the other all the same.
   if (rises_a && rises_b && !crosses) {
-    for (const bool of_a : {true, false}) has_corners = addPeaks(sample, of_a) || has_corners;
+    for (const bool a : {true, false}) has_corners = addPeaks(sample, a) || has_corners;
   }
   // A face that lies flat on another ends in corners, which bear it better than what spheres are over.
   if (points.areFlat() && !rises_a && !rises_b && !crosses) addEnds(sample, normal);

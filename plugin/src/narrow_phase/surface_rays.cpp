@@ -118,6 +118,10 @@ bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& 
   return below < 0 || !isNearerToOther(body, point.at - normal * (below + body.margin), point.normal, size);
 }
 
+const SmoothNormals& normalsOf(const PlacedPacking& body) {
+  return body.shape().surfaceQueries().normals();
+}
+
 bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,
                    const btVector3& start, btScalar distance, std::vector<std::uint32_t>& vertices) {
   const btMatrix3x3& axes = body.world.getBasis();
@@ -128,7 +132,7 @@ bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVect
 
 bool layOnRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
               OpposedPoints& corner) {
-  const SmoothNormals& normals = body.shape().surfaceQueries().normals();
+  const SmoothNormals& normals = normalsOf(body);
   const btMatrix3x3& axes = body.world.getBasis();
   const btVector3 direction = way * axes;
   btScalar most = kUsableCosine, bends = 0;
@@ -150,7 +154,7 @@ bool layOnRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& 
 }
 
 Bend bendAt(const PlacedPacking& body, std::size_t triangle, const Across& axes) {
-  const SmoothNormals& normals = body.shape().surfaceQueries().normals();
+  const SmoothNormals& normals = normalsOf(body);
   if (normals.curvature(triangle) == 0) return {};
   const btMatrix3x3& world = body.world.getBasis();
   const btVector3 x = axes.x * world, y = axes.y * world;

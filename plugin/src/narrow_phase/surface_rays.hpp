@@ -46,6 +46,9 @@ btScalar meetSolid(const PlacedPacking& body, const btVector3& from, const btVec
 bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& normal, btScalar depth,
                btScalar size, SurfacePoint& point);
 
+/// The curved surface of a packing.
+const SmoothNormals& normalsOf(const PlacedPacking& body);
+
 /// Finds the corners uphill from a triangle along `direction` (unit), no further than `distance` [m] from
 /// `start`: their vertices replace `vertices`. Returns true if the first of them is a peak.
 bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,

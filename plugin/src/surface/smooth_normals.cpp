@@ -308,11 +308,13 @@ void SmoothNormals::setNormals(const Surface& surface, const Around& around) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = surface.triangles[t][k];
       // The lines of a cone are straight up to its tip, and have the normal of their own facet there.
-      facets_[t].normals[k] = isTip(surface, around[v], static_cast<std::uint32_t>(t), k)
-                                  ? facets_[t].face
-                                  : normalAt(surface, around[v], v, facets_[t]);
+      const bool is_tip = isTip(surface, around[v], static_cast<std::uint32_t>(t), k);
+      facets_[t].normals[k] = is_tip ? facets_[t].face : normalAt(surface, around[v], v, facets_[t]);
+      if (is_tip) tips_.push_back(v);
     }
   }
+  std::sort(tips_.begin(), tips_.end());
+  tips_.erase(std::unique(tips_.begin(), tips_.end()), tips_.end());
   findFolds(surface, around);
   for (Facet& facet : facets_) {
     facet.curvature = 0;

@@ -1,6 +1,7 @@
 // Finds normals of a curved surface that was cut into triangles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -100,6 +101,10 @@ class SmoothNormals {
   /// Returns the curvature of the surface across a triangle [1/m]: that along the edge which shows most of
   /// it. It is positive where the solid is convex, and exactly 0 where it is flat.
   btScalar curvature(std::size_t triangle) const { return facets_[triangle].curvature; }
+  /// Returns true if the lines of a cone end at a vertex.
+  bool isTip(std::uint32_t vertex) const { return std::binary_search(tips_.begin(), tips_.end(), vertex); }
+  /// Returns true if there is such a vertex.
+  bool hasTips() const { return !tips_.empty(); }
 
  private:
   /// This is a triangle. Its edge k goes from corner k to the next. What a line asks for first comes first.
@@ -143,6 +148,7 @@ class SmoothNormals {
                          Crossing& crossing);
 
   std::vector<Facet> facets_;
+  std::vector<std::uint32_t> tips_;  ///< sorted
   /// By how much normals turn aside in the middle of each edge of a triangle, at weights of 1 of both ends.
   std::vector<std::array<btVector3, 3>> mixed_;
 };

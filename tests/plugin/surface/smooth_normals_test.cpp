@@ -224,6 +224,25 @@ TEST(SmoothNormals, FacesThatMeetInOneEdgeAreFlat) {
   }
 }
 
+TEST(SmoothNormals, OnlyConesEndInTips) {
+  const auto tipsOf = [](const Mesh& mesh) {
+    const Surface surface = surfaceOf(mesh);
+    const SmoothNormals normals(surface);
+    int tips = 0;
+    for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) tips += normals.isTip(v);
+    EXPECT_EQ(normals.hasTips(), tips > 0);
+    return tips;
+  };
+  std::vector<std::array<double, 2>> ball;
+  for (int i = 0; i <= 24; ++i)
+    ball.push_back({i % 24 == 0 ? 0 : std::sin(M_PI * i / 24), -std::cos(M_PI * i / 24)});
+  EXPECT_EQ(tipsOf(turnedMesh({{0, -1}, {0.5, 0}, {0, 1}}, 48)), 2);
+  EXPECT_EQ(tipsOf(turnedMesh({{0, 0}, {0.5, 0}, {0, 1}}, 24)), 1);
+  EXPECT_EQ(tipsOf(turnedMesh(ball, 48)), 0);
+  EXPECT_EQ(tipsOf(turnedMesh({{0, 0}, {0.5, 0}, {0.5, 1}, {0, 1}}, 48)), 0);  // a cylinder
+  EXPECT_EQ(tipsOf(turnedMesh({{0, 0}, {0.5, 0}, {0, 1}}, 4)), 0);             // a pyramid
+}
+
 TEST(SmoothNormals, FacesOfAPyramidAreFlat) {
   Surface surface;
   surface.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0.17F}, {0, 0, -1}};
