@@ -88,8 +88,8 @@ constexpr btScalar kShorter = 3;
 constexpr btScalar kClimbs = btScalar(0.25);
 /// Ratio: what is this part as deep below a face as along it has sunk in from that face.
 constexpr btScalar kSliver = btScalar(0.1);
-/// Ratio: a step that gains so many times what the slope promised, and more than the facets of a mesh may lean
-/// on the way (as those of a tube of twelve sides), has met another wall.
+/// Ratio: a step that gains so many times what the slope promised, and more than the facets of a mesh may
+/// lean on the way (as those of a tube of twelve sides), has met another wall.
 constexpr btScalar kLeaps = 2, kFacets = btScalar(0.25);
 /// Ratio: a step over edges that loses this part of what the slope promised leads down another facet, however
 /// flat that is. Less may be rounding.
