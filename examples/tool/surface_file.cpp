@@ -80,9 +80,8 @@ bool isTooFarForSinglePrecision(const Mesh& mesh) {
 
 std::string toStl(const Mesh& mesh) {
   if (!isTooFarForSinglePrecision(mesh)) return toBinaryStl(mesh);
-  say("the surface is so far from the origin that binary STL, which has single precision, would bend it: it "
-      "is "
-      "written as text");
+  say("the surface is so far from the origin that binary STL, which has single precision, would bend it: "
+      "it is written as text");
   return toTextStl(mesh);
 }
 

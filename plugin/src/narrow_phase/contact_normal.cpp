@@ -118,10 +118,11 @@ btVector3 ContactNormal::at(const ProbedSample& sample) const {
   return edges ? sample.direction : nearest;
 }
 
-/// The same where the surfaces bend otherwise along other axes: the normal is turned by as much as one of
-/// them bends on the way on which both, if convex, turn by what is between them. If they are not `opposed`,
-/// nothing where they meet at an angle that no bend explains, or where a face ends in an edge on that way.
-std::optional<btVector3> ContactNormal::betweenBends(const OpposedPoints& points, bool opposed) const {
+/// What mean() is of round surfaces, where they bend otherwise along other axes: A's normal, turned by as
+/// much as A bends on the way on which both, if convex, turn by what is between their normals. Nothing where
+/// they hardly bend along that way. If they do not lie on each other (`lie`), nothing, too, where they meet
+/// at an angle that no bend explains, or where a face ends in an edge on that way.
+std::optional<btVector3> ContactNormal::betweenBends(const OpposedPoints& points, bool lie) const {
   const Across axes((points.normal_a + points.normal_b).normalized());
   const SurfaceProbe::Bends bends = bends_->bends(points, axes);
   const Bend a = bends.a.magnitude(), b = bends.b.magnitude();
@@ -131,11 +132,11 @@ std::optional<btVector3> ContactNormal::betweenBends(const OpposedPoints& points
   for (int i = 0; i < 2; ++i) {
     if (hill.hasTop(i)) continue;
     const btScalar angle = apart.dot(hill.axis(i));
-    if (!opposed && btFabs(angle) > kOneNormal) return std::nullopt;
+    if (!lie && btFabs(angle) > kOneNormal) return std::nullopt;
     normal -= hill.axis(i) * (angle / 2);
   }
   if (way.length() * hill.fall(0) > kWeakBend * apart.length()) return std::nullopt;
-  if (!opposed && extents_ != nullptr) {
+  if (!lie && extents_ != nullptr) {
     const FaceExtents::EdgeDistances ends = extents_->edgeDistances(points, -apart.normalized());
     if (btMin(ends.a, ends.b) < way.length()) return std::nullopt;
   }

@@ -44,7 +44,7 @@ class ContactNormal {
   btVector3 at(const ProbedSample& sample) const;
 
  private:
-  std::optional<btVector3> betweenBends(const OpposedPoints& points, bool opposed) const;
+  std::optional<btVector3> betweenBends(const OpposedPoints& points, bool lie) const;
 
   const FaceExtents* extents_;
   const SurfaceProbe* bends_;

@@ -16,7 +16,9 @@ constexpr btScalar kStraight = btScalar(1e-5);
 }  // namespace
 
 bool Bend::isHollow() const {
-  return mean() < 0 && mean() + spread() <= kConvex * (spread() - mean());
+  if (!(mean() < 0)) return false;
+  const btScalar apart = spread();
+  return mean() + apart <= kConvex * (apart - mean());
 }
 
 Bend Bend::magnitude() const {
@@ -30,7 +32,8 @@ Hill::Hill(const Bend& a, const Bend& b, btScalar depth, const Across& axes) {
   const btScalar xx = a.xx + b.xx - depth * (a.xx * b.xx + a.xy * b.xy);
   const btScalar yy = a.yy + b.yy - depth * (a.yy * b.yy + a.xy * b.xy);
   const btScalar xy = a.xy + b.xy - depth / 2 * (a.xy * (b.xx + b.yy) + b.xy * (a.xx + a.yy));
-  const btScalar middle = (xx + yy) / 2, half = (xx - yy) / 2, spread = btSqrt(half * half + xy * xy);
+  const Bend falls{xx, xy, yy};
+  const btScalar middle = falls.mean(), half = (xx - yy) / 2, spread = falls.spread();
   // Both lead to the axis without cancellation.
   btVector3 first =
       half > 0 ? axes.x * (half + spread) + axes.y * xy : axes.x * xy + axes.y * (spread - half);

@@ -171,11 +171,7 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
     (of_a ? corner.points.on_a : corner.points.on_b) = at + offset;
     (of_a ? corner.points.on_b : corner.points.on_a) = under.at + to_other + offset;
     (of_a ? corner.points.normal_b : corner.points.normal_a) = under.normal * btScalar(of_a ? -1 : 1);
-    corner.is_tip = normalsOf(own).isTip(vertex);
-    if (corner.is_tip)
-      (of_a ? corner.points.curvature_a : corner.points.curvature_b) = 0;
-    else
-      corner.is_beside = !layOnRim(own, vertex, way, of_a, corner.points) && !is_peak;
+    layOnTipOrRim(own, vertex, way, of_a, corner);
     corners.push_back(corner);
   }
 }

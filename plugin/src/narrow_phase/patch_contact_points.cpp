@@ -58,16 +58,7 @@ void PatchContactPoints::addSample(const ProbedSample& sample, const btVector3& 
   const bool rises_a = rises(points.normal_a, points.curvature_a, normal),
              rises_b = rises(points.normal_b, points.curvature_b, normal);
   std::vector<EdgeContact>& corners = scratch_.corners;
-  corners.clear();
-  bool of_a = rises_a;
-  if (rises_a != rises_b) probe_.corners(sample.index, points, normal, rises_a, scratch_.vertices, corners);
-  if (corners.empty()) {
-    of_a = leansFar(points.normal_a, points.curvature_a, normal) && probe_.hasTips(true);
-    if (of_a || (leansFar(points.normal_b, points.curvature_b, normal) && probe_.hasTips(false))) {
-      probe_.corners(sample.index, points, normal, of_a, scratch_.vertices, corners);
-      std::erase_if(corners, [](const EdgeContact& corner) { return !corner.is_tip; });
-    }
-  }
+  const bool of_a = findCorners(sample, normal, rises_a, rises_b);
   EdgeContact crossing;
   const bool lie = points.normal_a.dot(points.normal_b) > kAlignedOnFacesCosine;
   const bool crosses = points.areFlat() && !lie && addCrossing(points, crossing);
@@ -98,6 +89,22 @@ void PatchContactPoints::addSample(const ProbedSample& sample, const btVector3& 
     case FaceEnd::unknown:
       addFace(sample, normal);
   }
+}
+
+/// Finds corners of the face that rises, or tips of a cone whose side leans far. Returns whose they are.
+bool PatchContactPoints::findCorners(const ProbedSample& sample, const btVector3& normal, bool rises_a,
+                                     bool rises_b) {
+  const OpposedPoints& points = sample.points;
+  std::vector<EdgeContact>& corners = scratch_.corners;
+  corners.clear();
+  if (rises_a != rises_b) probe_.corners(sample.index, points, normal, rises_a, scratch_.vertices, corners);
+  if (!corners.empty()) return rises_a;
+  const bool of_a = leansFar(points.normal_a, points.curvature_a, normal) && probe_.hasTips(true);
+  if (of_a || (leansFar(points.normal_b, points.curvature_b, normal) && probe_.hasTips(false))) {
+    probe_.corners(sample.index, points, normal, of_a, scratch_.vertices, corners);
+    std::erase_if(corners, [](const EdgeContact& corner) { return !corner.is_tip; });
+  }
+  return of_a;
 }
 
 void PatchContactPoints::addBeside(const ProbedSample& sample) {

@@ -29,6 +29,7 @@ class PatchContactPoints {
   /// Returns true if a point has an id, and about this normal if there is one.
   bool isFound(std::uint64_t id, const btVector3* normal = nullptr) const;
   bool add(const OpposedPoints& points, const btVector3& normal, std::uint64_t id, Kind kind);
+  bool findCorners(const ProbedSample& sample, const btVector3& normal, bool rises_a, bool rises_b);
   bool addCorner(const EdgeContact& corner, bool of_a);
   void addLineEnds(const OpposedPoints& points);
   bool addCrossing(const OpposedPoints& points, EdgeContact& crossing);

@@ -188,11 +188,7 @@ void ShapeProbe::corners(std::size_t index, const OpposedPoints& points, const b
     corner.points.on_a = found.on_a;
     corner.points.on_b = found.on_b;
     corner.points.normal_b = found.normal_b;
-    corner.is_tip = normalsOf(a_).isTip(vertex);
-    if (corner.is_tip)
-      corner.points.curvature_a = 0;
-    else
-      corner.is_beside = !layOnRim(a_, vertex, normal, true, corner.points) && !is_peak;
+    layOnTipOrRim(a_, vertex, normal, true, corner);
     corners.push_back(corner);
   }
 }

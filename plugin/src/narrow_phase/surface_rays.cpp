@@ -153,6 +153,15 @@ bool layOnRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& 
   return bends == 0 || 2 - 2 * most < bends * bends;
 }
 
+void layOnTipOrRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
+                   EdgeContact& corner) {
+  corner.is_tip = normalsOf(body).isTip(vertex);
+  if (corner.is_tip)
+    (of_a ? corner.points.curvature_a : corner.points.curvature_b) = 0;
+  else
+    corner.is_beside = !layOnRim(body, vertex, way, of_a, corner.points) && !corner.is_peak;
+}
+
 Bend bendAt(const PlacedPacking& body, std::size_t triangle, const Across& axes) {
   const SmoothNormals& normals = normalsOf(body);
   if (normals.curvature(triangle) == 0) return {};

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "narrow_phase/edge_contacts.hpp"
 #include "narrow_phase/surface_probe.hpp"
 #include "shape/placed_packing.hpp"
 
@@ -62,6 +63,10 @@ btVector3 cornerAt(const PlacedPacking& body, std::uint32_t vertex, const btVect
 /// Returns false if the rim goes on to corners further out that way.
 bool layOnRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
               OpposedPoints& corner);
+/// Does the same for a corner that was found, and notes whether it bears nothing; unless it is the tip of a
+/// cone, where nothing bends.
+void layOnTipOrRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
+                   EdgeContact& corner);
 
 /// Returns how the curved surface of a solid bends at a triangle.
 Bend bendAt(const PlacedPacking& body, std::size_t triangle, const Across& axes);
