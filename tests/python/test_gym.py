@@ -75,7 +75,19 @@ def test_processes_do_what_one_does(words, env):
         envs.close()
 
 
-def test_bad_actions(env):
-    env.reset(seed=1)
-    with pytest.raises(ValueError, match="finite"):
-        env.unwrapped.step(np.full(6, np.nan))
+@pytest.mark.parametrize(
+    "action, error, message",
+    [
+        (np.full(6, np.nan), innersphere.NotFiniteError, "action is .*nan.*finite"),
+        ([0, 0, np.inf, 0, 0, 0], innersphere.NotFiniteError, "action is .*inf.*finite"),
+        (np.zeros(3), innersphere.InvalidArgumentError, r"action has the shape \(3,\); it must be \(6,\)"),
+        (np.zeros((1, 6)), innersphere.InvalidArgumentError, r"action has the shape \(1, 6\); it must be \(6,\)"),
+        (0.5, innersphere.InvalidArgumentError, r"action has the shape \(\); it must be \(6,\)"),
+        (["left"] * 6, TypeError, "action has the dtype"),
+    ],
+)
+def test_bad_actions(env, action, error, message):
+    before, _ = env.reset(seed=1)
+    with pytest.raises(error, match=message):
+        env.unwrapped.step(action)
+    np.testing.assert_array_equal(env.unwrapped._observation(), before)

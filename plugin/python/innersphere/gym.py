@@ -19,7 +19,9 @@ import numpy as np
 import pybullet as p
 from numpy.typing import NDArray
 
+from ._arrays import as_float64
 from ._core import solid
+from ._errors import InvalidArgumentError, NotFiniteError
 from ._pack import pack
 from .pybullet import attach
 
@@ -31,7 +33,8 @@ class NutOnBolt(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     """A nut of 1 kg on a fixed bolt. Gravity is too weak to turn it against friction; a wrench has to.
 
     action: force and torque on the nut, relative to `strength`: 6 numbers from -1 to 1. They act at its centre of mass,
-        along the axes of the world, for 1/20 s.
+        along the axes of the world, for 1/20 s. Numbers outside count as -1 or 1. Raises InvalidArgumentError for another
+        shape than (6,), NotFiniteError for nan and infinity, TypeError for what is no array of real numbers.
     observation: position of the nut's mesh [m], its orientation (quaternion x y z w), velocity [m/s] and angular velocity
         [rad/s]: 13 numbers.
     reward: how far the nut came down in this step, in pitches.
@@ -84,9 +87,12 @@ class NutOnBolt(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         return np.array([*position, *orientation, *velocity, *spin], dtype=np.float32)
 
     def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        wrench = self.strength * np.clip(action, -1, 1)
-        if not np.isfinite(wrench).all():
-            raise ValueError(f"the action {np.asarray(action).tolist()} is not finite")
+        numbers = as_float64(action, "action")
+        if numbers.shape != self.action_space.shape:
+            raise InvalidArgumentError(f"action has the shape {numbers.shape}; it must be (6,): force and torque")
+        if not np.isfinite(numbers).all():
+            raise NotFiniteError(f"action is {numbers.tolist()}; it must be finite")
+        wrench = self.strength * np.clip(numbers, -1, 1)
         for _ in range(self.substeps):
             at = p.getBasePositionAndOrientation(self._body, physicsClientId=self._client)[0]
             force, torque = wrench[:3].tolist(), wrench[3:].tolist()
