@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import BOX_FACES, BOX_VERTICES, random_quaternions
+from conftest import BOX_FACES, BOX_VERTICES, random_quaternions, write_obj
 
 import innersphere
 
@@ -80,16 +80,18 @@ def test_the_triangles_of_packings_share_what_manifold_says():
     np.testing.assert_allclose(found["centroid"], exact["centroid"], atol=1e-4)
 
 
-def test_a_repaired_packing_does_in_place_of_an_open_mesh():
+def test_open_meshes_are_repaired_on_request():
     pytest.importorskip("manifold3d")
-    repaired = innersphere.pack((CUBE[0], BOX_FACES[1:]), spheres=20, overlap_errors=False, repair=True)
+    open_cube = (CUBE[0], BOX_FACES[1:])
+    assert innersphere.exact_overlap(open_cube, CUBE, repair=True)["volume"] == pytest.approx(1)
+    repaired = innersphere.pack(open_cube, spheres=20, overlap_errors=False, repair=True)
     assert innersphere.exact_overlap(repaired, CUBE)["volume"] == pytest.approx(1)
 
 
 @pytest.mark.parametrize(
     "mesh, pose, error, message",
     [
-        ((CUBE[0], BOX_FACES[1:]), None, innersphere.NotASolidError, r"open.*give pack\(a, repair=True\) in its place"),
+        ((CUBE[0], BOX_FACES[1:]), None, innersphere.NotASolidError, "a does not bound.*ask for repair=True"),
         (CUBE, 2 * np.eye(4), innersphere.InvalidArgumentError, "query 0: the placement of B"),
         (CUBE, ([np.nan, 0, 0], [0, 0, 0, 1]), innersphere.NotFiniteError, "query 0: the placement of B"),
         (CUBE, np.eye(3), ValueError, "pose_b has the shape"),
@@ -120,18 +122,32 @@ def test_the_command(tmp_path):
     assert got.returncode == 0, got.stderr
     header, *lines = got.stdout.splitlines()
     assert header == "pose,volume" and len(lines) == 3 and lines[2] == "2,0"
+    # As a spreadsheet writes it: cells in quotes, one with a comma, other ends of lines, a comment and an empty line.
+    cells = [["name, place", *names], *([f"at {row[3]}, 0", *row] for row in rows)]
+    lines = [",".join(f'"{cell}"' for cell in row) for row in cells]
+    lines[1:1] = ["# turned by nothing", "", " "]
+    (tmp_path / "sheet.csv").write_bytes(("\ufeff" + "\r\n".join(lines)).encode())
+    again = run("box", "box", "--poses", "sheet.csv", "--spheres", "500")
+    assert again.stdout == got.stdout, again.stderr
     assert run("nothing", "box").returncode == 1
-    (tmp_path / "bad.csv").write_text(",".join(names) + "\n" + ",".join(["1"] * 11 + ["x"]) + "\n")
+    (tmp_path / "bad.csv").write_text(",".join(names) + "\n#\n" + ",".join(["1"] * 11 + ["x"]) + "\n")
+    (tmp_path / "long.csv").write_text(",".join(names) + "\n" + "1" * 200000 + "\n")
     (tmp_path / "other.csv").write_text("x,y\n1,2\n")
     (tmp_path / "empty.csv").write_text(",".join(names) + "\n")
     for words, message in (
         (["nope.obj", "box"], "there is no file nope.obj"),
-        (["box", "box", "--poses", "bad.csv"], 'bad.csv, line 2, column m23: "x" is not a number'),
+        (["box", "box", "--poses", "bad.csv"], 'bad.csv, line 3, column m23: "x" is not a number'),
         (["box", "box", "--poses", "other.csv"], "other.csv has no column m00"),
+        (["box", "box", "--poses", "long.csv"], "long.csv, line 2: field larger"),
         (["box", "box", "--poses", "empty.csv"], "empty.csv holds no poses"),
     ):
         refused = run(*words, "--spheres", "20")
         assert refused.returncode == 1 and message in refused.stderr, refused.stderr
+    write_obj(tmp_path / "open.obj", CUBE[0] - 0.5, BOX_FACES[1:])
+    assert "open.obj does not bound" in run("open.obj", "box", "--poses", "poses.csv").stderr
+    closed = run("open.obj", "box", "--poses", "poses.csv", "--spheres", "500", "--repair")
+    shared = np.array([float(line.split(",")[1]) for line in closed.stdout.splitlines()[1:]])
+    np.testing.assert_allclose(shared, [0.9, 0.5, 0], rtol=0.1)
     exact = run("box", "box", "--poses", "poses.csv", "--spheres", "500", "--exact")
     try:
         import manifold3d  # noqa: F401

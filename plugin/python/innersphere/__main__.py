@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import csv
 import os
 import sys
 import time
@@ -13,22 +14,23 @@ import numpy as np
 from . import EmptyInputError, Error, FormatError, Packing, Query, exact_overlap, pack, random_poses, read, solid
 
 
-def _solid_and_packing(name: str, spheres: int) -> tuple[Any, Packing]:
+def _solid_and_packing(name: str, spheres: int, repair: bool) -> tuple[Any, Packing]:
     if os.path.splitext(name)[1] in (".cbor", ".json"):
         packing = read(name)
         return packing, packing[:spheres] if spheres < len(packing) else packing
     is_path = os.path.exists(name) or os.path.splitext(name)[1] or os.path.dirname(name)
     mesh: Any = name if is_path else solid(name)
-    return mesh, pack(mesh, spheres=spheres, overlap_errors=False)
+    return mesh, pack(mesh, spheres=spheres, repair=repair, overlap_errors=False)
 
 
 def _read_poses(path: str) -> Any:
-    with open(path, encoding="utf-8-sig") as file:
-        rows = [
-            (number, [cell.strip(' \t\r\n"') for cell in line.split(",")])
-            for number, line in enumerate(file, 1)
-            if line.strip() and not line.startswith("#")
-        ]
+    with open(path, encoding="utf-8-sig", newline="") as file:
+        # Comments become empty lines, so that the reader counts all lines.
+        reader = csv.reader("" if line.startswith("#") or line.isspace() else line for line in file)
+        try:
+            rows = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader if cells]
+        except csv.Error as error:
+            raise FormatError(f"{path}, line {reader.line_num}: {error}") from None
     if len(rows) < 2:
         raise EmptyInputError(f"{path} holds no poses: it needs a header row and data rows")
     names = rows[0][1]
@@ -57,7 +59,9 @@ def _poses(path: str | None, a: Packing, b: Packing) -> Any:
 
 def overlap(words: argparse.Namespace) -> None:
     """Writes a row for each pose; what it comes to goes to the standard error stream."""
-    (mesh_a, a), (mesh_b, b) = (_solid_and_packing(name, words.spheres) for name in (words.a, words.b))
+    (mesh_a, a), (mesh_b, b) = (
+        _solid_and_packing(name, words.spheres, words.repair) for name in (words.a, words.b)
+    )
     poses = _poses(words.poses, a, b)
     query = Query("cpu", threads=1)
     query.overlap(a, b, None, poses, want="volume")  # builds what queries look up
@@ -70,7 +74,7 @@ def overlap(words: argparse.Namespace) -> None:
             print(f"{i},{volume:.9g}")
         return
     start = time.process_time()
-    exact = exact_overlap(mesh_a, mesh_b, None, poses)["volume"]
+    exact = exact_overlap(mesh_a, mesh_b, None, poses, repair=words.repair)["volume"]
     took_exactly = time.process_time() - start
     print("pose,volume,exact")
     for i, (volume, true) in enumerate(zip(found, exact)):
@@ -93,6 +97,7 @@ def main() -> int:
     command.add_argument("b", metavar="B", help="the same for the body that is moved")
     command.add_argument("--poses", metavar="FILE", help="CSV with the columns m00 to m23 of B's 3x4 matrices; else 100 random poses")
     command.add_argument("--spheres", type=int, default=4000, help="of each packing; 4000")
+    command.add_argument("--repair", action="store_true", help="close open meshes, as well as can be guessed")
     command.add_argument("--exact", action="store_true", help="the exact volumes, too, by Manifold (pip install manifold3d)")
     command.set_defaults(run=overlap)
     words = parser.parse_args()

@@ -107,10 +107,12 @@ nb::tuple surfaceOf(const Mesh& mesh) {
 }
 
 /// Vertices and faces of a mesh after it was judged and mended as for packing.
-nb::tuple surfaceOfMesh(const Mesh& mesh, const std::string& name) {
+nb::tuple surfaceOfMesh(const Mesh& mesh, const std::string& name, bool repair) {
   const std::unique_ptr<Solid> solid = [&] {
     const nb::gil_scoped_release release;
-    return makeSolid(mesh, name);
+    MeshOptions options;
+    options.repair = repair;
+    return makeSolid(mesh, name, options);
   }();
   return surfaceOf(solid->surface());
 }
@@ -489,7 +491,7 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
 name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, chazelle, tray, cup, pan, blade or horn; about 1 m in size. Nut and
 bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for another name.)");
   module.def("mesh_of", &meshOf, "vertices"_a, "faces"_a);
-  module.def("surface_of_mesh", &surfaceOfMesh, "mesh"_a, "name"_a);
+  module.def("surface_of_mesh", &surfaceOfMesh, "mesh"_a, "name"_a, "repair"_a);
   module.def("bodies_of", &bodiesOf, "vertices"_a, "faces"_a);
   module.def("pack", &packWith, "mesh"_a, "name"_a, "spheres"_a, "min_radius"_a, "density"_a, "gap"_a,
              "order"_a, "delta"_a, "overlap_errors"_a, "threads"_a, "repair"_a, "cache"_a,
