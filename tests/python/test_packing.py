@@ -352,6 +352,25 @@ def test_pickles_and_copies(box):
     assert copy.copy(box) is box and copy.deepcopy([box])[0] is box
 
 
+def test_equal_are_packings_of_which_all_is_equal(box, ball, tmp_path):
+    box.save(tmp_path / "box.json")
+    made_again = innersphere.pack((BOX_VERTICES, BOX_FACES), spheres=300, overlap_errors=False)
+    same = [pickle.loads(pickle.dumps(box)), innersphere.read(tmp_path / "box.json"), made_again, box[:300]]
+    for other in same:
+        assert other == box and not other != box and hash(other) == hash(box)
+        assert other[:100] == box[:100] and other[:100] != box and other[:100] != box[:101]
+    assert {box: 1}[same[0]] == 1 and len({box, *same}) == 1
+    # Of imported spheres little is known: those numbers are nan.
+    assert np.isnan(ball.quality["largest_missing_radius"]) and pickle.loads(pickle.dumps(ball)) == ball
+    assert all(box != other for other in (ball, 300, None, "box"))
+    one_more_bit = np.nextafter(box.spheres[-1, 3], np.float32(9))
+    text = (tmp_path / "box.json").read_text()
+    for number, instead in ((str(box.spheres[-1, 3]), str(one_more_bit)), (f"{box.volume!r}", "6.5"), ('"mesh"', '"crate"')):
+        assert number in text, number
+        (tmp_path / "other.json").write_text(text.replace(number, instead, 1))
+        assert innersphere.read(tmp_path / "other.json") != box
+
+
 def test_damaged_pickles(box):
     data, count = box.__getstate__()
     for wrong in ((data[: len(data) // 2], count), (data, count + 1), (data, 0), (b"", 1)):

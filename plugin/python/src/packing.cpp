@@ -10,7 +10,9 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "bindings.hpp"
@@ -336,6 +338,19 @@ std::string describe(const SharedPacking& self) {
   return text;
 }
 
+std::size_t hashOf(const SharedPacking& self) {
+  const auto* bytes = reinterpret_cast<const char*>(self.packing().spheres.data());
+  return std::hash<std::string_view>()({bytes, self.count * sizeof(Sphere)});
+}
+
+// By their files, which hold every field, and in which nan is equal to nan.
+bool equal(const SharedPacking& a, const SharedPacking& b) {
+  if (a.count != b.count) return false;
+  if (a.model == b.model) return true;
+  const nb::gil_scoped_release release;
+  return hashOf(a) == hashOf(b) && encodePacking(a.packing()) == encodePacking(b.packing());
+}
+
 nb::tuple state(const SharedPacking& self) {
   std::string bytes;
   {
@@ -371,6 +386,8 @@ void bindPacking(nb::module_& module) {
 
 Made by pack() or read(). It never changes, and can be shared by threads and pickled. All places are in the
 packing's own frame: x_solid = origin + x. Lengths are in metres.
+
+Packings are equal if all that they tell is, to the bit: a pickle and a file give an equal one back. Equal ones have the same hash.
 
 ``packing[:n]`` are the first n spheres: a coarser packing of the same solid. It shares memory with the whole.)")
       .def_prop_ro(
@@ -472,6 +489,8 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
       .def("__getitem__", &slice, nb::sig("def __getitem__(self, index: slice) -> Packing"),
            "The first n spheres, as a packing: packing[:n]. Raises ValueError for any other slice.")
       .def("__repr__", &describe)
+      .def("__eq__", &equal, nb::is_operator(), nb::sig("def __eq__(self, other: object, /) -> bool"))
+      .def("__hash__", &hashOf)
       .def(
           "__copy__", [](nb::object self) { return self; }, nb::sig("def __copy__(self) -> Packing"))
       .def(
