@@ -70,22 +70,30 @@ std::string base64(const std::string& bytes) {
   return out;
 }
 
-// A unit box under the given nodes; the first node is the root.
-std::string gltfOf(const Mesh& mesh, const std::string& nodes) {
+// The indices and the vertices.
+std::string gltfBuffer(const Mesh& mesh) {
   std::string buffer;
   const auto put = [&](const auto& x) { buffer.append(reinterpret_cast<const char*>(&x), sizeof x); };
   for (const auto& t : mesh.triangles) {
     for (std::uint32_t v : t) put(static_cast<std::uint16_t>(v));
   }
-  const std::size_t indices = buffer.size();
   for (const Vec3d& v : mesh.vertices) {
     for (double x : v) put(static_cast<float>(x));
   }
+  return buffer;
+}
+
+// A unit box under the given nodes; the first node is the root. Its buffer is in the text, or in another
+// part.
+std::string gltfOf(const Mesh& mesh, const std::string& nodes, bool in_text = true) {
+  const std::string buffer = gltfBuffer(mesh);
+  const std::size_t indices = 3 * mesh.triangles.size() * sizeof(std::uint16_t);
   std::ostringstream out;
   out << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" << nodes
       << R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0}]}],"buffers":[{"byteLength":)"
-      << buffer.size() << R"(,"uri":"data:application/octet-stream;base64,)" << base64(buffer)
-      << R"("}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":)" << indices
+      << buffer.size()
+      << (in_text ? R"(,"uri":"data:application/octet-stream;base64,)" + base64(buffer) + '"' : std::string())
+      << R"(}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":)" << indices
       << R"(},{"buffer":0,"byteOffset":)" << indices << R"(,"byteLength":)" << buffer.size() - indices
       << R"(}],"accessors":[{"bufferView":0,"componentType":5123,"count":)" << 3 * mesh.triangles.size()
       << R"(,"type":"SCALAR"},{"bufferView":1,"componentType":5126,"count":)" << mesh.vertices.size()
@@ -297,6 +305,43 @@ TEST(MeshImport, ColladaKeepsTheAxesThatAreWritten) {
       EXPECT_NEAR(high[k], expected_high[k], 1e-5) << up;
     }
   }
+}
+
+// A header with the size of all and two parts, of which the sizes may be told too large.
+std::string glbOf(const Mesh& mesh, std::uint32_t more = 0, std::uint32_t more_in_part = 0) {
+  std::string text = gltfOf(mesh, R"([{"mesh":0}])", false);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::string buffer = gltfBuffer(mesh);
+  std::string file;
+  const auto put = [&](std::size_t x) {
+    const auto word = static_cast<std::uint32_t>(x);
+    file.append(reinterpret_cast<const char*>(&word), sizeof word);
+  };
+  file += "glTF";
+  put(2);
+  put(28 + text.size() + buffer.size() + more);
+  put(text.size());
+  file += "JSON" + text;
+  put(buffer.size() + more_in_part);
+  file.append("BIN\0", 4);
+  return file + buffer;
+}
+
+TEST(MeshImport, BinaryGltfThatWasCutIsToldSo) {
+  const Scratch scratch;
+  const Mesh box = boxMesh();
+  const std::string whole = glbOf(box);
+  EXPECT_NEAR(volumeOf(readMesh(scratch.write("box.glb", whole))), 1, 1e-6);
+  EXPECT_NEAR(volumeOf(readMesh(scratch.write("more.glb", whole + "more"))), 1, 1e-6);
+  for (std::size_t left : {std::size_t{1}, std::size_t{4}, std::size_t{11}, std::size_t{12}, std::size_t{20},
+                           whole.size() / 2, whole.size() - 1}) {
+    expectError(scratch.write("cut.glb", whole.substr(0, left)), ErrorCode::bad_format, "was cut");
+  }
+  expectError(scratch.write("size.glb", glbOf(box, 1)), ErrorCode::bad_format, "byte 12: the file has");
+  expectError(scratch.write("part.glb", glbOf(box, 0, 1)), ErrorCode::bad_format, "a part has");
+  const std::string text = gltfOf(box, R"([{"mesh":0}])");
+  expectError(scratch.write("cut.gltf", text.substr(0, text.size() / 2)), ErrorCode::bad_format, "damaged");
+  expectError(scratch.write("no.glb", "this is not a mesh"), ErrorCode::bad_format, "damaged, or not what");
 }
 
 TEST(MeshImport, SaysWhatIsWrongWithAFile) {

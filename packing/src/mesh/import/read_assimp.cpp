@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/bounds.hpp"
+#include "file/file_io.hpp"
 #include "innersphere/error.hpp"
 #include "mesh/mesh_report.hpp"
 
@@ -88,8 +89,11 @@ Mesh readAssimp(const std::string& path) {
   importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType);
   if (!scene || !scene->mRootNode) {
-    throw Error(ErrorCode::bad_format, path + " cannot be read as a mesh (" + importer.GetErrorString() +
-                                           "); use OBJ, STL, PLY, OFF or glTF with the matching ending");
+    const bool known = importer.IsExtensionSupported("." + endingOf(path));
+    throw Error(ErrorCode::bad_format,
+                path + " cannot be read as a mesh (" + importer.GetErrorString() + "); " +
+                    (known ? "it is damaged, or not what its ending says: export it again"
+                           : "use OBJ, STL, PLY, OFF or glTF with the matching ending"));
   }
   Collector collector(*scene, path);
   collector.addNode(*scene->mRootNode, {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}});

@@ -12,6 +12,7 @@
 #include "mesh/import/read_assimp.hpp"
 #include "mesh/import/readers.hpp"
 #include "mesh/import/unit_3mf.hpp"
+#include "mesh/import/whole_glb.hpp"
 #include "mesh/mesh_clean.hpp"
 #include "mesh/mesh_report.hpp"
 
@@ -75,6 +76,7 @@ Mesh readAny(const std::string& path, bool own_process, std::vector<std::string>
     throw Error(ErrorCode::bad_format,
                 path + " cannot be read: only .obj, .stl, .ply and .off may be compressed; unpack it");
   }
+  if (ending == "glb") requireWholeGlb(readFile(path), path);
   Mesh mesh = own_process ? readApart(readAssimp, path) : readAssimp(path);
   if (ending == "3mf") toMetres(mesh, path, notes);
   return mesh;
