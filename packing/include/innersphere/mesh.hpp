@@ -15,10 +15,12 @@ struct MeshOptions {
   /// The factor by which readMesh() multiplies all coordinates: 0.001 for a file in millimetres. It must be
   /// positive. makeSolid() uses it only to see whether coordinates came in single precision.
   double scale = 1;
-  /// Whether makeSolid() accepts a mesh that does not bound a volume. A rim around
-  /// one other in its plane, as at the end of a pipe, is then closed with a ring, any other with a flat fan.
-  /// A point is inside where the winding number exceeds 1/2. Distances near a hole are to what closes it, so
-  /// the fill is only as good as that guess.
+  /// Whether makeSolid() accepts a mesh that does not bound a volume. Vertices on open edges that are within
+  /// 1e-4 of the diagonal are then welded, within less if that closes the mesh: a mesh whose triangles share
+  /// no vertices, or was written with few digits. Of what is open still, a rim around one other in its plane,
+  /// as at the end of a pipe, is closed with a ring, any other with a flat fan. A point is inside where the
+  /// winding number exceeds 1/2. Distances near a hole are to what closes it, so the fill is only as good as
+  /// that guess.
   bool repair = false;
   /// Whether readMesh() lets assimp work in a forked child process of its own, which may take 1 GB of memory,
   /// and 4 s and a second more for each megabyte of the file: a file that makes assimp crash or hang is then
@@ -63,7 +65,7 @@ Mesh readMesh(const std::string& path, const MeshOptions& options = {},
               std::vector<std::string>* notes = nullptr);
 
 /// Judges a mesh and makes it a solid with exact distances. It mends what is safe and notes it: it welds
-/// equal positions, and those within 1e-7 of the diagonal if the mesh is open without that; it drops
+/// equal positions, and within 1e-7 of the diagonal those on open edges; it drops
 /// degenerate triangles and those that are there twice, winds triangles like their neighbours, turns shells
 /// that are inside-out, and drops shells inside solid material that face outwards. A shell inside another
 /// that faces inwards stays: a cavity. Shells may cut themselves and each other: inside is where the winding

@@ -1,6 +1,7 @@
 #include "innersphere/mesh.hpp"
 
 #include <cmath>
+#include <iterator>
 
 #include "common/bounds.hpp"
 #include "innersphere/error.hpp"
@@ -15,43 +16,61 @@
 namespace innersphere {
 namespace {
 
-// Positions this much of the diagonal apart are one point, if the mesh is open otherwise.
+// Ends of open edges this much of the diagonal apart are one point.
 constexpr double kWeldTolerance = 1e-7;
+// With repair those this far apart, too: as little as closes the mesh.
+constexpr double kRepairTolerances[] = {1e-6, 1e-5, 1e-4};
 // Longest sides [m] outside of these make the user check the units.
 constexpr double kSmall = 0.005;
 constexpr double kLarge = 50;
 // Steps of single precision at a mesh's place, relative to its diagonal, that spoil it.
 constexpr double kCoarse = 1e-5;
 
-// Tries what may close an open mesh without moving its surface; keeps what helps.
-void mendOpenEdges(Mesh& mesh, Topology& topology, MeshReport& report) {
+// Tries what may close an open mesh, and moves its surface by no more than a tolerance; keeps what helps.
+void mendOpenEdges(Mesh& mesh, Topology& topology, bool repair, MeshReport& report) {
   Bounds box = emptyBounds();
   for (const Vec3d& v : mesh.vertices) extend(box, v);
-  const double tolerance = kWeldTolerance * diagonal(box);
+  const double size = diagonal(box);
   const auto keepIfBetter = [&](std::size_t changes, Mesh&& mended, const std::string& note) {
     if (changes == 0) return;
     const Topology after = topologyOf(mended);
-    if (mended.triangles.empty() || after.unbalanced.size() >= topology.unbalanced.size()) return;
+    // Edges whose triangles wind against each other are unbalanced still.
+    const auto defects = [](const Topology& t) { return std::pair(t.unbalanced.size(), t.open_edges); };
+    if (mended.triangles.empty() || defects(after) >= defects(topology)) return;
     mesh = std::move(mended);
     topology = after;
     report.notes.push_back(note);
   };
+  const auto weld = [&](double tolerance) {
+    std::vector<bool> open(mesh.vertices.size());
+    for (const HalfEdge& e : topology.unbalanced) open[e.from] = open[e.to] = true;
+    Mesh welded = mesh;
+    const std::size_t merged = weldClose(welded, open, tolerance);
+    const std::size_t collapsed = dropCollapsed(welded);
+    keepIfBetter(merged + collapsed, std::move(welded),
+                 counted(merged, "vertex pair") + " closer than " + text(tolerance) +
+                     " m merged, because the mesh was open between them, and " +
+                     counted(collapsed, "triangle") + " that collapsed removed");
+  };
+  const auto split = [&](double tolerance) {
+    Mesh splitted = mesh;
+    const std::size_t edges = splitAtVertices(splitted, topology, tolerance);
+    keepIfBetter(edges, std::move(splitted), counted(edges, "edge") + " split at vertices that lie on them");
+  };
 
-  Mesh welded = mesh;
-  const std::size_t merged = weldClose(welded, tolerance);
-  const std::size_t collapsed = dropCollapsed(welded);
-  keepIfBetter(merged + collapsed, std::move(welded),
-               counted(merged, "vertex pair") + " closer than " + text(tolerance) +
-                   " m merged, because the mesh was open between them, and " +
-                   counted(collapsed, "triangle") + " that collapsed removed");
+  weld(kWeldTolerance * size);
   if (topology.unbalanced.empty()) return;
   Mesh without_flat = mesh;
   const std::size_t flat = dropFlat(without_flat);
   keepIfBetter(flat, std::move(without_flat), counted(flat, "triangle") + " without area removed");
   if (topology.unbalanced.empty()) return;
-  Mesh split = mesh;
-  const std::size_t edges = splitAtVertices(split, topology, tolerance);
-  keepIfBetter(edges, std::move(split), counted(edges, "edge") + " split at vertices that lie on them");
+  split(kWeldTolerance * size);
+  if (!repair) return;
+  for (const double part : kRepairTolerances) {
+    if (topology.open_edges == 0) return;
+    weld(part * size);
+  }
+  if (topology.open_edges > 0) split(*std::rbegin(kRepairTolerances) * size);
 }
 
 // A triangle that is there twice counts twice. Two with the same corners that face away from each other count
@@ -169,7 +188,7 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
   }
   dropDuplicates(mesh, report);
   Topology topology = topologyOf(mesh);
-  if (!topology.unbalanced.empty()) mendOpenEdges(mesh, topology, report);
+  if (!topology.unbalanced.empty()) mendOpenEdges(mesh, topology, options.repair, report);
   report.flipped_edges = topology.flipped_edges;
   if (topology.flipped_edges > 0) {
     const std::size_t turned = orientAlike(mesh);
@@ -184,7 +203,7 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
   }
 
   if (!topology.unbalanced.empty()) {
-    if (!options.repair) refuse(report, name);
+    if (!options.repair) refuse(report, name, *std::rbegin(kRepairTolerances));
     const std::size_t added = closeLoops(mesh, topology);
     report.notes.push_back("repaired: " + counted(report.open_loops, "hole") + " closed with " +
                            counted(added, "triangle") +
@@ -201,9 +220,12 @@ std::unique_ptr<Solid> makeSolid(Mesh mesh, const std::string& name, const MeshO
   auto solid = std::make_unique<MeshSolid>(std::move(mesh), name, may_overlap, cuts.touched);
   const double size = diagonal(solid->bounds());
   if (!(solid->massProperties().volume > 1e-12 * size * size * size)) {
-    throw Error(ErrorCode::not_a_solid, name + " encloses no volume (" +
-                                            text(solid->massProperties().volume) +
-                                            " m^3); it is a sheet, give it a thickness in a mesh editor");
+    throw Error(ErrorCode::not_a_solid,
+                name + " encloses no volume (" + text(solid->massProperties().volume) +
+                    " m^3); it is a sheet" +
+                    (report.open_edges > 0 ? ", or its triangles do not meet: give it a thickness, or merge "
+                                             "its vertices by distance, in a mesh editor"
+                                           : ", give it a thickness in a mesh editor"));
   }
   noteSharedPart(solid->sharedPart(), report);
   return solid;

@@ -68,7 +68,7 @@ void renumber(Mesh& mesh, const Place& place) {
   std::vector<std::uint32_t> done(mesh.vertices.size(), UINT32_MAX);
   for (auto& t : mesh.triangles) {
     for (std::uint32_t& v : t) {
-      if (done[v] == UINT32_MAX) done[v] = place(mesh.vertices[v], vertices);
+      if (done[v] == UINT32_MAX) done[v] = place(v, vertices);
       v = done[v];
     }
   }
@@ -90,19 +90,25 @@ void flip(std::array<std::uint32_t, 3>& triangle) {
 void weldEqual(Mesh& mesh) {
   std::unordered_map<Vec3d, std::uint32_t, HashPosition> known;
   known.reserve(mesh.vertices.size());
-  renumber(mesh, [&](const Vec3d& p, std::vector<Vec3d>& vertices) {
+  renumber(mesh, [&](std::uint32_t v, std::vector<Vec3d>& vertices) {
+    const Vec3d& p = mesh.vertices[v];
     const auto [entry, added] = known.try_emplace(p, static_cast<std::uint32_t>(vertices.size()));
     if (added) vertices.push_back(p);
     return entry->second;
   });
 }
 
-std::size_t weldClose(Mesh& mesh, double tolerance) {
+std::size_t weldClose(Mesh& mesh, const std::vector<bool>& open, double tolerance) {
   const std::size_t before = mesh.vertices.size();
   const Vec3d origin = mesh.vertices.empty() ? Vec3d{} : mesh.vertices.front();
   std::unordered_multimap<Cell, std::uint32_t, HashCell> cells;
-  cells.reserve(before);
-  renumber(mesh, [&](const Vec3d& p, std::vector<Vec3d>& vertices) {
+  renumber(mesh, [&](std::uint32_t v, std::vector<Vec3d>& vertices) {
+    const Vec3d& p = mesh.vertices[v];
+    const auto added = static_cast<std::uint32_t>(vertices.size());
+    if (!open[v]) {
+      vertices.push_back(p);
+      return added;
+    }
     Cell home;
     for (int k = 0; k < 3; ++k) home[k] = std::llround((p[k] - origin[k]) / tolerance);
     std::uint32_t nearest = UINT32_MAX;
@@ -114,7 +120,6 @@ std::size_t weldClose(Mesh& mesh, double tolerance) {
       }
     }
     if (nearest != UINT32_MAX) return nearest;
-    const auto added = static_cast<std::uint32_t>(vertices.size());
     vertices.push_back(p);
     cells.emplace(home, added);
     return added;

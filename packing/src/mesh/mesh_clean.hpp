@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "innersphere/mesh.hpp"
 
@@ -10,8 +11,9 @@ namespace innersphere {
 /// Merges vertices at equal positions and drops unused ones; the order of first use stays.
 void weldEqual(Mesh& mesh);
 
-/// Merges each vertex into the first earlier one within `tolerance` [m]. Returns how many went.
-std::size_t weldClose(Mesh& mesh, double tolerance);
+/// Merges each vertex on an open edge into the first earlier one within `tolerance` [m]: `open` says of each
+/// vertex whether it is on one. Returns how many went.
+std::size_t weldClose(Mesh& mesh, const std::vector<bool>& open, double tolerance);
 
 /// Removes triangles with two equal corners. Returns how many went.
 std::size_t dropCollapsed(Mesh& mesh);

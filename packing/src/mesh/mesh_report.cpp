@@ -68,7 +68,7 @@ void requireTriangles(const Mesh& mesh, const std::string& name) {
   }
 }
 
-void refuse(const MeshReport& report, const std::string& name) {
+void refuse(const MeshReport& report, const std::string& name, double weld) {
   std::string why;
   if (report.open_edges > 0) {
     why = counted(report.open_edges, "open edge") + " in " + counted(report.open_loops, "loop") +
@@ -80,9 +80,12 @@ void refuse(const MeshReport& report, const std::string& name) {
     why = "its triangles cannot be wound alike (it has one side only), see near " + text(report.open_at);
   }
   throw Error(ErrorCode::not_a_solid, name + " does not bound a volume: " + why +
-                                          "; close it in a mesh editor, or ask for repair: "
-                                          "holes are then closed flatly, inside is where the winding "
-                                          "number exceeds 1/2, and near a hole the fill is a guess");
+                                          "; close it in a mesh editor, or ask for repair: vertices "
+                                          "within " +
+                                          text(weld * diagonal(report.bounds)) +
+                                          " m are then welded where it is open, holes closed flatly, "
+                                          "inside is where the winding number exceeds 1/2, and near a hole "
+                                          "the fill is a guess");
 }
 
 }  // namespace innersphere

@@ -22,7 +22,8 @@ void describe(const Topology& topology, const Mesh& mesh, MeshReport& report);
 /// Throws Error unless there are triangles with usable corners: empty_input, not_finite, bad_argument.
 void requireTriangles(const Mesh& mesh, const std::string& name);
 
-/// Throws Error not_a_solid, which says why and what to do about it.
-[[noreturn]] void refuse(const MeshReport& report, const std::string& name);
+/// Throws Error not_a_solid, which says why and what to do about it. Repair welds what is open within
+/// `weld`, relative to the diagonal.
+[[noreturn]] void refuse(const MeshReport& report, const std::string& name, double weld);
 
 }  // namespace innersphere

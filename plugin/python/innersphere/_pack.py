@@ -51,7 +51,8 @@ def pack(
     delta: each sphere has at least 1/(1+delta) of the largest possible radius, 0.001 to 1. Less is denser and slower.
     overlap_errors: whether to measure how far volumes of overlaps are off, which takes more than half of the time.
     threads: 0 are all cores. The result does not depend on it.
-    repair: whether a mesh with holes is packed all the same. They are closed with flat fans, the ends of pipes with rings.
+    repair: whether an open mesh is packed all the same. Vertices within 1e-4 of the diagonal are welded where it is open,
+        holes closed with flat fans, the ends of pipes with rings.
     scale: factor for all coordinates: 0.001 for millimetres; or three, for x, y and z, as the scale of a URDF: [-1, 1, 1]
         packs the mirror image.
     name: of the solid, for messages and provenance; None: the path, or "mesh".

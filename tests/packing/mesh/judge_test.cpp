@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 #include <set>
 
 #include "innersphere/error.hpp"
@@ -358,6 +360,50 @@ TEST(MeshJudge, NearlyEqualCornersAreWeldedIfOpen) {
   EXPECT_EQ(report.vertices, 8u);
   EXPECT_NE(joined(report).find("merged"), std::string::npos) << joined(report);
   EXPECT_NEAR(solid->massProperties().volume, 1, 1e-6);
+}
+
+// Triangles that share no vertex, as of a file with few digits.
+TEST(MeshJudge, RepairWeldsWhatIsNearlyClosed) {
+  const Mesh torus = torusMesh(1, 0.3, 40, 20);
+  const double diagonal = 2 * std::sqrt(2 * 1.3 * 1.3 + 0.3 * 0.3);
+  std::mt19937 random(41);
+  for (const double part : {1e-6, 1e-5, 4e-5}) {
+    Mesh split;
+    for (const auto& t : torus.triangles) {
+      for (std::uint32_t v : t) {
+        const double way =
+            part * diagonal / 4;  // of each coordinate, so that none are farther apart than 0.87 parts
+        split.vertices.push_back(torus.vertices[v] +
+                                 randomPoint(random, {-way, -way, -way}, {way, way, way}));
+      }
+      const auto n = static_cast<std::uint32_t>(split.vertices.size());
+      split.triangles.push_back({n - 3, n - 2, n - 1});
+      if (n % 2 == 0) std::swap(split.triangles.back()[0], split.triangles.back()[1]);
+    }
+    expectRefused(split, "ask for repair: vertices within 0.0003726 m");
+    MeshReport report;
+    const auto solid = repaired(split, &report);
+    EXPECT_EQ(report.vertices, torus.vertices.size()) << joined(report);
+    EXPECT_EQ(report.open_edges, 0u);
+    EXPECT_NEAR(solid->massProperties().volume / volumeOf(torus), 1, 20 * part);
+    // A hole beside is still one, and what is farther apart is not welded.
+    split.triangles.pop_back();
+    repaired(split, &report);
+    EXPECT_EQ(report.open_edges, 3u) << joined(report);
+  }
+  Mesh gap = boxMesh();  // its top is as high above its sides as two walls may be apart
+  for (auto& t : gap.triangles) {
+    const bool is_top = std::all_of(t.begin(), t.end(), [&](auto v) { return gap.vertices[v][2] > 0; });
+    for (std::uint32_t& v : t) {
+      if (!is_top) continue;
+      gap.vertices.push_back(gap.vertices[v] + Vec3d{0, 0, 4e-4});
+      v = static_cast<std::uint32_t>(gap.vertices.size() - 1);
+    }
+  }
+  MeshReport report;
+  expectRefused(gap, "8 open edges", &report);
+  repaired(gap, &report);
+  EXPECT_EQ(report.open_edges, 8u) << joined(report);
 }
 
 TEST(MeshJudge, TouchingSolidsAreNamedNotRefused) {
