@@ -47,6 +47,38 @@ struct OctreeCube {
   }
 };
 
+// Points along the edge of blocks of a lattice that are looked at one by one.
+constexpr int kBlock = 8;
+
+/// Adds the points of a part of a lattice that lie in the solid, and looks at no block that is clear of it: a
+/// slender solid is in few blocks.
+void addInnerPoints(const Container& container, int cells, const Eigen::Array3i& from,
+                    const Eigen::Array3i& to, std::vector<Point>& points) {
+  const Eigen::Array3i size = to - from;
+  if (size.maxCoeff() > kBlock) {
+    const Point half = 0.5 * size.cast<double>().matrix() / cells;
+    const Point middle = from.cast<double>().matrix() / cells + half;
+    if (std::isinf(container.closest(middle, half.norm() + container.margin()).distance) &&
+        !container.contains(middle))
+      return;
+    int longest = 0;
+    size.maxCoeff(&longest);
+    Eigen::Array3i cut_to = to, cut_from = from;
+    cut_to[longest] = cut_from[longest] = from[longest] + size[longest] / 2;
+    addInnerPoints(container, cells, from, cut_to, points);
+    addInnerPoints(container, cells, cut_from, to, points);
+    return;
+  }
+  for (int z = from[2]; z < to[2]; ++z) {
+    for (int y = from[1]; y < to[1]; ++y) {
+      for (int x = from[0]; x < to[0]; ++x) {
+        const Point p = Point(x + 0.5, y + 0.5, z + 0.5) / cells;
+        if (container.contains(p)) points.push_back(p);
+      }
+    }
+  }
+}
+
 /// Points of the surface and of the inside.
 std::vector<Point> pointsOf(const Solid& solid, const Container& container, std::size_t spheres) {
   std::vector<Point> points = SurfaceSamples(solid.surface(), container).points();
@@ -54,14 +86,7 @@ std::vector<Point> pointsOf(const Solid& solid, const Container& container, std:
       solid.massProperties().volume / (container.side() * container.side() * container.side());
   const double inner = std::max(kInnerPoints * static_cast<double>(spheres), kLeastInnerPoints);
   const int cells = static_cast<int>(std::ceil(std::cbrt(inner / volume)));
-  for (int z = 0; z < cells; ++z) {
-    for (int y = 0; y < cells; ++y) {
-      for (int x = 0; x < cells; ++x) {
-        const Point p = Point(x + 0.5, y + 0.5, z + 0.5) / cells;
-        if (container.contains(p)) points.push_back(p);
-      }
-    }
-  }
+  addInnerPoints(container, cells, Eigen::Array3i::Zero(), Eigen::Array3i::Constant(cells), points);
   return points;
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <random>
 
 #include "../file_scratch.hpp"
@@ -75,6 +76,45 @@ INSTANTIATE_TEST_SUITE_P(CoverSolid, Covers,
                          [](const auto& param) {
                            return param.param.first + "_" + std::to_string(param.param.second);
                          });
+
+/// Counts how often it is asked whether a point is inside.
+class CountedSolid : public Solid {
+ public:
+  explicit CountedSolid(std::unique_ptr<Solid> solid) : solid_(std::move(solid)) {}
+  ClosestPoint closestPoint(const Vec3d& p, double cutoff) const override {
+    return solid_->closestPoint(p, cutoff);
+  }
+  bool contains(const Vec3d& p) const override {
+    ++asked;
+    return solid_->contains(p);
+  }
+  Bounds bounds() const override { return solid_->bounds(); }
+  MassProperties massProperties() const override { return solid_->massProperties(); }
+  Mesh surface() const override { return solid_->surface(); }
+  std::string name() const override { return solid_->name(); }
+
+  mutable std::atomic<std::size_t> asked = 0;
+
+ private:
+  std::unique_ptr<Solid> solid_;
+};
+
+// The lattice of points around a needle grows with the square of its slenderness, what is near it does not.
+TEST(CoverSolid, LooksAtWhatIsNearANeedle) {
+  constexpr double kThickness = 1.0 / 256;
+  const CountedSolid needle(makeBox({kThickness, kThickness, 1}));
+  const Packing packing = packed(needle, 8);
+  needle.asked = 0;
+  const Covering covering = coverSolid(needle, packing);
+  EXPECT_LT(needle.asked, 1000000u);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> part(-0.5, 0.5);
+  for (int i = 0; i < 10000; ++i) {
+    const Vec3d p{kThickness * part(random), kThickness * part(random), part(random)};
+    ASSERT_TRUE(std::any_of(covering.spheres.begin(), covering.spheres.end(),
+                            [&](const Sphere& s) { return holds(covering, s, p); }));
+  }
+}
 
 /// How far a point is outside of the unit cube around the origin.
 double outside(const Vec3d& p) {
