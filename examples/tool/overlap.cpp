@@ -128,8 +128,10 @@ void appendRow(std::string& table, const std::string& name, const Overlap& overl
 }
 
 std::uint32_t prefixOf(const Arguments& arguments, const Packing& packing, const std::string& name) {
-  if (arguments.spheres <= packing.spheres.size()) return static_cast<std::uint32_t>(arguments.spheres);
-  say(name + " has only " + std::to_string(packing.spheres.size()) + " spheres: all of them are used");
+  const std::size_t count = packing.spheres.size();
+  if (arguments.spheres <= count) return static_cast<std::uint32_t>(arguments.spheres);
+  say(name + " has only " +
+      (count == 1 ? "one sphere" : std::to_string(count) + " spheres: all of them are used"));
   return 0;
 }
 
@@ -209,7 +211,7 @@ void run(Arguments& arguments) {
   query.a = a.get();
   query.b = b.get();
   query.prefix_a = prefixOf(arguments, a->packing(), arguments.a);
-  query.prefix_b = prefixOf(arguments, b->packing(), arguments.b);
+  query.prefix_b = b == a ? query.prefix_a : prefixOf(arguments, b->packing(), arguments.b);
 
   std::string table;
   if (!arguments.shard.whole()) {

@@ -237,8 +237,13 @@ TEST_F(Overlap, FewerSpheresAreThePrefix) {
   EXPECT_LT(readTable(readFile(path("few.csv")))[0].pairs, readTable(readFile(path("all.csv")))[0].pairs);
   const Outcome outcome = run("overlap box.cbor box.cbor --poses poses.csv --spheres 500 -o more.csv");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_NE(outcome.err.find("200"), std::string::npos) << "says nothing about the missing spheres";
+  EXPECT_EQ(outcome.err, "box.cbor has only 200 spheres: all of them are used\n");
   EXPECT_EQ(readFile(path("more.csv")), readFile(path("all.csv")));
+  // Of two packings each is named.
+  succeed("pack ball -o ball.cbor");
+  EXPECT_EQ(run("overlap box.cbor ball.cbor --poses poses.csv --spheres 500 -o both.csv").err,
+            "box.cbor has only 200 spheres: all of them are used\n"
+            "ball.cbor has only one sphere\n");
 }
 
 TEST_F(Overlap, DevicesAreNamed) {
