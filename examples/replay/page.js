@@ -479,7 +479,7 @@
   const prepared = new Map();
   let index = -1;      // of the film
   let shown = null;    // the film, prepared
-  let view = 'surface';
+  let view = null;     // that the user chose
   let time = 0;
   let playing = false;
   let loop = true;     // films are short, and a page that has come to a stop looks broken
@@ -496,7 +496,8 @@
 
   function setView(name) {
     if (name) view = name;
-    const seen = shown.views.includes(view) ? view : shown.views[0];
+    const wanted = view || (shown.frames > 1 ? 'surface' : 'both');
+    const seen = shown.views.includes(wanted) ? wanted : shown.views[0];
     shown.setView(seen);
     for (const button of element('views').children) {
       button.setAttribute('aria-pressed', button.dataset.view === seen);
@@ -597,7 +598,7 @@
     shown = prepared.get(index);
     document.title = film.title + ' - InnerSphere';
     element('title').textContent = film.title;
-    element('caption').textContent = film.caption;
+    element('caption').textContent = film.caption.replace(/(\d) (?=\S)/g, '$1\u00a0');  // units stay with numbers
     showNotes(film.notes);
     Array.from(element('films-list').children).forEach((button, n) => {
       button.setAttribute('aria-pressed', n === index);

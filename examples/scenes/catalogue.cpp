@@ -8,11 +8,11 @@ const std::vector<Scene>& scenes() {
   constexpr double k240 = 1.0 / 240;
   static const std::vector<Scene> all = {
       {"pile", "Pile of solids in a tray",
-       "Two dozen mixed solids fall into a tray and come to rest on each other.",
+       "Two dozen solids fall into a tray and come to rest on each other.",
        "Contacts of any solid with any other, many at once, that neither leak nor shake.", buildPile, 12,
        k240, 1000, 0, true},
       {"large-pile", "Pile of a hundred solids",
-       "A hundred mixed solids fall into a tray and come to rest on each other.",
+       "A hundred solids fall into a tray and come to rest on each other.",
        "The same with so many bodies that pairs come and go all the time.", buildLargePile, 14, k240, 500, 0,
        true},
       {"rest", "Solids at rest on a plane", "Box, ball, torus, cylinder and gear lie on a plane.",
