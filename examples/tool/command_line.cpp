@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
 
 #include "exit_codes.hpp"
 #include "suggestion.hpp"
@@ -14,6 +15,23 @@ std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
+}
+
+// Help is so wide, and its first column.
+constexpr std::size_t kWidth = 100, kFirstColumn = 34;
+
+// Begins a new line before each word that would end beyond the width.
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::string result;
+  std::size_t column = 0;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const bool fits = column + 1 + word.size() <= width;
+    if (column > 0) result += fits ? ' ' : '\n';
+    result += word;
+    column = column > 0 && fits ? column + 1 + word.size() : word.size();
+  }
+  return result;
 }
 
 std::string typeOf(const Option& option) {
@@ -37,16 +55,17 @@ void take(const Option& option, const std::string& value) {
 }
 
 void addOption(CLI::App& app, const Option& option) {
+  const std::string description = wrapped(option.description, kWidth - kFirstColumn);
   if (option.isFlag()) {
     app.add_flag_callback(
-        option.name, [&option] { take(option, ""); }, option.description);
+        option.name, [&option] { take(option, ""); }, description);
     return;
   }
   const auto takeAll = [&option](const CLI::results_t& values) {
     for (const std::string& value : values) take(option, value);
     return true;
   };
-  CLI::Option* added = app.add_option(option.name, takeAll, option.description);
+  CLI::Option* added = app.add_option(option.name, takeAll, description);
   added->type_name(typeOf(option))->default_str(option.default_text)->required(option.required);
   if (option.repeated && option.isArgument()) {
     added->expected(0, CLI::detail::expected_max_vector_size)->allow_extra_args();
@@ -60,8 +79,8 @@ std::string footerOf(const Command& command) {
   const auto append = [&text](const std::string& part, const char* separator) {
     if (!part.empty()) text += (text.empty() ? "" : separator) + part;
   };
-  append(command.notes, "\n");
-  append(command.exit_status, "\n");
+  append(wrapped(command.notes, kWidth), "\n");
+  append(wrapped(command.exit_status, kWidth), "\n");
   std::string examples;
   for (const std::string& example : command.examples) examples += "\n  " + example;
   if (!examples.empty()) append((command.examples.size() == 1 ? "Example:" : "Examples:") + examples, "\n\n");
@@ -75,13 +94,13 @@ void fill(CLI::App& app, const Command& command, const std::string& path,
   app.description(command.description + ".");
   app.footer(footerOf(command));
   app.set_help_flag("-h,--help", "Print this help");
-  app.get_formatter()->column_width(34);
+  app.get_formatter()->column_width(kFirstColumn);
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.allow_extras();
   for (const Option& option : command.options) addOption(app, option);
   for (const Option& option : everywhere) addOption(app, option);
   for (const Command& sub : command.commands)
-    app.add_subcommand(sub.name, sub.description)->group("Commands");
+    app.add_subcommand(sub.name, wrapped(sub.description, kWidth - kFirstColumn))->group("Commands");
 }
 
 [[noreturn]] void failWithExtra(const Command& command, const std::vector<Option>& everywhere,

@@ -18,7 +18,7 @@ enum ExitCode : int {
 
 /// For help and the manual page.
 inline constexpr const char* kExitCodeHelp =
-    "Exit status: 0 done; 1 checked and found wrong; 2 bad usage; 3 bad input; 4 cancelled;\n"
+    "Exit status: 0 done; 1 checked and found wrong; 2 bad usage; 3 bad input; 4 cancelled; "
     "5 output exists or cannot be written; 6 CUDA device missing or failed; 70 defect of this program.";
 
 inline ExitCode exitCodeOf(ErrorCode code) {

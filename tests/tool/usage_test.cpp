@@ -16,6 +16,11 @@ TEST_F(Usage, EveryCommandHasHelp) {
         "scene run", "scene check", "scene gallery", "solids", "help", "completion", "man"}) {
     const Outcome outcome = succeed(std::string(command) + " --help");
     EXPECT_NE(outcome.out.find("Usage:"), std::string::npos) << command;
+    // Lines are no longer than this, but for examples, which are to be copied.
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.rfind("  innersphere ", 0) != 0) EXPECT_LE(line.size(), 100u) << line;
+    }
   }
 }
 
