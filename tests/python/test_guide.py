@@ -46,9 +46,11 @@ def test_the_guide(tmp_path, monkeypatch):
     assert names["volume"].mean() == pytest.approx(0.5, rel=0.1)
     assert names["round_packing"].volume == pytest.approx(4 / 3 * np.pi / 8, rel=0.02)
     assert names["force"].shape == (1000, 3)
+    np.testing.assert_allclose(np.loadtxt(tmp_path / "volumes.csv"), names["volume"])
     assert len(names["of_second_pose"]) > 0
     assert names["place"][0] == pytest.approx([3, 0, 0], abs=2e-3)
     assert names["touching"]["force"][:, 2].sum() == pytest.approx(-2 * 9.81, rel=0.05)  # both lie
+    assert names["p"].getPhysicsEngineParameters()["fixedTimeStep"] == pytest.approx(1 / 60)
     names["p"].disconnect()
     assert (tmp_path / "spheres.urdf").read_text().count("<sphere") == 32
     assert 0 < names["links"]["base"].overhang < 0.2

@@ -131,5 +131,26 @@ TEST(Recipes, AVolumeComesWithItsError) {
   EXPECT_NEAR(shared.overlap.volume, 0.4, 0.4 * std::max(0.02, 4 * shared.error));
 }
 
+// Two unit cubes, of which one is moved along an edge: what they share is what is left of it.
+TEST(Recipes, ASweepHasManyPoses) {
+  const std::shared_ptr<const CollisionModel> model = boxModel({1, 1, 1});
+  std::vector<double> matrices;
+  for (int i = 0; i < 10000; ++i)
+    matrices.insert(matrices.end(), {1, 0, 0, i / 1e4, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  // [snippet sweep]
+  innersphere::PairQuery pair;
+  pair.a = pair.b = model.get();
+  innersphere::Poses poses;
+  poses.count = 10000;
+  poses.matrices = matrices.data();  // of B: 4 x 4 numbers each, row by row; or positions and quaternions
+  std::vector<innersphere::Overlap> overlaps(poses.count);
+  innersphere::QueryContext().sweep(pair, poses, {}, overlaps.data());  // overlaps[i].volume, .force, ...
+  // [snippet]
+  double sum = 0;
+  for (const Overlap& overlap : overlaps) sum += overlap.volume;
+  EXPECT_NEAR(sum / 10000, 0.5, 0.05);
+  EXPECT_GT(overlaps[5000].force[0], 0);  // away from A
+}
+
 }  // namespace
 }  // namespace innersphere::recipes
