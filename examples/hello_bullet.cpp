@@ -2,6 +2,7 @@
 //   innersphere pack torus --spheres 1000 -o torus.cbor && hello_bullet torus.cbor
 // With an installed InnerSphere and no build system:
 //   c++ -std=c++17 -O2 hello_bullet.cpp $(pkg-config --cflags --libs innersphere) -o hello_bullet
+#include <algorithm>
 #include <cstdio>
 
 #include "innersphere/error.hpp"
@@ -54,12 +55,15 @@ int main(int argc, char** argv) try {
 
   for (int step = 0; step < 5 * 60; ++step) world.stepSimulation(btScalar(1) / 60, 0);
 
-  btVector3 low, high;
-  shape.getAabb(body.getWorldTransform(), low, high);
+  // Of its vertices: Bullet's box around a body that is turned is larger than the body.
+  const btTransform packing_pose = body.getWorldTransform() * shape.principalTransform();
+  btScalar lowest = BT_LARGE_FLOAT;
+  for (const auto& v : packing->surface.vertices)
+    lowest = std::min(lowest, packing_pose(btVector3(v[0], v[1], v[2])).z());
   std::printf("after 5 s: centre at %.4f m, lowest point at %.4f m, speed %.4f m/s\n",
-              double(body.getWorldTransform().getOrigin().z()), double(low.z()),
+              double(body.getWorldTransform().getOrigin().z()), double(lowest),
               double(body.getLinearVelocity().length()));
-  const bool rests = body.getLinearVelocity().length() < 0.05 && low.z() > -0.05;
+  const bool rests = body.getLinearVelocity().length() < 0.05 && lowest > -0.05;
   world.removeRigidBody(&body);
   world.removeRigidBody(&floor);
   return rests ? 0 : 1;
