@@ -107,11 +107,12 @@ def attach(
         (btMultiBody, what loadURDF() makes by default), also by way of others, have PyBullet's solver in that step.
         It sets minimumSolverIslandSize to -1, which has to stay so.
 
-    The options hold after resetSimulation(), too, from the next call of what attach() returned on. Attaching again replaces them; detach() of either
-    object then ends both.
+    The options hold after resetSimulation(), too, from the next call of what attach() returned on. Attaching again
+    replaces them; detach() of either object then ends both.
 
     Raises PyBulletError, which names the versions, where this PyBullet is not understood: its API version, classes
-    or values differ from what is known; and for solver="substep" in a world of deformable bodies. TypeError and InvalidArgumentError for options out of range; NoDeviceError.
+    or values differ from what is known; and for solver="substep" in a world of deformable bodies. TypeError and
+    InvalidArgumentError for options out of range; NoDeviceError.
     """
     if not hasattr(_core, "pybullet"):
         raise PyBulletError("this innersphere was built without Bullet; install libbullet-dev and build it again")

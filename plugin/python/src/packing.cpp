@@ -387,7 +387,8 @@ void bindPacking(nb::module_& module) {
 Made by pack() or read(). It never changes, and can be shared by threads and pickled. All places are in the
 packing's own frame: x_solid = origin + x. Lengths are in metres.
 
-Packings are equal if all that they tell is, to the bit: a pickle and a file give an equal one back. Equal ones have the same hash.
+Packings are equal if all that they tell is, to the bit: a pickle and a file give an equal one back. Equal ones have the
+same hash.
 
 ``packing[:n]`` are the first n spheres: a coarser packing of the same solid. It shares memory with the whole.)")
       .def_prop_ro(
@@ -470,7 +471,8 @@ largest_missing_radius: no larger sphere fits between those that are there [m].)
           nb::sig("def overlap_errors(self) -> tuple[tuple[int, list[tuple[float, float]], list[tuple[float, "
                   "float]]], ...]"),
           R"(How far off volumes of overlaps are: the mean |error|, relative to the larger of the found and the true volume, measured
-with copies of the solid when it was packed. expected_error() looks them up, with bounds, and knows of planes that cut the solid and of balls inside it.
+with copies of the solid when it was packed. expected_error() looks them up, with bounds, and knows of planes that cut the
+solid and of balls inside it.
 
 A row for each number of spheres: that number, the errors with estimator="raw", and those with "volume_true". Of each some
 pairs: how deep overlaps are, volume over area [m], and the error there. Empty with pack(overlap_errors=False).)")
@@ -507,8 +509,8 @@ WriteError, and InvalidArgumentError for another ending or a slice.)")
               "numpy.typing.NDArray[numpy.uint32]]"),
       R"(The surface of a solid to try things with: vertices (n, 3) [m] and faces (m, 3), as pack() takes them.
 
-name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, chazelle, tray, cup, pan, blade or horn; about 1 m in size. Nut and
-bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for another name.)");
+name: ball, box, cylinder, torus, link, bowl, gear, lbracket, knot, nut, bolt, chazelle, tray, cup, pan, blade or horn; about 1 m in
+size. Nut and bolt mate: their thread has a pitch of 0.125 m. Raises InvalidArgumentError for another name.)");
   module.def("mesh_of", &meshOf, "vertices"_a, "faces"_a);
   module.def("surface_of_mesh", &surfaceOfMesh, "mesh"_a, "name"_a, "repair"_a);
   module.def("bodies_of", &bodiesOf, "vertices"_a, "faces"_a);
