@@ -99,12 +99,24 @@ void measure(const std::vector<SphereContact>& contacts, const btMatrix3x3& refe
     sorted.moments.push_back(patchMoments(contacts, sorted.members[p], reference));
 }
 
+bool hasDirection(const SphereContact& contact) {
+  return !toBullet(contact.area).isZero();
+}
+
+/// Whether most of what overlaps, by volume, has no direction.
+bool lacksDirection(const std::vector<SphereContact>& contacts) {
+  double with = 0, without = 0;
+  for (const SphereContact& contact : contacts) (hasDirection(contact) ? with : without) += contact.volume;
+  return without > with;
+}
+
 /// Where the enlarged spheres of one solid are so large that those of the other vanish in them, their overlap
 /// has no direction. The way to the nearest surface takes its place.
 void aimAtSurface(const std::vector<SphereContact>& contacts, const SurfaceProbe& probe,
                   std::vector<SphereContact>& aimed) {
   aimed = contacts;
   for (std::size_t i = 0; i < aimed.size(); ++i) {
+    if (hasDirection(aimed[i])) continue;
     btVector3 direction(0, 0, 0);
     OpposedPoints points;
     probe.nearest(i, direction, points);
@@ -165,12 +177,12 @@ void selectFiltered(const std::vector<SphereContact>& contacts, const Probe& pro
   clear(samples);
   // Most pairs of a pile are apart, and take no memory.
   if (!contacts.empty()) makeRoom(samples);
-  sortIntoPatches(contacts, scratch.sorted);
-  if (scratch.sorted.patches.empty() && !contacts.empty()) {
+  if (lacksDirection(contacts)) {
     aimAtSurface(contacts, probe, scratch.aimed);
     sortIntoPatches(scratch.aimed, scratch.sorted);
     measure(scratch.aimed, reference, scratch.sorted);
   } else {
+    sortIntoPatches(contacts, scratch.sorted);
     measureByPacking(contacts, probe, reference, scratch.indices, scratch.sorted);
   }
   for (std::size_t p = 0; p < scratch.sorted.moments.size(); ++p) {
