@@ -15,8 +15,10 @@ struct EdgeContact {
   std::uint64_t id = 0;      ///< no sphere has it
   bool is_peak = true;       ///< the surface does not rise on from the corner
   bool is_tip = false;       ///< the lines of a cone end there
+  bool is_end = false;       ///< what bends ends there: in a tip, or in a sharp edge
   bool is_beside = false;    ///< it lies in a rim that goes on to deeper corners: it bears nothing
-  btVector3 along{0, 0, 0};  ///< unit, of an edge that what is round lies on
+  btVector3 along{0, 0, 0};  ///< unit, of a rim, or of an edge that what is round lies on
+  btScalar bend_along = 0;   ///< how fast the depth falls along a rim [1/m]
   bool is_alone = false;     ///< the crossing was found from an edge of B: its corners are over no face
 };
 
@@ -55,8 +57,8 @@ class EdgeProbe {
   /// with the point of the face that it is over. `vertices` is room to work in.
   virtual void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                        std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const = 0;
-  /// Returns false if it is known that no corner of A, or else B, is a tip.
-  virtual bool hasTips(bool of_a) const = 0;
+  /// Returns false if it is known that what bends of A, or else B, ends nowhere.
+  virtual bool hasEnds(bool of_a) const = 0;
   /// Finds where, not far from opposed points of two flat faces, an edge of A crosses one of B, and both
   /// solids have nothing further out along the normal to both nearby. Returns false if none is found.
   /// `direction` is about that in which the solids are in contact, from A to B.

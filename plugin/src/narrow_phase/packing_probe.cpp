@@ -171,13 +171,13 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
     (of_a ? corner.points.on_a : corner.points.on_b) = at + offset;
     (of_a ? corner.points.on_b : corner.points.on_a) = under.at + to_other + offset;
     (of_a ? corner.points.normal_b : corner.points.normal_a) = under.normal * btScalar(of_a ? -1 : 1);
-    layOnTipOrRim(own, vertex, way, of_a, corner);
+    layOnTipOrRim(own, vertex, way, of_a, is_peak && vertex == vertices.front(), corner);
     corners.push_back(corner);
   }
 }
 
-bool PackingProbe::hasTips(bool of_a) const {
-  return normalsOf(of_a ? a_ : b_).hasTips();
+bool PackingProbe::hasEnds(bool of_a) const {
+  return normalsOf(of_a ? a_ : b_).hasEnds();
 }
 
 void PackingProbe::overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,

@@ -51,7 +51,7 @@ class PackingProbe final : public SurfaceProbe, public EdgeProbe, public FaceExt
   Bend bend(bool of_a, const OpposedPoints& points, const Across& axes) const override;
   void corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const override;
-  bool hasTips(bool of_a) const override;
+  bool hasEnds(bool of_a) const override;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
   void overlap(const OpposedPoints& points, const btVector3& normal, FaceOverlaps& overlaps,

@@ -8,14 +8,26 @@ namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 namespace {
 
-/// Whether a corner of a surface is deeper than the place where it was probed.
-bool rises(const btVector3& face, btScalar curvature, const btVector3& normal) {
-  return curvature == 0 && face.distance2(normal) > kLeaning * kLeaning;
+/// Whether a surface is deeper beside the place where it was probed.
+bool leans(const btVector3& face, const btVector3& normal) {
+  return face.distance2(normal) > kLeaning * kLeaning;
 }
 
-/// Whether a surface that bends leans so far that a tip of it may be deeper.
-bool leansFar(const btVector3& face, btScalar curvature, const btVector3& normal) {
-  return curvature != 0 && face.dot(normal) < kOpposedCosine;
+/// Whether a surface leans and not the other one, or so far that these do not lie on each other.
+bool goesOn(const btVector3& face, const btVector3& other, const btVector3& normal) {
+  return leans(face, normal) && (!leans(other, normal) || face.dot(normal) < kOpposedCosine);
+}
+
+/// Whether a corner of a flat surface is deeper.
+bool rises(const btVector3& face, btScalar curvature, const btVector3& normal) {
+  return curvature == 0 && leans(face, normal);
+}
+
+/// Whether what bends ends in a corner, and rises towards there: not only along the rim.
+bool endsDeeper(const EdgeContact& corner, bool of_a, const btVector3& normal) {
+  if (!corner.is_end || corner.along.isZero()) return corner.is_end;
+  const btVector3& face = of_a ? corner.points.normal_a : corner.points.normal_b;
+  return corner.along.cross(face).dot(normal) > kLeaning;
 }
 
 /// The normal turns with the face that it belongs to.
@@ -65,7 +77,8 @@ void PatchContactPoints::addSample(const ProbedSample& sample, const btVector3& 
   if (points.areFlat() && lie) addOverlap(points, normal);
   if (crosses && crossing.is_alone) corners.clear();
   for (const EdgeContact& corner : corners) addCorner(corner, of_a);
-  bool has_corners = !corners.empty();
+  // What bends lies on a line up to its end.
+  bool has_corners = !corners.empty() && (of_a ? points.curvature_a : points.curvature_b) == 0;
   if (points.areFlat() && !lie && !crosses && rises_a != rises_b && !has_corners)
     has_corners = addEdge(points, rises_a, normal);
   // Where neither face lies flat, a corner of the one may be deep in the other all the same.
@@ -91,7 +104,7 @@ void PatchContactPoints::addSample(const ProbedSample& sample, const btVector3& 
   }
 }
 
-/// Finds corners of the face that rises, or tips of a cone whose side leans far. Returns whose they are.
+/// Finds corners of the face that rises, or ends of what bends that leans. Returns whose they are.
 bool PatchContactPoints::findCorners(const ProbedSample& sample, const btVector3& normal, bool rises_a,
                                      bool rises_b) {
   const OpposedPoints& points = sample.points;
@@ -99,10 +112,12 @@ bool PatchContactPoints::findCorners(const ProbedSample& sample, const btVector3
   corners.clear();
   if (rises_a != rises_b) probe_.corners(sample.index, points, normal, rises_a, scratch_.vertices, corners);
   if (!corners.empty()) return rises_a;
-  const bool of_a = leansFar(points.normal_a, points.curvature_a, normal) && probe_.hasTips(true);
-  if (of_a || (leansFar(points.normal_b, points.curvature_b, normal) && probe_.hasTips(false))) {
+  const bool of_a =
+      points.curvature_a > 0 && goesOn(points.normal_a, points.normal_b, normal) && probe_.hasEnds(true);
+  if (of_a ||
+      (points.curvature_b > 0 && goesOn(points.normal_b, points.normal_a, normal) && probe_.hasEnds(false))) {
     probe_.corners(sample.index, points, normal, of_a, scratch_.vertices, corners);
-    std::erase_if(corners, [](const EdgeContact& corner) { return !corner.is_tip; });
+    std::erase_if(corners, [&](const EdgeContact& corner) { return !endsDeeper(corner, of_a, normal); });
   }
   return of_a;
 }
@@ -172,7 +187,7 @@ bool PatchContactPoints::addCorner(const EdgeContact& corner, bool of_a) {
     setEdgeBends(of_a, Bend::round(kEdgeSharpness * btFabs(bends_below)), surfaces_.bend(!of_a, points, axes),
                  axes, found_.back().point);
   } else if (bends_here > 0) {
-    layOnHill(points, found_.back());
+    layOnHill(corner, of_a, found_.back());
   }
   return true;
 }
@@ -184,16 +199,25 @@ void PatchContactPoints::addLineEnds(const OpposedPoints& points) {
   for (const EdgeContact& end : ends) {
     const btVector3& normal = end.points.normal_a;
     if (!isFound(end.id, &normal) && add(end.points, normal, end.id, Kind::edge))
-      layOnHill(end.points, found_.back());
+      layOnHill(end, true, found_.back());
   }
 }
 
-/// Lays what was found at a corner, or at the end of a line, on a hill of its own.
-void PatchContactPoints::layOnHill(const OpposedPoints& points, WeightedPoint& point) {
+/// Lays what was found at a corner of A, or else of B, or at the end of a line, on a hill of its own. In a
+/// rim it falls along the rim only: across it there is no more of what bends.
+void PatchContactPoints::layOnHill(const EdgeContact& corner, bool of_a, WeightedPoint& point) {
+  const OpposedPoints& points = corner.points;
   const Across axes(point.point.normal);
   point.bends = true;
   point.slope = points.normal_b - points.normal_a;
-  layOnHill(points, axes, surfaces_.bends(points, axes), true, point);
+  SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
+  const bool in_rim = !corner.along.isZero();
+  if (in_rim) {
+    const btVector3 across = corner.along.cross(point.point.normal).normalized();
+    (of_a ? bends.a : bends.b) = Bend::about(across, axes, corner.bend_along);
+  }
+  layOnHill(points, axes, bends, !in_rim, point);
+  point.is_top = in_rim;
 }
 
 /// Notes how the surfaces bend where a point was found, and where the top of its hill is.

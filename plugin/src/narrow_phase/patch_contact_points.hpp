@@ -40,7 +40,7 @@ class PatchContactPoints {
   FaceEnd addOverEdge(const ProbedSample& sample, btVector3& to_top);
   bool addFace(const ProbedSample& sample, const btVector3& normal);
   bool keepInHollow(const OpposedPoints& points, WeightedPoint& point);
-  void layOnHill(const OpposedPoints& points, WeightedPoint& point);
+  void layOnHill(const EdgeContact& corner, bool of_a, WeightedPoint& point);
   void layOnHill(const OpposedPoints& points, const Across& axes, const SurfaceProbe::Bends& bends,
                  bool has_crest, WeightedPoint& point);
   void goToCrest(const OpposedPoints& points, const Across& axes, WeightedPoint& point);

@@ -188,13 +188,13 @@ void ShapeProbe::corners(std::size_t index, const OpposedPoints& points, const b
     corner.points.on_a = found.on_a;
     corner.points.on_b = found.on_b;
     corner.points.normal_b = found.normal_b;
-    layOnTipOrRim(a_, vertex, normal, true, corner);
+    layOnTipOrRim(a_, vertex, normal, true, is_peak && vertex == vertices.front(), corner);
     corners.push_back(corner);
   }
 }
 
-bool ShapeProbe::hasTips(bool of_a) const {
-  return of_a && normalsOf(a_).hasTips();
+bool ShapeProbe::hasEnds(bool of_a) const {
+  return of_a && normalsOf(a_).hasEnds();
 }
 
 const ShapeProbe::Corner& ShapeProbe::cornerOf(std::uint32_t vertex, const btVector3& normal) const {
@@ -230,7 +230,7 @@ void ShapeProbe::tips(const OpposedPoints& points, std::vector<std::uint32_t>& v
     tip.points.on_a = at;
     tip.points.on_b = at - into_b * depth;
     // A vertex of what is round is on the hill that the round surface is.
-    layOnRim(a_, vertex, into_b, true, tip.points);
+    layOnRim(a_, vertex, into_b, true, tip);
     tips.push_back(tip);
   }
 }

@@ -58,7 +58,7 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public FaceExten
   /// a line that leaves A by the side of that part. `vertices` is room to work in.
   void tips(const OpposedPoints& points, std::vector<std::uint32_t>& vertices,
             std::vector<EdgeContact>& tips) const;
-  bool hasTips(bool of_a) const override;
+  bool hasEnds(bool of_a) const override;
   bool crossing(const OpposedPoints& points, const btVector3& direction,
                 EdgeContact& crossing) const override;
   bool edgeOnFace(const OpposedPoints& points, bool of_a, const btVector3& normal,

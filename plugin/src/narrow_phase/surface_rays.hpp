@@ -55,18 +55,19 @@ const SmoothNormals& normalsOf(const PlacedPacking& body);
 bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,
                    const btVector3& start, btScalar distance, std::vector<std::uint32_t>& vertices);
 
-/// Returns where a vertex is, moved out along `direction` by the shape's margin.
+/// Returns where a vertex is, moved out along `direction` by the shape's margin; in the rim of a curved face,
+/// where that is furthest out beside the vertex.
 btVector3 cornerAt(const PlacedPacking& body, std::uint32_t vertex, const btVector3& direction);
 
 /// Has a corner of A, or else B, belong to the convex curved face in whose rim it lies, as does the end of a
 /// cylinder: that whose normal is nearest to `way` out of the solid, if that is less than 60 degrees off.
-/// Returns false if the rim goes on to corners further out that way.
+/// Sets which way the rim runs and how it bends. Returns false if it goes on to corners further out.
 bool layOnRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
-              OpposedPoints& corner);
-/// Does the same for a corner that was found, and notes whether it bears nothing; unless it is the tip of a
-/// cone, where nothing bends.
+              EdgeContact& corner);
+/// Does the same for a corner that was found, and notes whether it bears nothing, but not if it `is_highest`
+/// of all beside it; unless it is the tip of a cone, where nothing bends.
 void layOnTipOrRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
-                   EdgeContact& corner);
+                   bool is_highest, EdgeContact& corner);
 
 /// Returns how the curved surface of a solid bends at a triangle.
 Bend bendAt(const PlacedPacking& body, std::size_t triangle, const Across& axes);

@@ -83,6 +83,7 @@ SmoothNormals::SmoothNormals(const Surface& surface) : facets_(surface.triangles
   layOnNeighbours(surface, around);
   setNormals(surface, around);
   setMixed(surface, around);
+  setEnds(surface);
   countToSharp();
 }
 
@@ -412,6 +413,19 @@ void SmoothNormals::setMixed(const Surface& surface, const Around& around) {
   }
 }
 
+void SmoothNormals::setEnds(const Surface& surface) {
+  ends_ = tips_;
+  for (std::uint32_t t = 0; t < facets_.size(); ++t) {
+    if (!(facets_[t].curvature > 0)) continue;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (facets_[t].across[k] < kSharp || isValley({0, t, k})) continue;
+      for (const std::size_t end : {std::size_t(k), next(k)}) ends_.push_back(surface.triangles[t][end]);
+    }
+  }
+  std::sort(ends_.begin(), ends_.end());
+  ends_.erase(std::unique(ends_.begin(), ends_.end()), ends_.end());
+}
+
 void SmoothNormals::countToSharp() {
   for (Facet& facet : facets_) {
     const bool sharp = *std::max_element(facet.across, facet.across + 3) >= kSharp;
@@ -568,6 +582,10 @@ SmoothNormals::Ends SmoothNormals::endsOf(const Ending& ending) const {
 bool SmoothNormals::isValley(const Ending& ending) const {
   const Facet& facet = facets_[ending.triangle];
   return facesOf(ending).inwards[1].dot(facet.face) > 0;
+}
+
+bool SmoothNormals::isSharp(std::size_t triangle, std::size_t edge) const {
+  return facets_[triangle].across[edge] >= kSharp;
 }
 
 SmoothNormals::EdgeFaces SmoothNormals::facesOf(const Ending& ending) const {

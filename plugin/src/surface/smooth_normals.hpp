@@ -57,6 +57,8 @@ class SmoothNormals {
     const Facet& facet = facets_[triangle];
     return (facet.corners[0] + facet.corners[1] + facet.corners[2]) / 3;
   }
+  /// Returns true if an edge of a triangle, from a corner to the next, is sharp.
+  bool isSharp(std::size_t triangle, std::size_t edge) const;
   /// Returns true if a sharp edge lies between a triangle and a point over its plane, not far away.
   bool isPastSharpEdge(std::size_t triangle, const btVector3& point) const;
   /// Names the sharp edge in which the surface ends.
@@ -103,8 +105,10 @@ class SmoothNormals {
   btScalar curvature(std::size_t triangle) const { return facets_[triangle].curvature; }
   /// Returns true if the lines of a cone end at a vertex.
   bool isTip(std::uint32_t vertex) const { return std::binary_search(tips_.begin(), tips_.end(), vertex); }
+  /// Returns true if a convex surface ends at a vertex: in such a tip, or in a sharp edge that juts out.
+  bool isEnd(std::uint32_t vertex) const { return std::binary_search(ends_.begin(), ends_.end(), vertex); }
   /// Returns true if there is such a vertex.
-  bool hasTips() const { return !tips_.empty(); }
+  bool hasEnds() const { return !ends_.empty(); }
 
  private:
   /// This is a triangle. Its edge k goes from corner k to the next. What a line asks for first comes first.
@@ -138,6 +142,7 @@ class SmoothNormals {
              std::size_t corner) const;
   void setNormals(const Surface& surface, const Around& around);
   void setMixed(const Surface& surface, const Around& around);
+  void setEnds(const Surface& surface);
   void countToSharp();
   struct Exit {
     std::size_t edge;  ///< 3 if there is none
@@ -148,7 +153,7 @@ class SmoothNormals {
                          Crossing& crossing);
 
   std::vector<Facet> facets_;
-  std::vector<std::uint32_t> tips_;  ///< sorted
+  std::vector<std::uint32_t> tips_, ends_;  ///< sorted
   /// By how much normals turn aside in the middle of each edge of a triangle, at weights of 1 of both ends.
   std::vector<std::array<btVector3, 3>> mixed_;
 };

@@ -259,17 +259,42 @@ TEST(SurfaceRays, LayCornersOfARimOnItsSide) {
     for (const double beside : {0.0, 0.4, -0.4, 0.9, -0.9, 1.1, -1.1, 3.9, -3.9, 4.1, 6.0, 12.0}) {
       const btVector3 way = cylinder.outwards(angle + beside * kFacet);
       for (const bool of_a : {true, false}) {
-        OpposedPoints corner;
+        EdgeContact rim;
+        const OpposedPoints& corner = rim.points;
         // Four facets are 60 degrees: beyond, it is another part of the solid that is furthest out.
         const bool is_of_side = std::fabs(beside) < 4;
-        EXPECT_EQ(layOnRim(body, vertex, way, of_a, corner), !is_of_side || std::fabs(beside) < 1) << beside;
+        EXPECT_EQ(layOnRim(body, vertex, way, of_a, rim), !is_of_side || std::fabs(beside) < 1) << beside;
         const btVector3& normal = of_a ? corner.normal_a : corner.normal_b;
-        const btVector3 expected =
-            is_of_side ? cylinder.outwards(angle) * btScalar(of_a ? 1 : -1) : btVector3(0, 0, 0);
+        // On the rim's circle, where it is furthest out, unless that is beyond the next corner.
+        const btVector3 outwards = std::fabs(beside) < 1 ? way : cylinder.outwards(angle);
+        const btVector3 expected = is_of_side ? outwards * btScalar(of_a ? 1 : -1) : btVector3(0, 0, 0);
         EXPECT_NEAR(normal.distance(expected), 0, kRounding);
         EXPECT_NEAR(of_a ? corner.curvature_a : corner.curvature_b,
                     is_of_side ? 1 / TurnedCylinder::kRadius : 0, 1e-4);
         EXPECT_EQ((of_a ? corner.triangle_a : corner.triangle_b) == OpposedPoints::kNone, !is_of_side);
+      }
+    }
+  }
+}
+
+TEST(SurfaceRays, TakeARimForACircle) {
+  const TurnedCylinder cylinder;
+  const PlacedPacking body(*cylinder.shape, somewhere(), Estimator::raw, 0);
+  constexpr double kFacet = 2 * M_PI / TurnedCylinder::kAround;
+  const btVector3 axis = body.world.getBasis().getColumn(2);
+  for (std::uint32_t vertex = TurnedCylinder::kAround; vertex < 2 * TurnedCylinder::kAround; ++vertex) {
+    for (const double beside : {0.0, 0.3, -0.5, 0.9}) {
+      for (const double lean : {0.02, 0.5, 1.0}) {
+        const double angle = (vertex % TurnedCylinder::kAround + beside) * kFacet;
+        const btVector3 outwards = cylinder.outwards(angle),
+                        way = outwards * btScalar(std::cos(lean)) + axis * btScalar(std::sin(lean));
+        const btVector3 crest = outwards * btScalar(TurnedCylinder::kRadius) + axis * 2;
+        EXPECT_NEAR(cornerAt(body, vertex, way).distance(crest), 0, 2e-3) << beside << " " << lean;
+        EdgeContact rim;
+        EXPECT_TRUE(layOnRim(body, vertex, way, true, rim));
+        EXPECT_NEAR(rim.points.normal_a.distance(outwards), 0, 2e-3);
+        EXPECT_NEAR(std::fabs(rim.along.dot(outwards.cross(axis))), 1, 1e-5);
+        EXPECT_NEAR(rim.bend_along, std::cos(lean) / TurnedCylinder::kRadius, 0.01);
       }
     }
   }
@@ -280,11 +305,12 @@ TEST(SurfaceRays, LayCornersOfFlatFacesOnNothing) {
   const PlacedPacking body = box.placed();
   const TurnedCylinder cylinder;
   const PlacedPacking round(*cylinder.shape, somewhere(), Estimator::raw, 0);
-  OpposedPoints corner;
+  EdgeContact rim;
   for (std::uint32_t vertex = 0; vertex < 8; ++vertex)
-    EXPECT_TRUE(layOnRim(body, vertex, body.world.getBasis().getColumn(0), true, corner));
+    EXPECT_TRUE(layOnRim(body, vertex, body.world.getBasis().getColumn(0), true, rim));
   // Along its axis a cylinder ends in a flat face.
-  EXPECT_TRUE(layOnRim(round, 0, -round.world.getBasis().getColumn(2), true, corner));
+  EXPECT_TRUE(layOnRim(round, 0, -round.world.getBasis().getColumn(2), true, rim));
+  const OpposedPoints& corner = rim.points;
   EXPECT_TRUE(corner.normal_a.isZero());
   EXPECT_EQ(corner.curvature_a, 0);
   EXPECT_EQ(corner.triangle_a, OpposedPoints::kNone);

@@ -230,7 +230,7 @@ TEST(SmoothNormals, OnlyConesEndInTips) {
     const SmoothNormals normals(surface);
     int tips = 0;
     for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) tips += normals.isTip(v);
-    EXPECT_EQ(normals.hasTips(), tips > 0);
+    EXPECT_TRUE(normals.hasEnds() || tips == 0);
     return tips;
   };
   std::vector<std::array<double, 2>> ball;
@@ -241,6 +241,22 @@ TEST(SmoothNormals, OnlyConesEndInTips) {
   EXPECT_EQ(tipsOf(turnedMesh(ball, 48)), 0);
   EXPECT_EQ(tipsOf(turnedMesh({{0, 0}, {0.5, 0}, {0.5, 1}, {0, 1}}, 48)), 0);  // a cylinder
   EXPECT_EQ(tipsOf(turnedMesh({{0, 0}, {0.5, 0}, {0, 1}}, 4)), 0);             // a pyramid
+}
+
+TEST(SmoothNormals, ConvexSurfacesEndInTipsAndRims) {
+  const auto endsOf = [](const Mesh& mesh) {
+    const Surface surface = surfaceOf(mesh);
+    const SmoothNormals normals(surface);
+    int ends = 0;
+    for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) ends += normals.isEnd(v);
+    EXPECT_EQ(normals.hasEnds(), ends > 0);
+    return ends;
+  };
+  EXPECT_EQ(endsOf(turnedMesh({{0, 0}, {0.5, 0}, {0, 1}}, 24)), 25);            // a cone
+  EXPECT_EQ(endsOf(turnedMesh({{0, 0}, {0.5, 0}, {0.5, 1}, {0, 1}}, 48)), 96);  // a cylinder
+  // With a hollow in its top: that ends in no sharp edge of a convex surface.
+  EXPECT_EQ(endsOf(turnedMesh({{0, 0}, {0.5, 0}, {0.5, 1}, {0.3, 1}, {0.3, 0.5}, {0, 0.5}}, 48)), 96);
+  EXPECT_EQ(endsOf(prismMesh({{-1, 0}, {1, 0}, {1, 1}, {-1, 1}})), 0);  // a box
 }
 
 TEST(SmoothNormals, FacesOfAPyramidAreFlat) {
