@@ -1,6 +1,7 @@
 #include "source.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "innersphere/mesh.hpp"
 #include "innersphere/packer.hpp"
@@ -14,6 +15,19 @@ bool endsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+/// A box around a closed void, of "hollow:LENGTHxWIDTHxHEIGHTxWALL"; null if that is not the name.
+std::unique_ptr<Solid> hollowBox(const std::string& name) {
+  double x = 0, y = 0, z = 0, wall = 0;
+  if (std::sscanf(name.c_str(), "hollow:%lfx%lfx%lfx%lf", &x, &y, &z, &wall) != 4) return nullptr;
+  Mesh mesh = makeBox({x, y, z})->surface();
+  const Mesh inside = makeBox({x - 2 * wall, y - 2 * wall, z - 2 * wall})->surface();
+  const auto before = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), inside.vertices.begin(), inside.vertices.end());
+  for (const auto& t : inside.triangles)
+    mesh.triangles.push_back({before + t[0], before + t[2], before + t[1]});
+  return makeSolid(mesh, name);
+}
+
 }  // namespace
 
 std::string plainName(const std::string& source) {
@@ -24,6 +38,7 @@ std::string plainName(const std::string& source) {
 std::unique_ptr<Solid> solidFrom(const std::string& source) {
   const std::vector<std::string> known = namedSolids();
   if (std::find(known.begin(), known.end(), source) != known.end()) return makeNamedSolid(source);
+  if (std::unique_ptr<Solid> hollow = hollowBox(source)) return hollow;
   return makeSolid(readMesh(source), source);
 }
 

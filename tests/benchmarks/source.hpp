@@ -12,7 +12,8 @@ namespace innersphere::benchmarks {
 /// The name of a file without folders and ending; other names as they are.
 std::string plainName(const std::string& source);
 
-/// Reads a mesh file, or makes the named solid.
+/// Reads a mesh file, or makes the named solid, or a box around a closed void:
+/// "hollow:LENGTHxWIDTHxHEIGHTxWALL", in any unit.
 std::unique_ptr<Solid> solidFrom(const std::string& source);
 
 /// Reads a packing file (.cbor, .json), or packs a mesh file or named solid with `spheres` spheres.
