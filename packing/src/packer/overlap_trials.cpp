@@ -38,7 +38,7 @@ constexpr double kLeastByTriangles = 1e-5, kLeastBySamples = 0.002, kMostShared 
 // From here on their errors are told: enough are shallower.
 constexpr double kShallowest = 3e-5;
 
-// Walls that lie along walls are turned by 1 to 20 degrees: their logarithms are evenly spread.
+// Copies that lie upon the solid are turned by 1 to 20 degrees: their logarithms are evenly spread.
 constexpr double kLeastTurned = std::numbers::pi / 180, kMostTurned = 20 * kLeastTurned;
 
 // The least ball inside the solid, as a part of the largest about its centre. Others touch the surface.
@@ -195,7 +195,7 @@ Start nestedStart(const TrueOverlap& overlap, std::size_t number) {
   return {turn, middle - turn * middle, direction(random(number, 0))};
 }
 
-/// A face of the copy touches a face of the solid, but for some degrees.
+/// A face of the copy lies flat on a face of the solid.
 Start facingStart(const SurfaceSamples& samples, std::size_t number) {
   const Point places = random(number, 1);
   const auto sample = [&](double part) {
@@ -209,7 +209,7 @@ Start facingStart(const SurfaceSamples& samples, std::size_t number) {
   const double w = 1 - normal.dot(outwards);
   const Eigen::Quaterniond facing = w > 1e-6 ? Eigen::Quaterniond(w, axis[0], axis[1], axis[2]).normalized()
                                              : Eigen::Quaterniond::Identity();
-  const Eigen::Matrix3d turn = (slightTurn(places[2], random(number, 3)) * facing * any).toRotationMatrix();
+  const Eigen::Matrix3d turn = (facing * any).toRotationMatrix();
   return {turn, samples.points()[at] - turn * samples.points()[of], outwards, true};
 }
 
@@ -222,8 +222,10 @@ OverlapTrial findTrial(const TrueOverlap& overlap, const Start& start, double ta
     double root() const { return std::sqrt(share.fraction); }
   };
   const auto poseAt = [&](double distance) { return Pose{start.turn, start.shift + distance * start.way}; };
+  // Points are looked up in cells that the surface cuts: faces that touch pass for a layer there.
+  const bool thin_layer = start.touches && target < kShallowShare;
   const auto look = [&](double distance, double most) {
-    return Step{distance, overlap.roughlyAt(poseAt(distance), most)};
+    return Step{distance, overlap.roughlyAt(poseAt(distance), thin_layer ? 0 : most)};
   };
   Step near = look(0, 1), far{std::numbers::sqrt3, {}};
   for (double push = kFirstPush; start.touches && near.share.fraction < target && push < kLastPush;

@@ -34,11 +34,11 @@ struct OverlapTrials {
 };
 
 /// Places `count` copies. Of each three one is turned at random, with a random point of it on one of the
-/// solid, one lies upon the solid and one has a face on a face, but for some degrees. Each moves until it is
-/// as deep as wanted: the logarithms of volumes are evenly spread. `deep` more are turned or moved a little
-/// from where they lie upon the solid, or both, and share more than kDeepOverlap of it. What all share is
-/// found from `surface`, in the packing's frame, if it is closed and has the solid's volume; more than 1 % of
-/// the solid is found from sample points if it has another, and all if it is open: from few for the deep
+/// solid, one lies upon the solid but for some degrees, and one has a face flat on a face. Each moves until
+/// it is as deep as wanted: the logarithms of volumes are evenly spread. `deep` more are turned or moved a
+/// little from where they lie upon the solid, or both, and share more than kDeepOverlap of it. What all share
+/// is found from `surface`, in the packing's frame, if it is closed and has the solid's volume; more than 1 %
+/// of the solid is found from sample points if it has another, and all if it is open: from few for the deep
 /// ones. If it is closed, there are a third as many planes through random points of the solid. As many balls
 /// are about random points of it, from a tenth to all as large as fits there. `samples` are
 /// points of the surface; without any no face lies on a face. `volume` is the solid's, in units of the unit
