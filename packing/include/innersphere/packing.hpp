@@ -82,15 +82,17 @@ double overlapDepth(double volume, const Vec3d& area);
 
 /// Tells how far overlap volumes found with the spheres are from the truth. The packer measures this with the
 /// solid and copies of it, unless PackOptions::overlap_errors is off. Of the copies one third is turned at
-/// random, one third lies upon the solid and one third has a face on a face of it, but for some degrees, so
-/// that walls lie along walls. They share 0.001 to 45 % of the volume. Spheres err at surfaces, so errors
+/// random, one third lies upon the solid but for some degrees and one third has a face flat on a face of it,
+/// so that walls lie along walls. They share 0.001 to 45 % of the volume. Spheres err at surfaces, so errors
 /// depend on how deep an overlap is, whatever its volume: a layer is as far off as a corner that is as deep.
 /// Depth is what the spheres find, not the truth, which a query does not know.
 ///
 /// Copies that share more lie nearly upon the solid. Volume-true spheres, which overlap each other, then find
 /// too much, because they meet themselves. So 2 kOverlapErrorPoses more copies, a little turned, moved or
-/// both, share 45 to 100 %. Their errors go with what is found. For bodies of other shapes that share as much
-/// of both they are too large.
+/// both, share 45 to 100 %. Their errors go with what is found, which for these may be more than the solid
+/// has. A query finds no more than that, and is told what errs where the sum has just come down to it: where
+/// all is found, that is the largest error there is. For bodies of other shapes that share as much of both
+/// they are too large.
 ///
 /// Copies of a thin solid are thin: they do not tell how well its spheres fill what is deep in a thick body.
 /// So the solid is also cut by planes, which are as thick as any. And what is small in a large solid may be
@@ -121,11 +123,12 @@ struct OverlapErrors {
     /// The errors of the solid cut by planes, times the root of two: the other body's are not smaller. Empty
     /// if the surface is not closed.
     std::vector<AtDepth> planes;
-    /// The errors of copies that share more than kDeepOverlap of the solid, since they lie nearly upon it, by
-    /// the volume in place of the depth. Each is from a few poses; bounds are as many times the mean as the
-    /// largest error of any is that of its row. (One row with a power, of the first files, is for all
-    /// volumes.) True volumes are sampled if the surface is not closed or has another volume than the solid,
-    /// to some percent if it is thin. Empty for the spheres' own radii, which do not overlap each other.
+    /// The errors of copies that share or find more than kDeepOverlap of the solid, since they lie nearly
+    /// upon it, by the volume that the spheres find in place of the depth: up to more than 1. Each is from a
+    /// few poses; bounds are as many times the mean as the largest error of any is that of its row. (One row
+    /// with a power, of the first files, is for all volumes.) True volumes are sampled if the surface is not
+    /// closed or has another volume than the solid, to some percent if it is thin. Empty for the spheres' own
+    /// radii, which do not overlap each other.
     std::vector<AtDepth> deep;
     /// The errors of balls inside the solid, times the root of two as those of planes are, by the volume in
     /// place of the depth. Errors beyond the last row fall with the root of the volume, as those of spheres
@@ -199,11 +202,13 @@ const VolumeTrueRadii* volumeTrueRadii(const Packing& packing, std::size_t count
 
 /// Returns the errors to expect at a depth that is relative to the cube root of the solid's volume. Between
 /// two depths of the estimate the logarithms are linear; beyond the first and the last their errors hold.
-/// Where lenses have a larger `thickness` than Estimate::thickest, those of planes count if they are smaller.
+/// Where lenses have a larger `thickness` than Estimate::thickest, those of planes count if they are smaller,
+/// from the depth of the first of them on.
 /// Errors are those of overlaps of this `volume`, relative to the solid's, and no smaller than those of balls
 /// inside the solid; 0: as large as those measured.
-/// Where they are more than kDeepOverlap `of_larger`, the part of the larger of both solids, those of copies
-/// that lie nearly upon the solid count instead; NaN if these were not measured.
+/// Where they are more than kDeepOverlap `of_larger`, the part of the larger of both solids, or than the
+/// first of Estimate::deep, if that is less, those of copies that lie nearly upon the solid count instead;
+/// NaN if these were not measured.
 ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness = 0,
                             double volume = 0, double of_larger = 0);
 

@@ -45,19 +45,13 @@ std::vector<Run> runsOf(std::vector<Finding>& findings) {
   return runs;
 }
 
-/// Runs of kDeepRun that overlap. What is equally deep belongs together: much of what lies upon the solid
-/// finds all of it.
+/// Runs of kDeepRun that overlap.
 std::vector<Run> deepRunsOf(std::vector<Finding>& findings) {
   sortByDepth(findings);
   std::vector<Run> runs;
   if (findings.size() < 2 * kDeepRun) return runs;
   const std::size_t rest = findings.size() - kDeepRun, steps = rest / kDeepStep;
-  for (std::size_t i = 0; i <= steps; ++i) {
-    std::size_t begin = i * rest / steps, end = begin + kDeepRun;
-    while (begin > 0 && findings[begin - 1].depth == findings[begin].depth) --begin;
-    while (end < findings.size() && findings[end].depth == findings[end - 1].depth) ++end;
-    runs.push_back(Run(findings).subspan(begin, end - begin));
-  }
+  for (std::size_t i = 0; i <= steps; ++i) runs.push_back(Run(findings).subspan(i * rest / steps, kDeepRun));
   return runs;
 }
 
@@ -157,8 +151,6 @@ std::vector<OverlapErrors::AtDepth> errorsOfInside(std::vector<Finding> findings
 }
 
 std::vector<OverlapErrors::AtDepth> errorsOfDeep(std::vector<Finding> findings) {
-  // Of a query that finds less the others tell.
-  std::erase_if(findings, [](const Finding& one) { return !(one.volume > kDeepOverlap); });
   const std::vector<Run> runs = deepRunsOf(findings);
   std::vector<Trend> trends;
   double largest = 1;  // as many times the mean of its run

@@ -18,7 +18,7 @@ struct Finding {
 std::vector<OverlapErrors::AtDepth> errorsByDepth(std::vector<Finding> findings);
 
 /// Returns the same for copies that lie nearly upon the solid, by rising volume instead of depth: see
-/// OverlapErrors::Estimate::deep. Nothing if only a few find more than kDeepOverlap.
+/// OverlapErrors::Estimate::deep. Nothing if there are fewer than ten.
 std::vector<OverlapErrors::AtDepth> errorsOfDeep(std::vector<Finding> findings);
 
 /// Returns the same for balls inside the solid, by rising volume: see OverlapErrors::Estimate::inside.

@@ -55,12 +55,16 @@ ExpectedError errorAt(const std::vector<OverlapErrors::AtDepth>& rows, double de
 
 ExpectedError expectedError(const OverlapErrors::Estimate& estimate, double depth, double thickness,
                             double volume, double of_larger) {
+  // Where copies nearly upon the solid find less than kDeepOverlap, as thin ones do, it begins there.
+  if (!estimate.deep.empty() && of_larger > std::min(kDeepOverlap, estimate.deep.front().depth))
+    return errorAt(estimate.deep, of_larger, of_larger);
   if (of_larger > kDeepOverlap) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    return estimate.deep.empty() ? ExpectedError{kNan, kNan} : errorAt(estimate.deep, of_larger, of_larger);
+    return {kNan, kNan};
   }
   ExpectedError error = errorAt(estimate.copies, depth, volume);
-  if (thickness > estimate.thickest) {
+  // What is shallower than all that planes cut off is not theirs.
+  if (thickness > estimate.thickest && !estimate.planes.empty() && depth >= estimate.planes.front().depth) {
     const ExpectedError planes = errorAt(estimate.planes, depth, volume);
     error = {std::min(error.mean, planes.mean), std::min(error.bound, planes.bound)};
   }

@@ -369,6 +369,11 @@ TEST(PackerMeasures, ThickBodiesAreForetoldByPlanes) {
     EXPECT_LT(thick.mean, 0.6 * thin.mean);
     EXPECT_LT(thick.bound, thin.bound);
   }
+  // Of what is shallower than all that planes cut off they know nothing.
+  for (const double times : {0.5, 0.99}) {
+    const double depth = times * blade.planes.front().depth;
+    EXPECT_EQ(expectedError(blade, depth, 1.1 * blade.thickest).mean, expectedError(blade, depth).mean);
+  }
 }
 
 // The limit of a mean is as many times the mean at all depths: that of a normal distribution, from the
@@ -533,21 +538,54 @@ TEST(PackerMeasures, ErrorsOfDeepCopiesAreForetoldFromTheirScatter) {
   }
 }
 
-// Spheres that meet themselves find no more than there is: all of these count as one. What is found to share
-// less than 45 % is foretold by the other rows.
-TEST(PackerMeasures, DeepCopiesThatFindAllCountTogether) {
+// Spheres that meet themselves find up to 1.2 times what there is. A query finds all, whatever they share,
+// and is told what the error is where the sum has just come down to that: the largest.
+TEST(PackerMeasures, DeepCopiesThatFindAllAreForetoldTheLargestError) {
   std::vector<Finding> findings;
-  for (int i = 0; i < 10; ++i) findings.push_back({0.3, 0.9, 0.3});
-  for (int i = 0; i < 20; ++i) findings.push_back({0.5 + 0.02 * i, 0.02, 0.5 + 0.02 * i});
-  for (int i = 0; i < 10; ++i) findings.push_back({1, 0.01 * i, 1});
-  const std::vector<OverlapErrors::AtDepth> rows = errorsOfDeep(findings);
-  ASSERT_GT(rows.size(), 5u);
-  EXPECT_GT(rows.front().depth, 0.5);
-  EXPECT_LT(rows.front().error.mean, 0.04);
-  EXPECT_EQ(rows.back().depth, 1);
-  EXPECT_NEAR(rows.back().error.bound / rows.front().error.bound, 0.045 / 0.02, 1e-9);
-  findings.resize(19);
+  const auto error = [](double found) { return 0.1 * found * found; };
+  for (int i = 0; i < 40; ++i) {
+    const double found = 0.5 + 0.7 * i / 39;
+    findings.push_back({found, error(found), found});
+  }
+  const OverlapErrors::Estimate estimate{{}, 0, {}, errorsOfDeep(findings), {}};
+  ASSERT_GT(estimate.deep.size(), 10u);
+  EXPECT_GT(estimate.deep.back().depth, 1);
+  const ExpectedError all = expectedError(estimate, 0.3, 0, 1, 1);
+  EXPECT_GT(all.mean, error(1));
+  EXPECT_LT(all.mean, 1.2 * error(1));
+  EXPECT_GT(all.bound, all.mean);
+  EXPECT_LT(all.bound, 1.3 * error(1));
+  findings.resize(9);
   EXPECT_TRUE(errorsOfDeep(findings).empty());
+}
+
+// Copies of thin walls that find less than 45 % are foretold by those like them, not by the copies of all
+// depths.
+TEST(PackerMeasures, DeepCopiesCountFromTheFirstOfThem) {
+  std::vector<Finding> findings;
+  for (int i = 0; i < 40; ++i) findings.push_back({0.2 + 0.02 * i, 0.3, 0.2 + 0.02 * i});
+  const OverlapErrors::Estimate thin{{{0.1, {0.01, 0.02}}}, 0, {}, errorsOfDeep(findings), {}};
+  EXPECT_NEAR(expectedError(thin, 0.1, 0, 0.3, 0.3).bound, 0.3, 1e-9);
+  EXPECT_EQ(expectedError(thin, 0.1, 0, 0.19, 0.19).bound, 0.02);
+  // None found less than 60 %: from 45 % on.
+  findings.erase(findings.begin(), findings.begin() + 20);
+  const OverlapErrors::Estimate thick{{{0.1, {0.01, 0.02}}}, 0, {}, errorsOfDeep(findings), {}};
+  EXPECT_EQ(expectedError(thick, 0.1, 0, 0.44, 0.44).bound, 0.02);
+  EXPECT_NEAR(expectedError(thick, 0.1, 0, 0.46, 0.46).bound, 0.3, 1e-9);
+}
+
+// A third of the copies of a box have a face flat on a face of it: they are turned about one of its axes.
+TEST(PackerMeasures, FacesOfCopiesLieFlatOnFaces) {
+  const auto solid = makeSolid(boxMesh({}, {1, 0.5, 0.4}), "box");
+  const Container container(*solid);
+  const OverlapTrials trials = makeOverlapTrials(container, container.toSurface(solid->surface()),
+                                                 SurfaceSamples(solid->surface(), container),
+                                                 0.2 * std::pow(container.side(), -3), 60, 0);
+  EXPECT_GE(trials.trials.size(), 58u);
+  int flat = 0;
+  for (const OverlapTrial& trial : trials.trials)
+    flat += std::abs(trial.pose.rotation.cwiseAbs().maxCoeff() - 1) < 1e-9;
+  EXPECT_GE(flat, 19);
 }
 
 // As of the first files that know them.
