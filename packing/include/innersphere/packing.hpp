@@ -90,9 +90,9 @@ double overlapDepth(double volume, const Vec3d& area);
 /// Copies that share more lie nearly upon the solid. Volume-true spheres, which overlap each other, then find
 /// too much, because they meet themselves. So 2 kOverlapErrorPoses more copies, a little turned, moved or
 /// both, share 45 to 100 %. Their errors go with what is found, which for these may be more than the solid
-/// has. A query finds no more than that, and is told what errs where the sum has just come down to it: where
-/// all is found, that is the largest error there is. For bodies of other shapes that share as much of both
-/// they are too large.
+/// has. A query finds no more than that: then the error is anything from none to that where the sum has just
+/// come down to it, half of which is the mean. For bodies of other shapes that share as much of both they are
+/// too large.
 ///
 /// Copies of a thin solid are thin: they do not tell how well its spheres fill what is deep in a thick body.
 /// So the solid is also cut by planes, which are as thick as any. And what is small in a large solid may be
@@ -124,7 +124,7 @@ struct OverlapErrors {
     /// if the surface is not closed.
     std::vector<AtDepth> planes;
     /// The errors of copies that share or find more than kDeepOverlap of the solid, since they lie nearly
-    /// upon it, by the volume that the spheres find in place of the depth: up to more than 1. Each is from a
+    /// upon it, by the volume that the spheres find in place of the depth. Each is from a
     /// few poses; bounds are as many times the mean as the largest error of any is that of its row. (One row
     /// with a power, of the first files, is for all volumes.) True volumes are sampled if the surface is not
     /// closed or has another volume than the solid, to some percent if it is thin. Empty for the spheres' own

@@ -26,6 +26,9 @@ constexpr auto kPoses = static_cast<double>(kOverlapErrorPoses);
 // few poses tell them, and a run begins at every second one.
 constexpr std::size_t kDeepRun = 5, kDeepStep = 2;
 
+// What is next to all of a solid.
+constexpr double kJustAll = 1 - 1e-6;
+
 using Run = std::span<const Finding>;
 
 void sortByDepth(std::vector<Finding>& findings) {
@@ -165,6 +168,13 @@ std::vector<OverlapErrors::AtDepth> errorsOfDeep(std::vector<Finding> findings) 
     if (rows.empty() || depth > rows.back().depth)
       rows.push_back({depth, {std::min(limit * mean, 1.0), std::min(largest * mean, 1.0)}, depth, 0});
   }
+  if (rows.empty() || findings.back().depth < 1) return rows;
+  // A query finds no more than all. Then the sum has just come down to that, or is more and the error any
+  // less.
+  const ExpectedError all = expectedError({{}, 0, {}, rows, {}}, 0, 0, 1, 1);
+  std::erase_if(rows, [](const OverlapErrors::AtDepth& at) { return at.depth >= kJustAll; });
+  rows.push_back({kJustAll, all, 1, 0});
+  rows.push_back({1, {all.mean / 2, all.bound}, 1, 0});
   return rows;
 }
 

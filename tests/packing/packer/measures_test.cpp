@@ -495,12 +495,12 @@ TEST(PackerMeasures, CopiesNearlyUponTheSolidShareWhatTheirSurfacesDo) {
   EXPECT_EQ(turned, 13);
 }
 
-/// 40 copies that find 46 to 100 % and have these errors at these volumes.
+/// 40 copies that find 46 to 99 % and have these errors at these volumes.
 template <class ErrorAt>
 OverlapErrors::Estimate foretoldOfDeep(const ErrorAt& error_at) {
   std::vector<Finding> findings;
   for (int i = 0; i < 40; ++i) {
-    const double volume = 0.46 + 0.54 * i / 39;
+    const double volume = 0.46 + 0.53 * i / 39;
     findings.push_back({volume, error_at(volume, i), volume});
   }
   return {{}, 0, {}, errorsOfDeep(findings), {}};
@@ -538,9 +538,9 @@ TEST(PackerMeasures, ErrorsOfDeepCopiesAreForetoldFromTheirScatter) {
   }
 }
 
-// Spheres that meet themselves find up to 1.2 times what there is. A query finds all, whatever they share,
-// and is told what the error is where the sum has just come down to that: the largest.
-TEST(PackerMeasures, DeepCopiesThatFindAllAreForetoldTheLargestError) {
+// Spheres that meet themselves find up to 1.2 times what there is. A query finds all, whatever they share:
+// any error up to that where the sum has just come down to it, half of it in the mean.
+TEST(PackerMeasures, DeepCopiesThatFindAllErrByAnyPartOfTheLargestError) {
   std::vector<Finding> findings;
   const auto error = [](double found) { return 0.1 * found * found; };
   for (int i = 0; i < 40; ++i) {
@@ -549,12 +549,13 @@ TEST(PackerMeasures, DeepCopiesThatFindAllAreForetoldTheLargestError) {
   }
   const OverlapErrors::Estimate estimate{{}, 0, {}, errorsOfDeep(findings), {}};
   ASSERT_GT(estimate.deep.size(), 10u);
-  EXPECT_GT(estimate.deep.back().depth, 1);
-  const ExpectedError all = expectedError(estimate, 0.3, 0, 1, 1);
-  EXPECT_GT(all.mean, error(1));
-  EXPECT_LT(all.mean, 1.2 * error(1));
-  EXPECT_GT(all.bound, all.mean);
-  EXPECT_LT(all.bound, 1.3 * error(1));
+  const ExpectedError nearly = expectedError(estimate, 0.3, 0, 0.999, 0.999),
+                      all = expectedError(estimate, 0.3, 0, 1, 1);
+  EXPECT_GT(nearly.mean, error(0.999));
+  EXPECT_LT(nearly.mean, 1.2 * error(1));
+  EXPECT_GT(nearly.bound, nearly.mean);
+  EXPECT_NEAR(all.mean, nearly.mean / 2, 0.01 * error(1));
+  EXPECT_NEAR(all.bound, nearly.bound, 0.01 * error(1));
   findings.resize(9);
   EXPECT_TRUE(errorsOfDeep(findings).empty());
 }
