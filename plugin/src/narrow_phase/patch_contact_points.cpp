@@ -204,20 +204,19 @@ void PatchContactPoints::addLineEnds(const OpposedPoints& points) {
 }
 
 /// Lays what was found at a corner of A, or else of B, or at the end of a line, on a hill of its own. In a
-/// rim it falls along the rim only: across it there is no more of what bends.
+/// rim, where it is at the top, it falls along the rim only: across it there is no more of what bends.
 void PatchContactPoints::layOnHill(const EdgeContact& corner, bool of_a, WeightedPoint& point) {
   const OpposedPoints& points = corner.points;
   const Across axes(point.point.normal);
   point.bends = true;
   point.slope = points.normal_b - points.normal_a;
   SurfaceProbe::Bends bends = surfaces_.bends(points, axes);
-  const bool in_rim = !corner.along.isZero();
-  if (in_rim) {
+  point.is_top = !corner.along.isZero();
+  if (point.is_top) {
     const btVector3 across = corner.along.cross(point.point.normal).normalized();
     (of_a ? bends.a : bends.b) = Bend::about(across, axes, corner.bend_along);
   }
-  layOnHill(points, axes, bends, !in_rim, point);
-  point.is_top = in_rim;
+  layOnHill(points, axes, bends, true, point);
 }
 
 /// Notes how the surfaces bend where a point was found, and where the top of its hill is.
