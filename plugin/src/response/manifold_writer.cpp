@@ -216,27 +216,29 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
   point.m_localPointA = a.getWorldTransform().invXform(point.m_positionWorldOnA);
 }
 
-/// Whether a point that may be the top of a hill is that of the hill on which another one is. Along a ridge,
-/// where a hill has no top, all places are.
-bool isTopOf(const ContactPoint& top, const ContactPoint& point, btScalar separation) {
-  const Across axes = bendAxes(point);
-  const Hill hill(point.bend_a, point.bend_b, point.depth, axes);
-  btVector3 way(0, 0, 0);
-  for (int i = 0; i < 2; ++i) {
-    if (hill.hasTop(i)) way += hill.axis(i) * hill.axis(i).dot(top.on_b - point.on_b);
-  }
-  return way.distance(point.to_top) < btMax(kSameHill * way.length(), kSameTop * separation);
-}
-
 /// A point above a slope whose hilltop is among the points. A SubstepSolver has the hill go along with the
 /// bodies, so that its top meets the other body before the slope does. Tops of other hills do not count: they
-/// may touch while this one still comes down.
-bool leavesItToTop(const ContactPatch& patch, int index, btScalar separation) {
+/// may touch while this one still comes down. Along a ridge, where a hill has no top, all places are tops,
+/// but one end may touch while the other comes down: it has to be as deep after the step, too, as the ridge
+/// is here.
+bool leavesItToTop(const ContactPatch& patch, int index, const btVector3& origin, const PairMotion& motion,
+                   btScalar time_step, btScalar separation) {
   const ContactPoint& point = patch.points[index];
   if (point.depth >= 0 || point.to_top.isZero()) return false;
+  const Hill hill(point.bend_a, point.bend_b, point.depth, bendAxes(point));
+  const auto approachAt = [&](const btVector3& place) {
+    return motion.approachAt(origin + place, point.normal);
+  };
   for (int i = 0; i < patch.count; ++i) {
     const ContactPoint& other = patch.points[i];
-    if (other.depth > point.depth + point.below_top / 2 && isTopOf(other, point, separation)) return true;
+    btVector3 across(0, 0, 0), along(0, 0, 0);
+    for (int k = 0; k < 2; ++k)
+      (hill.hasTop(k) ? across : along) += hill.axis(k) * hill.axis(k).dot(other.on_b - point.on_b);
+    const btScalar deeper = other.depth - point.depth - point.below_top / 2;
+    const btScalar falls_back = time_step * (approachAt(other.on_b - along) - approachAt(other.on_b));
+    if (deeper > btMax(btScalar(0), falls_back) &&
+        across.distance(point.to_top) < btMax(kSameHill * across.length(), kSameTop * separation))
+      return true;
   }
   return false;
 }
@@ -364,7 +366,9 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     point.depth = patch.points[i].depth;
     point.law = law.at(point.depth);
     if (-point.depth > manifold.getContactBreakingThreshold()) continue;
-    if (solver.substeps && leavesItToTop(patch, i, manifold.getContactBreakingThreshold())) continue;
+    if (solver.substeps &&
+        leavesItToTop(patch, i, origin, motion, point.law.time_step, manifold.getContactBreakingThreshold()))
+      continue;
     point.normal = patch.points[i].normal;
     point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
     point.on_b = origin + patch.points[i].on_b;
