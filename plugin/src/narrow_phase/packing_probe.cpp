@@ -159,8 +159,9 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
   const btVector3 way = of_a ? normal : -normal;
   const btVector3 start = (of_a ? points.on_a : points.on_b) - offset;
   const btVector3 face = (of_a ? points.on_b : points.on_a) - offset;
+  const btScalar reach = size + acrossBend(of_a ? points.curvature_a : points.curvature_b);
   const bool is_peak =
-      cornersUphill(own, of_a ? points.triangle_a : points.triangle_b, way, start, size, vertices);
+      cornersUphill(own, of_a ? points.triangle_a : points.triangle_b, way, start, reach, vertices);
   for (const std::uint32_t vertex : vertices) {
     const btVector3 at = cornerAt(own, vertex, way);
     SurfacePoint under;

@@ -179,8 +179,8 @@ void ShapeProbe::findFaceSpheres(FaceSpheres& found) const {
 void ShapeProbe::corners(std::size_t index, const OpposedPoints& points, const btVector3& normal, bool of_a,
                          std::vector<std::uint32_t>& vertices, std::vector<EdgeContact>& corners) const {
   if (!of_a) return;
-  const bool is_peak = cornersUphill(a_, points.triangle_a, normal, points.on_a,
-                                     surfaceDistance(near_spheres_[index]), vertices);
+  const btScalar reach = surfaceDistance(near_spheres_[index]) + acrossBend(points.curvature_a);
+  const bool is_peak = cornersUphill(a_, points.triangle_a, normal, points.on_a, reach, vertices);
   for (const std::uint32_t vertex : vertices) {
     const Corner& found = cornerOf(vertex, normal);
     if (!found.is_over) continue;

@@ -55,6 +55,12 @@ const SmoothNormals& normalsOf(const PlacedPacking& body);
 bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,
                    const btVector3& start, btScalar distance, std::vector<std::uint32_t>& vertices);
 
+/// Returns how much further than its spheres reach the end of a convex face may be furthest out: its radius
+/// [m].
+inline btScalar acrossBend(btScalar curvature) {
+  return curvature > 0 ? 1 / curvature : btScalar(0);
+}
+
 /// Returns where a vertex is, moved out along `direction` by the shape's margin; in the rim of a curved face,
 /// where that is furthest out beside the vertex.
 btVector3 cornerAt(const PlacedPacking& body, std::uint32_t vertex, const btVector3& direction);
