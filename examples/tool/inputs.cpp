@@ -137,12 +137,10 @@ void addScaleOption(Command& command, MeshOptions& options) {
 }
 
 void addRepairOption(Command& command, MeshOptions& options) {
-  command.flag(
-      "--repair", options.repair,
-      "Take a mesh that does not bound a volume anyway: vertices within 1e-4 of the diagonal are welded "
-      "where it "
-      "is open, holes closed with flat fans, ends of pipes with rings, inside is where its winding number "
-      "exceeds 1/2");
+  command.flag("--repair", options.repair,
+               "Take a mesh that does not bound a volume anyway: vertices within 1e-4 of the diagonal are "
+               "welded where it is open, holes closed with flat fans, ends of pipes with rings, inside is "
+               "where its winding number exceeds 1/2");
 }
 
 std::shared_ptr<const Solid> loadSolid(const SolidArguments& arguments, std::vector<std::string>* notes) {

@@ -283,14 +283,12 @@ Command overlapCommand() {
   command.flag("--force", arguments->force, "Replace an existing output");
   command.notes =
       "One row a pose, in A's coordinates: pose, volume [m^3], centroid cx cy cz [m], force on B fx fy fz, "
-      "its "
-      "torque tx ty tz about the centre of B's bounding box, stiffness (sum pi a^2; with surface the area of "
-      "B "
-      "in A) [m^2], overlapping sphere pairs, error and error_bound. Forces are per unit of pressure "
-      "(gradient, "
-      "[m^2]) or of force density (volume, [m^3]). error is the expected |error| of the volume, relative to "
-      "the larger of found and true, and error_bound what it exceeds in 1 of 20 cases: nan where nothing "
-      "overlaps or no error was measured, and with surface if the triangles do not have the solid's volume.";
+      "its torque tx ty tz about the centre of B's bounding box, stiffness (sum pi a^2; with surface the "
+      "area of B in A) [m^2], overlapping sphere pairs, error and error_bound. Forces are per unit of "
+      "pressure (gradient, [m^2]) or of force density (volume, [m^3]). error is the expected |error| of the "
+      "volume, relative to the larger of found and true, and error_bound what it exceeds in 1 of 20 cases: "
+      "nan where nothing overlaps or no error was measured, and with surface if the triangles do not have "
+      "the solid's volume.";
   command.examples = {"innersphere overlap cow.cbor cow.cbor --poses poses.csv --spheres 4000 -o overlap.csv",
                       "innersphere overlap cow.cbor cow.cbor --poses poses.csv --shard 3/8 -o part-3.csv"};
   command.run = [arguments] {
