@@ -14,7 +14,6 @@ struct EdgeContact {
   OpposedPoints points;
   std::uint64_t id = 0;      ///< no sphere has it
   bool is_peak = true;       ///< the surface does not rise on from the corner
-  bool is_tip = false;       ///< the lines of a cone end there
   bool is_end = false;       ///< what bends ends there: in a tip, or in a sharp edge
   bool is_beside = false;    ///< it lies in a rim that goes on to deeper corners: it bears nothing
   btVector3 along{0, 0, 0};  ///< unit, of a rim, or of an edge that what is round lies on

@@ -215,9 +215,9 @@ bool layOnRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& 
 
 void layOnTipOrRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
                    bool is_highest, EdgeContact& corner) {
-  corner.is_tip = normalsOf(body).isTip(vertex);
-  corner.is_end = normalsOf(body).isEnd(vertex);
-  if (corner.is_tip)
+  const SmoothNormals& normals = normalsOf(body);
+  corner.is_end = normals.isEnd(vertex);
+  if (normals.isTip(vertex))
     (of_a ? corner.points.curvature_a : corner.points.curvature_b) = 0;
   else
     corner.is_beside = !layOnRim(body, vertex, way, of_a, corner) && !is_highest;

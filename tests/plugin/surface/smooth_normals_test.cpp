@@ -224,15 +224,22 @@ TEST(SmoothNormals, FacesThatMeetInOneEdgeAreFlat) {
   }
 }
 
+/// How many vertices are tips, and how many are ends.
+std::array<int, 2> tipsAndEndsOf(const Mesh& mesh) {
+  const Surface surface = surfaceOf(mesh);
+  const SmoothNormals normals(surface);
+  int tips = 0, ends = 0;
+  for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
+    tips += normals.isTip(v);
+    ends += normals.isEnd(v);
+    EXPECT_TRUE(normals.isEnd(v) || !normals.isTip(v));
+  }
+  EXPECT_EQ(normals.hasEnds(), ends > 0);
+  return {tips, ends};
+}
+
 TEST(SmoothNormals, OnlyConesEndInTips) {
-  const auto tipsOf = [](const Mesh& mesh) {
-    const Surface surface = surfaceOf(mesh);
-    const SmoothNormals normals(surface);
-    int tips = 0;
-    for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) tips += normals.isTip(v);
-    EXPECT_TRUE(normals.hasEnds() || tips == 0);
-    return tips;
-  };
+  const auto tipsOf = [](const Mesh& mesh) { return tipsAndEndsOf(mesh)[0]; };
   std::vector<std::array<double, 2>> ball;
   for (int i = 0; i <= 24; ++i)
     ball.push_back({i % 24 == 0 ? 0 : std::sin(M_PI * i / 24), -std::cos(M_PI * i / 24)});
@@ -244,14 +251,7 @@ TEST(SmoothNormals, OnlyConesEndInTips) {
 }
 
 TEST(SmoothNormals, ConvexSurfacesEndInTipsAndRims) {
-  const auto endsOf = [](const Mesh& mesh) {
-    const Surface surface = surfaceOf(mesh);
-    const SmoothNormals normals(surface);
-    int ends = 0;
-    for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) ends += normals.isEnd(v);
-    EXPECT_EQ(normals.hasEnds(), ends > 0);
-    return ends;
-  };
+  const auto endsOf = [](const Mesh& mesh) { return tipsAndEndsOf(mesh)[1]; };
   EXPECT_EQ(endsOf(turnedMesh({{0, 0}, {0.5, 0}, {0, 1}}, 24)), 25);            // a cone
   EXPECT_EQ(endsOf(turnedMesh({{0, 0}, {0.5, 0}, {0.5, 1}, {0, 1}}, 48)), 96);  // a cylinder
   // With a hollow in its top: that ends in no sharp edge of a convex surface.
