@@ -209,9 +209,10 @@ bool refine(Samples& samples, const Probe& probe, const ContactSettings& setting
                 scratch.old_points, scratch.tops);
   }
   found.clear();
+  const ContactReach reach{settings.separation, step.motion.spin() * step.time_step};
   const bool first_time = samples.lines.empty();
   for (std::size_t p = 0; p < samples.patches.size(); ++p)
-    findContactPoints(probe, p, settings.separation, scratch.tops, samples, scratch.sampling, found);
+    findContactPoints(probe, p, reach, scratch.tops, samples, scratch.sampling, found);
   if (first_time) dropUnprobed(samples);
   const bool near = std::any_of(found.begin(), found.end(),
                                 [&](const WeightedPoint& p) { return p.point.depth > -settings.spacing; });

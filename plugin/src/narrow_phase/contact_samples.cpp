@@ -137,42 +137,42 @@ SampleScratch::SampleScratch() {
   line_starts.reserve(kUsualPatchSamples);
 }
 
-void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation,
+void findContactPoints(const PackingProbe& probe, std::size_t p, const ContactReach& reach,
                        const std::vector<Top>& tops, Samples& samples, SampleScratch& scratch,
                        std::vector<WeightedPoint>& found) {
   const PatchSamples of(samples, p);
-  probeAll(probe, of, separation, scratch.tried);
-  keepProbed(of, separation, scratch);
+  probeAll(probe, of, reach.separation, scratch.tried);
+  keepProbed(of, reach.separation, scratch);
   const std::size_t tops_of_patch = sortTops(of, tops, scratch);
   const LineStarts lines(probe, samples.indices, scratch.line_starts);
-  appendDeepestPoints(lines, separation, scratch.tops, tops_of_patch, scratch.probed);
+  appendDeepestPoints(lines, reach.separation, scratch.tops, tops_of_patch, scratch.probed);
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, &probe, &probe);
-  PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
+  PatchContactPoints points(probe, probe, of.patch, reach, scratch, found);
   for (std::size_t i = 0; i < scratch.probed.size(); ++i) {
     const ProbedSample& sample = scratch.probed[i];
     const std::size_t before = found.size();
-    if (!sample.isFarFromBend(separation)) points.addSample(sample, normals.at(sample));
+    if (!sample.isFarFromBend(reach.separation)) points.addSample(sample, normals.at(sample));
     if (found.size() > before) keepBearing(scratch, i, samples);
   }
   points.shareOutArea();
 }
 
-void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separation,
+void findContactPoints(const ShapeProbe& probe, std::size_t p, const ContactReach& reach,
                        const std::vector<Top>& tops, Samples& samples, SampleScratch& scratch,
                        std::vector<WeightedPoint>& found) {
   const PatchSamples of(samples, p);
   probeAll(probe, of, scratch.tried);
-  keepProbed(of, separation, scratch);
+  keepProbed(of, reach.separation, scratch);
   keepSideways(of, scratch);
   const std::size_t count = scratch.probed.size();
   const std::size_t tops_of_patch = sortTops(of, tops, scratch);
   const LineStarts lines(probe, samples.indices, scratch.line_starts);
-  appendDeepestPoints(lines, separation, scratch.tops, tops_of_patch, scratch.probed);
+  appendDeepestPoints(lines, reach.separation, scratch.tops, tops_of_patch, scratch.probed);
   ascendBeside(lines, count, scratch.probed);
   keepAscents(scratch, samples);
   const ContactNormal normals(scratch.probed, probe.extents());
-  PatchContactPoints points(probe, probe, of.patch, separation, scratch, found);
+  PatchContactPoints points(probe, probe, of.patch, reach, scratch, found);
   for (std::size_t i = 0; i < scratch.probed.size(); ++i) {
     const std::size_t before = found.size();
     points.addSample(scratch.probed[i], normals.at(scratch.probed[i]));

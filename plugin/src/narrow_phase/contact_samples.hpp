@@ -55,13 +55,19 @@ struct SampleScratch {
   std::vector<std::uint32_t> vertices;  ///< see EdgeProbe
 };
 
-/// Appends those contacts of the samples' patch `p` that are on, or near, both surfaces: not further apart
-/// than `separation` [m]. `tops` are those of ascendAgain(). Leaves the lines that were probed in the
-/// samples.
-void findContactPoints(const PackingProbe& probe, std::size_t p, btScalar separation,
+/// Says which places of two surfaces are contacts.
+struct ContactReach {
+  btScalar separation = 0;  ///< no further apart than that [m]
+  btVector3 turn{0, 0,
+                 0};  ///< by which A is to turn in the step, as seen from B [rad]: what rises then counts
+};
+
+/// Appends those contacts of the samples' patch `p` that are on, or near, both surfaces. `tops` are those of
+/// ascendAgain(). Leaves the lines that were probed in the samples.
+void findContactPoints(const PackingProbe& probe, std::size_t p, const ContactReach& reach,
                        const std::vector<Top>& tops, Samples& samples, SampleScratch& scratch,
                        std::vector<WeightedPoint>& found);
-void findContactPoints(const ShapeProbe& probe, std::size_t p, btScalar separation,
+void findContactPoints(const ShapeProbe& probe, std::size_t p, const ContactReach& reach,
                        const std::vector<Top>& tops, Samples& samples, SampleScratch& scratch,
                        std::vector<WeightedPoint>& found);
 

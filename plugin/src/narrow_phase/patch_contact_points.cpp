@@ -23,11 +23,12 @@ bool rises(const btVector3& face, btScalar curvature, const btVector3& normal) {
   return curvature == 0 && leans(face, normal);
 }
 
-/// Whether what bends ends in a corner, and rises towards there: not only along the rim.
-bool endsDeeper(const EdgeContact& corner, bool of_a, const btVector3& normal) {
+/// Whether what bends ends in a corner, and rises towards there, now or when it has turned: not only along
+/// the rim.
+bool endsDeeper(const EdgeContact& corner, bool of_a, const btVector3& normal, const btVector3& turn) {
   if (!corner.is_end || corner.along.isZero()) return corner.is_end;
-  const btVector3& face = of_a ? corner.points.normal_a : corner.points.normal_b;
-  return corner.along.cross(face).dot(normal) > kLeaning;
+  const btVector3 across = corner.along.cross(of_a ? corner.points.normal_a : corner.points.normal_b);
+  return across.dot(normal) + btMax(btScalar(0), (of_a ? turn : -turn).cross(across).dot(normal)) > kLeaning;
 }
 
 /// The normal turns with the face that it belongs to.
@@ -52,12 +53,12 @@ void setEdgeBends(bool of_a, const Bend& sharp, const Bend& below, const Across&
 }  // namespace
 
 PatchContactPoints::PatchContactPoints(const EdgeProbe& probe, const SurfaceProbe& surfaces,
-                                       const Samples::OfPatch& patch, btScalar separation,
+                                       const Samples::OfPatch& patch, const ContactReach& reach,
                                        SampleScratch& scratch, std::vector<WeightedPoint>& found)
     : probe_(probe),
       surfaces_(surfaces),
       patch_(patch),
-      separation_(separation),
+      reach_(reach),
       scratch_(scratch),
       found_(found),
       first_(found.size()) {
@@ -117,7 +118,8 @@ bool PatchContactPoints::findCorners(const ProbedSample& sample, const btVector3
   if (of_a ||
       (points.curvature_b > 0 && goesOn(points.normal_b, points.normal_a, normal) && probe_.hasEnds(false))) {
     probe_.corners(sample.index, points, normal, of_a, scratch_.vertices, corners);
-    std::erase_if(corners, [&](const EdgeContact& corner) { return !endsDeeper(corner, of_a, normal); });
+    std::erase_if(corners,
+                  [&](const EdgeContact& corner) { return !endsDeeper(corner, of_a, normal, reach_.turn); });
   }
   return of_a;
 }
@@ -159,7 +161,7 @@ bool PatchContactPoints::isFound(std::uint64_t id, const btVector3* normal) cons
 bool PatchContactPoints::add(const OpposedPoints& points, const btVector3& normal, std::uint64_t id,
                              Kind kind) {
   const btScalar depth = points.depthAlong(normal);
-  const bool near = depth > -separation_;
+  const bool near = depth > -reach_.separation;
   if (!near) return false;
   WeightedPoint& point = found_.emplace_back();
   point.point.on_b = points.on_b;
@@ -236,7 +238,7 @@ void PatchContactPoints::layOnHill(const OpposedPoints& points, const Across& ax
 /// taken there: beside it, it would brake what rolls.
 void PatchContactPoints::goToCrest(const OpposedPoints& points, const Across& axes, WeightedPoint& point) {
   ContactPoint& p = point.point;
-  if (p.to_top.length() > kSameTop * separation_) return;
+  if (p.to_top.length() > kSameTop * reach_.separation) return;
   p.on_b += p.to_top;
   p.depth += p.below_top;
   p.normal = (points.normal_b - p.bend_b.turn(p.to_top, axes)).normalized();
@@ -248,7 +250,7 @@ void PatchContactPoints::goToCrest(const OpposedPoints& points, const Across& ax
 /// Where edges of two faces cross that lie on each other: with the corners they span what both share.
 void PatchContactPoints::addOverlap(const OpposedPoints& points, const btVector3& normal) {
   FaceOverlaps& overlaps = scratch_.overlaps;
-  if (!overlaps.hasRoom() || !(points.depthAlong(normal) > -separation_) ||
+  if (!overlaps.hasRoom() || !(points.depthAlong(normal) > -reach_.separation) ||
       overlaps.covers(points.on_b, normal))
     return;
   std::vector<EdgeContact>& crossings = scratch_.peaks;
@@ -317,8 +319,8 @@ EdgeProbe::FaceEnd PatchContactPoints::addOverEdge(const ProbedSample& sample, b
   const Bend there = surfaces_.bend(!of_a, points, turned(axes_there, normal, round_normal));
   if (there.turn(edge.along, axes_there).dot(edge.along) < -kConvex * btFabs(round)) return FaceEnd::unknown;
   const auto isSame = [&](const WeightedPoint& f) {
-    return f.kind == Kind::edge &&
-           f.point.on_b.distance2(edge.points.on_b) < kSameTop * kSameTop * separation_ * separation_;
+    return f.kind == Kind::edge && f.point.on_b.distance2(edge.points.on_b) <
+                                       kSameTop * kSameTop * reach_.separation * reach_.separation;
   };
   if (std::any_of(found_.begin() + std::ptrdiff_t(first_), found_.end(), isSame)) return end;
   if (!add(edge.points, normal, sample.id, Kind::edge)) return end;

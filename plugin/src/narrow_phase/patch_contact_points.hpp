@@ -9,9 +9,8 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 /// Appends the points of one patch to those that were found in others. All that it takes must outlive it.
 class PatchContactPoints {
  public:
-  /// Points may be as far apart as `separation` [m].
   PatchContactPoints(const EdgeProbe& probe, const SurfaceProbe& surfaces, const Samples::OfPatch& patch,
-                     btScalar separation, SampleScratch& scratch, std::vector<WeightedPoint>& found);
+                     const ContactReach& reach, SampleScratch& scratch, std::vector<WeightedPoint>& found);
 
   /// Appends the points that a sample leads to. `normal` is that of the contact there.
   void addSample(const ProbedSample& sample, const btVector3& normal);
@@ -48,7 +47,7 @@ class PatchContactPoints {
   const EdgeProbe& probe_;
   const SurfaceProbe& surfaces_;
   const Samples::OfPatch& patch_;
-  const btScalar separation_;
+  const ContactReach reach_;
   SampleScratch& scratch_;
   std::vector<WeightedPoint>& found_;
   const std::size_t first_;

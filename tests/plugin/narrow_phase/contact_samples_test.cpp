@@ -39,7 +39,7 @@ class Pair {
   }
   std::vector<WeightedPoint> find(double separation = kSeparation) {
     std::vector<WeightedPoint> found;
-    findContactPoints(PackingProbe(a, b, contacts, count_a), 0, btScalar(separation), {}, samples, scratch,
+    findContactPoints(PackingProbe(a, b, contacts, count_a), 0, {btScalar(separation)}, {}, samples, scratch,
                       found);
     return found;
   }
@@ -223,7 +223,7 @@ TEST(ContactPoints, OnAPlaneAreThoseOfACube) {
     samples.patches.push_back({kDown, 2, 1, spheres.size()});
     SampleScratch scratch;
     std::vector<WeightedPoint> found;
-    findContactPoints(ShapeProbe(a, *surface, world, spheres), 0, btScalar(kSeparation), {}, samples, scratch,
+    findContactPoints(ShapeProbe(a, *surface, world, spheres), 0, {btScalar(kSeparation)}, {}, samples, scratch,
                       found);
     ASSERT_FALSE(found.empty());
     const auto count = [&](Kind kind) {
@@ -255,7 +255,7 @@ TEST(ContactPoints, OfACylinderOnASlabAreTheEndsOfItsLineOnceEach) {
   samples.patches.push_back({-kDown, 2, 1, spheres.size()});
   SampleScratch scratch;
   std::vector<WeightedPoint> found;
-  findContactPoints(ShapeProbe(a, *surface, world, spheres), 0, btScalar(kSeparation), {}, samples, scratch,
+  findContactPoints(ShapeProbe(a, *surface, world, spheres), 0, {btScalar(kSeparation)}, {}, samples, scratch,
                     found);
   for (const double end : {0.2 - kHalf + kMargin, 0.2 + kHalf - kMargin}) {
     const btVector3 expected(btScalar(end), btScalar(0.1), btScalar(0.5 - kDepth));
