@@ -55,11 +55,13 @@ int main(int argc, char** argv) try {
 
   for (int step = 0; step < 5 * 60; ++step) world.stepSimulation(btScalar(1) / 60, 0);
 
-  // Of its vertices: Bullet's box around a body that is turned is larger than the body.
+  // Bullet's box around a body that is turned is larger than the body. An .xyzr file has no surface.
   const btTransform packing_pose = body.getWorldTransform() * shape.principalTransform();
   btScalar lowest = BT_LARGE_FLOAT;
   for (const auto& v : packing->surface.vertices)
     lowest = std::min(lowest, packing_pose(btVector3(v[0], v[1], v[2])).z());
+  for (const auto& s : packing->spheres)
+    lowest = std::min(lowest, packing_pose(btVector3(s.x, s.y, s.z)).z() - s.radius);
   std::printf("after 5 s: centre at %.4f m, lowest point at %.4f m, speed %.4f m/s\n",
               double(body.getWorldTransform().getOrigin().z()), double(lowest),
               double(body.getLinearVelocity().length()));

@@ -144,7 +144,8 @@ def test_the_command(tmp_path):
         refused = run(*words, "--spheres", "20")
         assert refused.returncode == 1 and message in refused.stderr, refused.stderr
     write_obj(tmp_path / "open.obj", CUBE[0] - 0.5, BOX_FACES[1:])
-    assert "open.obj does not bound" in run("open.obj", "box", "--poses", "poses.csv").stderr
+    refused = run("open.obj", "box", "--poses", "poses.csv").stderr
+    assert "open.obj does not bound" in refused and "ask for --repair" in refused, refused
     closed = run("open.obj", "box", "--poses", "poses.csv", "--spheres", "500", "--repair")
     shared = np.array([float(line.split(",")[1]) for line in closed.stdout.splitlines()[1:]])
     np.testing.assert_allclose(shared, [0.9, 0.5, 0], rtol=0.1)

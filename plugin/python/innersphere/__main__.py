@@ -104,7 +104,8 @@ def main() -> int:
     try:
         words.run(words)
     except (Error, OSError, ValueError) as error:
-        print(f"innersphere: {error}", file=sys.stderr)
+        message = str(error).replace("repair=True", "--repair")  # what is asked for here is an option
+        print(f"innersphere: {message}", file=sys.stderr)
         return 1
     return 0
 

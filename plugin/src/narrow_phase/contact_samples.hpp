@@ -58,8 +58,7 @@ struct SampleScratch {
 /// Says which places of two surfaces are contacts.
 struct ContactReach {
   btScalar separation = 0;  ///< no further apart than that [m]
-  btVector3 turn{0, 0,
-                 0};  ///< by which A is to turn in the step, as seen from B [rad]: what rises then counts
+  btVector3 turn{0, 0, 0};  ///< of A as seen from B in the step [rad]: what it brings nearer counts, too
 };
 
 /// Appends those contacts of the samples' patch `p` that are on, or near, both surfaces. `tops` are those of
