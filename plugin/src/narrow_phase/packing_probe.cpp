@@ -7,6 +7,7 @@
 #include "narrow_phase/edge_face.hpp"
 #include "narrow_phase/face_overlap.hpp"
 #include "narrow_phase/over_edge.hpp"
+#include "narrow_phase/solid_corner.hpp"
 #include "narrow_phase/surface_rays.hpp"
 
 namespace innersphere {
@@ -163,7 +164,8 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
   const bool is_peak =
       cornersUphill(own, of_a ? points.triangle_a : points.triangle_b, way, start, reach, vertices);
   for (const std::uint32_t vertex : vertices) {
-    const btVector3 at = cornerAt(own, vertex, way);
+    const SolidCorner found(own, vertex, way);
+    const btVector3& at = found.at();
     SurfacePoint under;
     const btScalar depth = (at - face).dot(way);
     const btVector3 place = at - way * depth - to_other;
@@ -172,7 +174,8 @@ void PackingProbe::corners(std::size_t index, const OpposedPoints& points, const
     (of_a ? corner.points.on_a : corner.points.on_b) = at + offset;
     (of_a ? corner.points.on_b : corner.points.on_a) = under.at + to_other + offset;
     (of_a ? corner.points.normal_b : corner.points.normal_a) = under.normal * btScalar(of_a ? -1 : 1);
-    layOnTipOrRim(own, vertex, way, of_a, is_peak && vertex == vertices.front(), corner);
+    found.giveTo(of_a, corner);
+    corner.is_beside = found.goesOn() && !(is_peak && vertex == vertices.front());
     corners.push_back(corner);
   }
 }

@@ -185,10 +185,11 @@ void ShapeProbe::corners(std::size_t index, const OpposedPoints& points, const b
     const Corner& found = cornerOf(vertex, normal);
     if (!found.is_over) continue;
     EdgeContact corner{points, kCornerId + 2 * std::uint64_t(vertex), is_peak};
-    corner.points.on_a = found.on_a;
+    corner.points.on_a = found.of_a.at();
     corner.points.on_b = found.on_b;
     corner.points.normal_b = found.normal_b;
-    layOnTipOrRim(a_, vertex, normal, true, is_peak && vertex == vertices.front(), corner);
+    found.of_a.giveTo(true, corner);
+    corner.is_beside = found.of_a.goesOn() && !(is_peak && vertex == vertices.front());
     corners.push_back(corner);
   }
 }
@@ -203,13 +204,13 @@ const ShapeProbe::Corner& ShapeProbe::cornerOf(std::uint32_t vertex, const btVec
   });
   if (known != corners_.end()) return *known;
   Corner& corner = corners_[corner_count_++ % corners_.size()];
-  corner = {vertex, normal};
-  corner.on_a = cornerAt(a_, vertex, normal);
+  corner = {vertex, normal, {a_, vertex, normal}};
+  const btVector3& at = corner.of_a.at();
   // The face is known where spheres are near it.
-  const NearSphere* over = sphereOver(corner.on_a, normal);
+  const NearSphere* over = sphereOver(at, normal);
   if (over == nullptr) return corner;
-  const btScalar height = (corner.on_a - a_.centreOf(over->sphere)).dot(over->normal) + over->distance;
-  corner.on_b = corner.on_a - over->normal * height;
+  const btScalar height = (at - a_.centreOf(over->sphere)).dot(over->normal) + over->distance;
+  corner.on_b = at - over->normal * height;
   corner.normal_b = -over->normal;
   corner.is_over = goesOn(*over, corner.on_b);
   return corner;
@@ -222,7 +223,8 @@ void ShapeProbe::tips(const OpposedPoints& points, std::vector<std::uint32_t>& v
       !cornersUphill(a_, points.triangle_a, into_b, points.on_a, BT_LARGE_FLOAT, vertices))
     return;
   for (const std::uint32_t vertex : vertices) {
-    const btVector3 at = cornerAt(a_, vertex, into_b);
+    const SolidCorner found(a_, vertex, into_b);
+    const btVector3& at = found.at();
     // As deep if the mesh is flat; it may as well rise.
     btScalar depth = (at - points.on_b).dot(into_b);
     if (!(depth > 0) || !other_.depthOf(a_, world_, at, -into_b, 2 * depth, depth)) continue;
@@ -230,7 +232,7 @@ void ShapeProbe::tips(const OpposedPoints& points, std::vector<std::uint32_t>& v
     tip.points.on_a = at;
     tip.points.on_b = at - into_b * depth;
     // A vertex of what is round is on the hill that the round surface is.
-    layOnRim(a_, vertex, into_b, true, tip);
+    found.giveTo(true, tip);
     tips.push_back(tip);
   }
 }

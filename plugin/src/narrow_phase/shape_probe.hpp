@@ -8,6 +8,7 @@
 #include "narrow_phase/edge_contacts.hpp"
 #include "narrow_phase/sample_selection.hpp"
 #include "narrow_phase/shapes/shape_surface.hpp"
+#include "narrow_phase/solid_corner.hpp"
 #include "narrow_phase/surface_probe.hpp"
 #include "narrow_phase/surface_rays.hpp"
 
@@ -128,8 +129,9 @@ class ShapeProbe final : public SurfaceProbe, public EdgeProbe, public FaceExten
   struct Corner {
     std::uint32_t vertex = 0;
     btVector3 normal{0, 0, 0};  ///< from A to B
-    bool is_over = false;       ///< a face of B; if so, the others are as in OpposedPoints
-    btVector3 on_a{0, 0, 0}, on_b{0, 0, 0}, normal_b{0, 0, 0};
+    SolidCorner of_a;
+    bool is_over = false;  ///< a face of B; if so, the others are as in OpposedPoints
+    btVector3 on_b{0, 0, 0}, normal_b{0, 0, 0};
   };
   /// Finds one. Many samples ask for the same.
   const Corner& cornerOf(std::uint32_t vertex, const btVector3& normal) const;

@@ -1,11 +1,6 @@
-// Finds where lines leave and enter a packed solid, and its corners uphill: what both kinds of surface probe
-// share.
+// Finds where lines leave and enter a packed solid: what both kinds of surface probe share.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
-#include "narrow_phase/edge_contacts.hpp"
 #include "narrow_phase/surface_probe.hpp"
 #include "shape/placed_packing.hpp"
 
@@ -49,31 +44,6 @@ bool faceUnder(const PlacedPacking& body, const btVector3& at, const btVector3& 
 
 /// The curved surface of a packing.
 const SmoothNormals& normalsOf(const PlacedPacking& body);
-
-/// Finds the corners uphill from a triangle along `direction` (unit), no further than `distance` [m] from
-/// `start`: their vertices replace `vertices`. Returns true if the first of them is a peak.
-bool cornersUphill(const PlacedPacking& body, std::size_t triangle, const btVector3& direction,
-                   const btVector3& start, btScalar distance, std::vector<std::uint32_t>& vertices);
-
-/// Returns how much further than its spheres reach the end of a convex face may be furthest out: its radius
-/// [m].
-inline btScalar acrossBend(btScalar curvature) {
-  return curvature > 0 ? 1 / curvature : btScalar(0);
-}
-
-/// Returns where a vertex is, moved out along `direction` by the shape's margin; in the rim of a curved face,
-/// where that is furthest out beside the vertex.
-btVector3 cornerAt(const PlacedPacking& body, std::uint32_t vertex, const btVector3& direction);
-
-/// Has a corner of A, or else B, belong to the convex curved face in whose rim it lies, as does the end of a
-/// cylinder: that whose normal is nearest to `way` out of the solid, if that is less than 60 degrees off.
-/// Sets which way the rim runs and how it bends. Returns false if it goes on to corners further out.
-bool layOnRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
-              EdgeContact& corner);
-/// Does the same for a corner that was found, and notes whether it bears nothing, but not if it `is_highest`
-/// of all beside it; unless it is the tip of a cone, where nothing bends.
-void layOnTipOrRim(const PlacedPacking& body, std::uint32_t vertex, const btVector3& way, bool of_a,
-                   bool is_highest, EdgeContact& corner);
 
 /// Returns how the curved surface of a solid bends at a triangle.
 Bend bendAt(const PlacedPacking& body, std::size_t triangle, const Across& axes);

@@ -1,4 +1,5 @@
-// Where lines leave and enter boxes and balls, which is known in closed form.
+// Where lines leave and enter boxes and balls, and where the corners of boxes and cylinders are, which is
+// known in closed form.
 #include "narrow_phase/surface_rays.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
+#include "narrow_phase/solid_corner.hpp"
 #include "outline_meshes.hpp"
 #include "test_packings.hpp"
 
@@ -214,7 +217,7 @@ TEST(SurfaceRays, FindTheFaceUnderACornerCloseToWhereItEnds) {
   EXPECT_FALSE(faceUnder(body, place, axes.getColumn(0), btScalar(1.1 * kToEnd), btScalar(0.5), point));
 }
 
-TEST(SurfaceRays, FindTheCornerUphill) {
+TEST(SolidCorner, IsUphill) {
   TurnedBox box;
   box.shape->setMargin(btScalar(0.05));
   const PlacedPacking body = box.placed();
@@ -227,8 +230,8 @@ TEST(SurfaceRays, FindTheCornerUphill) {
     std::vector<std::uint32_t> vertices;
     ASSERT_TRUE(cornersUphill(body, std::size_t(i) % 12, direction, btVector3(0, 0, 0), 10, vertices));
     ASSERT_FALSE(vertices.empty());
-    EXPECT_NEAR(cornerAt(body, vertices[0], direction).distance(axes * expected + direction * btScalar(0.05)),
-                0, kRounding);
+    const btVector3 corner = axes * expected + direction * btScalar(0.05);
+    EXPECT_NEAR(SolidCorner(body, vertices[0], direction).at().distance(corner), 0, kRounding);
   }
 }
 
@@ -250,7 +253,7 @@ struct TurnedCylinder {
   std::shared_ptr<PackingShape> shape;
 };
 
-TEST(SurfaceRays, LayCornersOfARimOnItsSide) {
+TEST(SolidCorner, OfARimBelongsToItsSide) {
   const TurnedCylinder cylinder;
   const PlacedPacking body(*cylinder.shape, somewhere(), Estimator::raw, 0);
   constexpr double kFacet = 2 * M_PI / TurnedCylinder::kAround;
@@ -263,7 +266,9 @@ TEST(SurfaceRays, LayCornersOfARimOnItsSide) {
         const OpposedPoints& corner = rim.points;
         // Four facets are 60 degrees: beyond, it is another part of the solid that is furthest out.
         const bool is_of_side = std::fabs(beside) < 4;
-        EXPECT_EQ(layOnRim(body, vertex, way, of_a, rim), !is_of_side || std::fabs(beside) < 1) << beside;
+        const SolidCorner found(body, vertex, way);
+        found.giveTo(of_a, rim);
+        EXPECT_EQ(found.goesOn(), is_of_side && std::fabs(beside) > 1) << beside;
         const btVector3& normal = of_a ? corner.normal_a : corner.normal_b;
         // On the rim's circle, where it is furthest out, unless that is beyond the next corner.
         const btVector3 outwards = std::fabs(beside) < 1 ? way : cylinder.outwards(angle);
@@ -277,7 +282,7 @@ TEST(SurfaceRays, LayCornersOfARimOnItsSide) {
   }
 }
 
-TEST(SurfaceRays, TakeARimForACircle) {
+TEST(SolidCorner, TakesARimForACircle) {
   const TurnedCylinder cylinder;
   const PlacedPacking body(*cylinder.shape, somewhere(), Estimator::raw, 0);
   constexpr double kFacet = 2 * M_PI / TurnedCylinder::kAround;
@@ -289,9 +294,11 @@ TEST(SurfaceRays, TakeARimForACircle) {
         const btVector3 outwards = cylinder.outwards(angle),
                         way = outwards * btScalar(std::cos(lean)) + axis * btScalar(std::sin(lean));
         const btVector3 crest = outwards * btScalar(TurnedCylinder::kRadius) + axis * 2;
-        EXPECT_NEAR(cornerAt(body, vertex, way).distance(crest), 0, 2e-3) << beside << " " << lean;
+        const SolidCorner found(body, vertex, way);
+        EXPECT_NEAR(found.at().distance(crest), 0, 2e-3) << beside << " " << lean;
         EdgeContact rim;
-        EXPECT_TRUE(layOnRim(body, vertex, way, true, rim));
+        found.giveTo(true, rim);
+        EXPECT_FALSE(found.goesOn());
         EXPECT_NEAR(rim.points.normal_a.distance(outwards), 0, 2e-3);
         EXPECT_NEAR(std::fabs(rim.along.dot(outwards.cross(axis))), 1, 1e-5);
         EXPECT_NEAR(rim.bend_along, std::cos(lean) / TurnedCylinder::kRadius, 0.01);
@@ -300,20 +307,24 @@ TEST(SurfaceRays, TakeARimForACircle) {
   }
 }
 
-TEST(SurfaceRays, LayCornersOfFlatFacesOnNothing) {
+TEST(SolidCorner, OfFlatFacesBelongsToNone) {
   const TurnedBox box;
   const PlacedPacking body = box.placed();
   const TurnedCylinder cylinder;
   const PlacedPacking round(*cylinder.shape, somewhere(), Estimator::raw, 0);
-  EdgeContact rim;
+  std::vector<SolidCorner> corners;
   for (std::uint32_t vertex = 0; vertex < 8; ++vertex)
-    EXPECT_TRUE(layOnRim(body, vertex, body.world.getBasis().getColumn(0), true, rim));
+    corners.emplace_back(body, vertex, body.world.getBasis().getColumn(0));
   // Along its axis a cylinder ends in a flat face.
-  EXPECT_TRUE(layOnRim(round, 0, -round.world.getBasis().getColumn(2), true, rim));
-  const OpposedPoints& corner = rim.points;
-  EXPECT_TRUE(corner.normal_a.isZero());
-  EXPECT_EQ(corner.curvature_a, 0);
-  EXPECT_EQ(corner.triangle_a, OpposedPoints::kNone);
+  corners.emplace_back(round, 0, -round.world.getBasis().getColumn(2));
+  for (const SolidCorner& corner : corners) {
+    EdgeContact contact;
+    corner.giveTo(true, contact);
+    EXPECT_FALSE(corner.goesOn());
+    EXPECT_TRUE(contact.points.normal_a.isZero());
+    EXPECT_EQ(contact.points.curvature_a, 0);
+    EXPECT_EQ(contact.points.triangle_a, OpposedPoints::kNone);
+  }
 }
 
 }  // namespace
