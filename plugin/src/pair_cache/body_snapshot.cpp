@@ -36,9 +36,10 @@ btVector3 heldOf(const btVector3& pushed, const btVector3& sped_up) {
 void BodySnapshot::take(btScalar time_step) {
   way_.store(0, std::memory_order_relaxed);
   neighbours_.store(0, std::memory_order_relaxed);
-  if (shape_ != object_->getCollisionShape()) {
+  if (!hasSameShape()) {
     ++changes_;
     shape_ = object_->getCollisionShape();
+    shape_type_ = shape_->getShapeType();
     packing_ = PackingShape::from(shape_);
   }
   if (packing_ != nullptr && version_ != packing_->impl().version) {
@@ -66,8 +67,12 @@ bool BodySnapshot::isAsTaken(const btCollisionObjectWrapper& wrapper) const {
          isAsTaken(wrapper.getWorldTransform());
 }
 
+bool BodySnapshot::hasSameShape() const {
+  return object_->getCollisionShape() == shape_ && shape_->getShapeType() == shape_type_;
+}
+
 bool BodySnapshot::isAsTaken(const btTransform& transform) const {
-  return transform == transform_ && object_->getCollisionShape() == shape_ &&
+  return transform == transform_ && hasSameShape() &&
          (packing_ == nullptr || packing_->impl().version == version_) &&
          (body_ == nullptr ||
           (body_->getLinearVelocity() == velocity_.linear && body_->getAngularVelocity() == velocity_.spin));

@@ -73,10 +73,13 @@ class BodySnapshot {
 
  private:
   bool isAsTaken(const btTransform& transform) const;
+  /// Another shape may be at the same address.
+  bool hasSameShape() const;
 
   const btCollisionObject* object_;
   const btRigidBody* body_;  ///< null if it is none
   const btCollisionShape* shape_ = nullptr;
+  int shape_type_ = 0;
   const PackingShape* packing_ = nullptr;
   std::uint64_t version_ = 0;  ///< of the packing shape
   btTransform transform_, start_;

@@ -11,6 +11,7 @@ inline namespace INNERSPHERE_BULLET_PRECISION {
 PairSide::PairSide(const btCollisionObjectWrapper& wrapper)
     : object(wrapper.getCollisionObject()),
       shape(wrapper.getCollisionShape()),
+      shape_type(shape->getShapeType()),
       packing(PackingShape::from(shape)),
       transform(wrapper.getWorldTransform()),
       start(transform) {
@@ -35,7 +36,7 @@ std::optional<btTransform> PairSide::placeIn(const BodySnapshot& body) const {
     place = place * compound.getChildTransform(child_of[level]);
     at = compound.getChildShape(child_of[level]);
   }
-  if (at != shape || !isFinite(place)) return std::nullopt;
+  if (!holds(at) || !isFinite(place)) return std::nullopt;
   return place;
 }
 

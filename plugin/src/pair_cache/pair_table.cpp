@@ -282,7 +282,8 @@ std::vector<PairOverlap> PairTable::overlaps() {
   std::vector<PairOverlap> overlaps;
   std::unique_ptr<PackingSearch> search = takeSearch();
   pairs_.forEach([&](const ContactPair& pair) {
-    if (pair.hasPoints()) overlaps.push_back(pair.read(overlapOf(pair, *search)));
+    const bool lives = pair.a.placeIn(*pair.body_a) && pair.b.placeIn(*pair.body_b);
+    if (lives && pair.hasPoints()) overlaps.push_back(pair.read(overlapOf(pair, *search)));
   });
   giveBack(std::move(search));
   return overlaps;

@@ -33,12 +33,13 @@ Reuse reuseOf(const ContactPair& pair, const BodySnapshot& a, const BodySnapshot
   const bool apart = least == Reuse::idle && staysApart(pair.safe, a, b) &&
                      neededSeparation(pair, a, b, time_step) <= pair.safe.separation;
   if (apart && pair.of_packings) return Reuse::idle;  // has read nothing but the beginning of the pair
-  const bool same_shapes = pair.found->hasSameShapes();
-  if (apart && same_shapes) return Reuse::idle;
   const std::optional<btTransform> at_a = pair.a.placeIn(a);
   const std::optional<btTransform> at_b = pair.b.placeIn(b);
+  if (!at_a || !at_b) return Reuse::search;  // the shapes may be no more
+  const bool same_shapes = pair.found->hasSameShapes();
+  if (apart && same_shapes) return Reuse::idle;
   if (least == Reuse::search || !pair.found->isKnown() || !same_shapes || !pair.a.hasSameShape() ||
-      !pair.b.hasSameShape() || !at_a || !at_b)
+      !pair.b.hasSameShape())
     return Reuse::search;
   const Placed now{a.startOf(*at_a), b.startOf(*at_b)};
   const ContactTransport& memory = pair.found->memory;

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
+#include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
@@ -13,6 +16,7 @@
 #include <LinearMath/btThreads.h>
 
 #include "capture_log.hpp"
+#include "innersphere/pair_overlaps.hpp"
 #include "innersphere/substep_solver.hpp"
 #include "test_packings.hpp"
 #include "test_world.hpp"
@@ -164,6 +168,110 @@ TEST(Robustness, ChangedShapeOfALivingPair) {
   body.activate();
   world.run(2);
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.3, 0.02);
+}
+
+std::shared_ptr<const CollisionModel> cubeModel(double height) {
+  return std::make_shared<CollisionModel>(std::make_shared<Packing>(latticeBox({1, 1, height}, 6)));
+}
+
+/// Memory in which shapes are made, and which holds nothing that could be read once they are gone.
+class ShapePlace {
+ public:
+  ~ShapePlace() { free(); }
+  template <class Shape, class... Arguments>
+  Shape* make(Arguments&&... arguments) {
+    free();
+    auto* const made = new (memory_) Shape(std::forward<Arguments>(arguments)...);
+    shape_ = made;
+    return made;
+  }
+  void free() {
+    if (shape_ != nullptr) shape_->~btCollisionShape();
+    shape_ = nullptr;
+    std::memset(memory_, 0xdd, sizeof memory_);
+  }
+
+ private:
+  alignas(16) unsigned char memory_[std::max(sizeof(PackingShape), sizeof(btBoxShape))];
+  btCollisionShape* shape_ = nullptr;
+};
+
+// Bullet says nothing to a dispatcher when a body gets another shape, or a compound loses a child.
+TEST(Robustness, ShapesThatAreFreedWhenBodiesHaveOthersAreNotRead) {
+  const auto cube = std::make_shared<PackingShape>(cubeModel(1));
+  const btVector3 half(btScalar(0.5), btScalar(0.5), btScalar(0.5));
+  for (const bool on_packing : {true, false}) {
+    for (const bool was_packing : {true, false}) {
+      for (const bool in_place : {true, false}) {
+        ShapePlace place, other_place;
+        TestWorld world;
+        world.addFloor();
+        if (on_packing)
+          world.add(cube, 0, half * btVector3(0, 0, 1));
+        else
+          world.add(std::make_shared<btBoxShape>(half), 0, half * btVector3(0, 0, 1));
+        btRigidBody& body = world.add(cube, 1, btVector3(0, 0, btScalar(1.5)));
+        const auto make = [&](ShapePlace& memory, bool packing, double height) -> btCollisionShape* {
+          if (packing) return memory.make<PackingShape>(cubeModel(height));
+          return memory.make<btBoxShape>(half);
+        };
+        body.setCollisionShape(make(place, was_packing, 1));
+        world.run(0.2);
+        // Of another kind at the same address, or of the same kind at another one. Bullet takes no packing
+        // where a convex shape was.
+        if (in_place && !was_packing) continue;
+        const bool packing = was_packing && !in_place;
+        body.setCollisionShape(make(in_place ? place : other_place, packing, 0.8));
+        if (!in_place) place.free();
+        body.activate();
+        pairOverlaps(&world.dispatcher);
+        world.run(2);
+        EXPECT_TRUE(std::isfinite(body.getWorldTransform().getOrigin().z()));
+        // Pairs of a body that has lost its packing are asked for anew when it is added again.
+        world.world.removeRigidBody(&body);
+        world.world.addRigidBody(&body);
+        body.setCenterOfMassTransform(
+            btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(1.5))));
+        body.setLinearVelocity(btVector3(0, 0, 0));
+        body.setAngularVelocity(btVector3(0, 0, 0));
+        body.activate();
+        world.run(2);
+        EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), packing ? 1.4 : 1.5, 0.02)
+            << on_packing << was_packing << in_place;
+        world.world.removeRigidBody(&body);
+      }
+    }
+  }
+}
+
+TEST(Robustness, ChildrenThatAreFreedWhenTheirCompoundLosesThemAreNotRead) {
+  const auto cube = makeShape(latticeBox({1, 1, 1}, 6));
+  const btVector3 half(btScalar(0.5), btScalar(0.5), btScalar(0.5));
+  for (const bool packing : {true, false}) {
+    ShapePlace first, second;
+    const auto make = [&](ShapePlace& place) -> btCollisionShape* {
+      if (packing) return place.make<PackingShape>(cubeModel(1));
+      return place.make<btBoxShape>(half);
+    };
+    const auto compound = std::make_shared<btCompoundShape>();
+    for (ShapePlace* place : {&first, &second})
+      compound->addChildShape(
+          btTransform(btQuaternion::getIdentity(), btVector3(0, btScalar(place == &first ? -1 : 0), 0)),
+          make(*place));
+    TestWorld world;
+    world.add(makeShape(latticeBox({6, 6, 1}, 8)), 0, btVector3(0, 0, btScalar(-0.5)));
+    // A pair that Bullet asks for first begins the update of all.
+    world.add(cube, 1, btVector3(2, 0, btScalar(0.5)));
+    btRigidBody& body = world.add(compound, 1, btVector3(0, 0, btScalar(0.5)));
+    world.run(0.2);
+    compound->removeChildShape(compound->getChildShape(0));
+    first.free();
+    body.activate();
+    world.run(1);
+    EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.5, 0.01) << packing;
+    world.world.removeRigidBody(&body);
+    compound->removeChildShape(compound->getChildShape(0));
+  }
 }
 
 TEST(Robustness, RemovedBodiesLeaveNothingBehind) {
