@@ -264,19 +264,27 @@ void ContactRows::carryBlock(const Block& block, std::vector<BodyState>& states)
   LaneBodies::add(impulse * inAll(-1), on_b * inAll(-1), block.b, movable_, states);
 }
 
-/// Points that the bodies reach leave as fast as restitution says.
-void ContactRows::findBounces(int index, const std::vector<BodyState>& states) {
+/// Points that the bodies reach leave as fast as restitution says. They meet within the substep: until then
+/// they go on, and from there they go apart. Speeds are those of the middle of a substep: what forces add
+/// until then, and from then on, counts as well, or each bounce would be a little higher than the last.
+void ContactRows::findBounces(int index, const SolverBodies& bodies) {
   Block& block = blocks_[static_cast<std::size_t>(index)];
   if (!block.bounces) return;
   block.bouncing = false;
-  const Lanes none{};
-  const LaneBodies a(block.a, states), b(block.b, states);
+  const Lanes none{}, one = inAll(1), half = inAll(btScalar(0.5));
+  const LaneBodies a(block.a, bodies.states()), b(block.b, bodies.states());
+  Lanes3 falls;
+  for (int lane = 0; lane < kLanes; ++lane)
+    falls.set(lane, bodies.acceleration(block.b[lane]) - bodies.acceleration(block.a[lane]));
   for (int i = block.begin; i < block.begin + block.count; ++i) {
     PointLanes& point = points_[static_cast<std::size_t>(i)];
     const Lanes speed = dot(a.velocityAt(point.arm_a) - b.velocityAt(point.arm_b), point.normal);
-    const auto hits = point.gap + speed * inAll(substep_) <= none;
-    point.bounce = hits ? speed * point.restitution * inAll(-1) : none;
-    point.bounce = speed < inAll(-bounce_threshold_) ? point.bounce : none;
+    const auto hits = (point.gap + speed * inAll(substep_) <= none) & (speed < inAll(-bounce_threshold_));
+    const Lanes closing = hits ? none - speed : one, pull = dot(falls, point.normal) * inAll(substep_);
+    const Lanes until = larger(point.gap, none) / (closing * inAll(substep_)), after = one - until;
+    const Lanes leaves = point.restitution * (closing + pull * (until - half));
+    point.bounce = hits ? larger(leaves + pull * (until - half), none) : none;
+    point.bounce_way = leaves * after - pull * after * after * half - closing * until;
     for (int lane = 0; lane < kLanes; ++lane) block.bouncing = block.bouncing || point.bounce[lane] > 0;
   }
 }
@@ -290,7 +298,9 @@ void ContactRows::solveFriction(const Block& block, PointLanes& point, LaneBodie
   Lanes along_2 = point.impulse_2 - point.mass_2 * slide_2;
   // What slides is braked against its way, from which two masses would turn the impulse aside.
   const auto slides = along_1 * along_1 + along_2 * along_2 > most * most;
-  const Lanes mass = smaller(point.mass_1, point.mass_2);
+  // One way may be free of friction, and then that one has no mass.
+  const Lanes mass = smaller(point.mass_1, point.mass_2) > Lanes{} ? smaller(point.mass_1, point.mass_2)
+                                                                   : larger(point.mass_1, point.mass_2);
   along_1 = slides ? point.impulse_1 - mass * slide_1 : along_1;
   along_2 = slides ? point.impulse_2 - mass * slide_2 : along_2;
   holdWithin(most, along_1, along_2);
@@ -341,7 +351,7 @@ void ContactRows::solveNormal(PointLanes& point, Pass pass, LaneBodies& a, LaneB
   }
   // What has been thrown against the next body in this substep is to bounce off it in the next one.
   acts = speed * point.restitution < inAll(-bounce_threshold_) * point.restitution ? none : acts;
-  bias = bounces ? point.bounce * inAll(-1) : bias;
+  bias = bounces ? none - (pass == Pass::push ? point.bounce_way : point.bounce) : bias;
   mass = bounces ? one : mass;
   give = bounces ? none : give;
   acts = bounces ? one : acts;

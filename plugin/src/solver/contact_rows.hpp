@@ -64,7 +64,7 @@ class ContactRows {
   /// Returns true if bodies are thrown back by some points, as restitution says.
   bool bounces() const { return bounces_; }
   /// Finds those that they reach in this substep. Bodies are only read.
-  void findBounces(int block, const std::vector<BodyState>& states);
+  void findBounces(int block, const SolverBodies& bodies);
   void solve(int block, Pass pass, std::vector<BodyState>& states);
   /// Returns true if passes that push or relax have stopped a pair since it was asked last, so fast that it
   /// would have come deeper into each other within the step than is wanted. By one thread, between passes.
@@ -106,9 +106,11 @@ class ContactRows {
     Lanes fastest;                        ///< that bodies are driven apart [m/s]
     Lanes loaded;                         ///< share that it bears of a load for which that is too slow
     Lanes friction, rolling, spinning;
-    Lanes mass_rolling, mass_spinning;    ///< [kg m^2]
-    Lanes belt_1, belt_2;                 ///< speeds of the surface [m/s]
-    Lanes restitution, bounce;            ///< the speed at which the bodies leave in this substep [m/s]
+    Lanes mass_rolling, mass_spinning;  ///< [kg m^2]
+    Lanes belt_1, belt_2;               ///< speeds of the surface [m/s]
+    Lanes restitution;
+    Lanes bounce;      ///< the speed at which the bodies leave in this substep [m/s]
+    Lanes bounce_way;  ///< by how much they are further apart at its end, over the substep [m/s]
     Lanes impulse, impulse_1, impulse_2;  ///< of this substep [N s]
     Lanes roll_1, roll_2, spin;           ///< [N m s]
     Lanes sum, sum_1, sum_2;              ///< of the step [N s]

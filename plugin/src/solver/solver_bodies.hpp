@@ -87,6 +87,8 @@ class SolverBodies {
   const btVector3& origin(int index) const { return bodies_[static_cast<std::size_t>(index)].origin; }
   /// Returns where a point of the body that is here now was then: Bullet has moved kinematic bodies.
   btVector3 startOf(int index, const btVector3& point) const;
+  /// Returns the acceleration that forces of the world and the user give a body [m/s^2].
+  const btVector3& acceleration(int index) const { return bodies_[static_cast<std::size_t>(index)].force; }
   /// Returns the largest acceleration that forces of the world and the user give a body [m/s^2].
   btScalar largestAcceleration() const;
 

@@ -128,7 +128,7 @@ void SubstepSolver::Impl::step(btScalar substep) {
   // The user's classes are asked by this thread alone.
   for (int i = 0; i < constraints_.count(); ++i) constraints_.refresh(i, bodies_);
   for (const int joint : colouring_.joints()) constraints_.warmStart(joint, bodies_.states());
-  if (contacts_.bounces()) forEachBlock([&](int block) { contacts_.findBounces(block, bodies_.states()); });
+  if (contacts_.bounces()) forEachBlock([&](int block) { contacts_.findBounces(block, bodies_); });
   int passes = 0;
   do {
     pass(Pass::push);

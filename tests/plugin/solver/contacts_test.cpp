@@ -134,6 +134,25 @@ TEST(SubstepContacts, ABlockSlidesAsFarAsFrictionLets) {
   }
 }
 
+// One way without friction took it from all ways.
+TEST(SubstepContacts, FrictionMayBeFreeAlongOneAxis) {
+  constexpr double kFriction = 0.5, kSpeed = 2, kSeconds = 0.3;
+  for (const double free : {0.0, 1.0}) {
+    SolverWorld world;
+    world.addFloor().setFriction(1);
+    btRigidBody& block = addCube(world, 3, kHalf);
+    block.setFriction(btScalar(kFriction));
+    block.setAnisotropicFriction(btVector3(btScalar(free), 1, 1));
+    block.setAngularFactor(0);
+    world.run(0.1);
+    block.setLinearVelocity(btVector3(kSpeed, kSpeed, 0));
+    world.run(kSeconds);
+    const double lost = kFriction * kGravity * kSeconds * (free > 0 ? M_SQRT1_2 : 1);
+    EXPECT_NEAR(block.getLinearVelocity().y(), kSpeed - lost, 0.005 * lost) << free;
+    EXPECT_NEAR(block.getLinearVelocity().x(), free > 0 ? kSpeed - lost : kSpeed, 0.005 * lost) << free;
+  }
+}
+
 TEST(SubstepContacts, BallsCollideAsMomentumAndRestitutionSay) {
   for (const double e : {0.0, 0.5, 1.0}) {
     SolverWorld world;

@@ -34,7 +34,7 @@ std::vector<btScalar> solved(SolverWorld& world, bool wide) {
   for (int i = 0; i < contacts.blocks(); ++i) contacts.prepare(i, bodies);
   for (int i = 0; i < contacts.blocks(); ++i) contacts.carry(i, bodies.states());
   bodies.accelerate(0, bodies.movable(), info.m_timeStep);
-  for (int i = 0; i < contacts.blocks(); ++i) contacts.findBounces(i, bodies.states());
+  for (int i = 0; i < contacts.blocks(); ++i) contacts.findBounces(i, bodies);
   for (const Pass pass : {Pass::push, Pass::relax, Pass::finish}) {
     for (int i = 0; i < contacts.blocks(); ++i) contacts.solve(i, pass, bodies.states());
     bodies.move(0, bodies.movable(), info.m_timeStep);

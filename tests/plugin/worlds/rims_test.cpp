@@ -99,6 +99,7 @@ TEST_P(Rims, OfRodsThatFallStayOutOfTheFloor) {
 TEST_P(Rims, OfRodsThatFallStayOutOfTheFloorWithSubsteps) {
   SubstepSolver solver;
   world.world.setConstraintSolver(&solver);
+  PackingCollisionAlgorithm::prepareWorld(world.world);
   fall(1.0 / 60, 0.03 * kLength);
   world.world.setConstraintSolver(&world.solver);
 }
@@ -108,6 +109,7 @@ TEST_P(Rims, OfEndsThatSwingDownWithinAStepStayOutOfTheFloor) {
   constexpr double kStep = 1.0 / 60, kSpin = 14;  // [s], [rad/s]
   SubstepSolver solver;
   world.world.setConstraintSolver(&solver);
+  PackingCollisionAlgorithm::prepareWorld(world.world);
   btRigidBody& body = world.add(shape, 0.5, btVector3(0, 0, 1));
   for (int i = 0; i < 20; ++i) {
     const double lean = 0.02 + 0.2 * i / 20;
