@@ -119,7 +119,7 @@ void ContactPair::clear() {
   found.reset();
   manifolds.clear();
   a = b = PairSide();
-  asked = busy = logged_ = false;
+  asked = busy = announced = logged_ = false;
   step = pushed_step = 0;
   separation = depth = time_step = 0;
   penalty = PenaltyReport();

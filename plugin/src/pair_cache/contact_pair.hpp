@@ -85,6 +85,7 @@ struct ContactPair {
   std::uint64_t step = 0;    ///< of the last update that it was part of, or that came before it
   bool asked = false;        ///< by Bullet, since that
   bool published = false;    ///< in that update
+  bool announced = false;    ///< Bullet has not asked for it yet
   bool busy = false;         ///< a thread is at work on it alone
   bool of_packings = false;  ///< two of them
   bool swapped = false;      ///< B is the first body for Bullet

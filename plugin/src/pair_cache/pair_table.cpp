@@ -246,7 +246,7 @@ void PairTable::announce(ContactPair& pair, const btCollisionObjectWrapper& a,
   const std::lock_guard<std::mutex> lock(mutex_);
   finish();
   take(pair, a, b, false);
-  pair.asked = true;
+  pair.asked = pair.announced = true;
   pair.step = number_;
 }
 

@@ -86,7 +86,9 @@ void PairTable::begin(btScalar time_step) {
 void PairTable::noteWays() {
   if (!settings_.solver.substeps) return;
   pairs_.forEachInParallel([&](ContactPair& pair) {
-    if (pair.asked && !pair.busy) noteWay(pair, *pair.body_a, *pair.body_b, settings_.time_step);
+    // Other dispatchers do not know yet of a pair that is announced, and bodies are to move the same with all.
+    if (!pair.asked || pair.busy || pair.announced) return;
+    noteWay(pair, *pair.body_a, *pair.body_b, settings_.time_step);
   });
 }
 
@@ -103,6 +105,7 @@ void PairTable::countNeighbours() {
 PairTable::Job PairTable::decide(ContactPair& pair) const {
   if (!pair.asked || pair.busy) return {};
   pair.step = number_;
+  pair.announced = false;
   const BodySnapshot &a = *pair.body_a, &b = *pair.body_b;
   const Reuse reuse = reuseFor(pair, a, b, settings_);
   if (reuse == Reuse::idle) {
