@@ -131,7 +131,8 @@ class PackingShape : public btConcaveShape {
 
   /// Calls `callback` with the triangles of the solid's surface near a box in the shape's frame, for rays,
   /// sweeps, debug drawing and soft bodies. There are none if the packing has no surface: such a body
-  /// collides, but rays pass through it.
+  /// collides, but rays pass through it. Rays of Bullet's that start inside the solid do not meet the side by
+  /// which they leave.
   void processAllTriangles(btTriangleCallback* callback, const btVector3& min,
                            const btVector3& max) const override;
 

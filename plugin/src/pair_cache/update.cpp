@@ -86,7 +86,8 @@ void PairTable::begin(btScalar time_step) {
 void PairTable::noteWays() {
   if (!settings_.solver.substeps) return;
   pairs_.forEachInParallel([&](ContactPair& pair) {
-    // Other dispatchers do not know yet of a pair that is announced, and bodies are to move the same with all.
+    // Other dispatchers do not know yet of a pair that is announced, and bodies are to move the same with
+    // all.
     if (!pair.asked || pair.busy || pair.announced) return;
     noteWay(pair, *pair.body_a, *pair.body_b, settings_.time_step);
   });

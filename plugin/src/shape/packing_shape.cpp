@@ -6,6 +6,7 @@
 #include <string>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
 #include <LinearMath/btAabbUtil2.h>
 
 #include "common/bullet_vectors.hpp"
@@ -242,6 +243,9 @@ void PackingShape::processAllTriangles(btTriangleCallback* callback, const btVec
                                        const btVector3& max) const {
   impl_->check.noticeTriangles(*callback, impl_->packing().provenance.source);
   if (!impl_->hasSurface()) return;
+  // A ray that starts inside goes out, as of Bullet's convex shapes: that of a wheel would stand on its car.
+  if (auto* const ray = dynamic_cast<btTriangleRaycastCallback*>(callback))
+    ray->m_flags |= btTriangleRaycastCallback::kF_FilterBackfaces;
   ToShapeFrame to_shape;
   to_shape.from_packing = impl_->frame.from_packing;
   to_shape.scale = impl_->scaling.x();

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
+#include <utility>
+
+#include <BulletDynamics/Vehicle/btRaycastVehicle.h>
 
 #include "capture_log.hpp"
 #include "innersphere/error.hpp"
@@ -220,6 +224,46 @@ TEST(Shape, RaysAndSweepsHitTheSurface) {
                               btTransform(btQuaternion::getIdentity(), to), sweep);
   ASSERT_TRUE(sweep.hasHit());
   EXPECT_NEAR(sweep.m_closestHitFraction, 0.43, 1e-3);
+}
+
+TEST(Shape, RaysGoOutOfIt) {
+  TestWorld world;
+  world.add(makeShape(latticeBox({1, 1, 1}, 2)), 1, btVector3(0, 0, 0));
+  world.add(makeShape(latticeBox({1, 1, 1}, 2)), 1, btVector3(0, 0, 3));
+  world.world.updateAabbs();
+  const btVector3 inside(btScalar(0.1), btScalar(0.2), 0), up(0, 0, 9);
+  btCollisionWorld::AllHitsRayResultCallback out(inside, inside + up), through(inside - up, inside + up);
+  for (btCollisionWorld::AllHitsRayResultCallback* hits : {&out, &through})
+    world.world.rayTest(hits->m_rayFromWorld, hits->m_rayToWorld, *hits);
+  ASSERT_EQ(out.m_hitFractions.size(), 1);
+  EXPECT_NEAR(out.m_hitPointWorld[0].z(), 2.5, 1e-4);  // where it goes into the next one
+  ASSERT_EQ(through.m_hitFractions.size(), 2);
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(through.m_hitNormalWorld[i].z(), -1, 1e-4);
+}
+
+// Each wheel stood on the car that it belongs to, which flew.
+TEST(Shape, CarriesAVehicleAsABoxDoes) {
+  const auto height = [](std::shared_ptr<btCollisionShape> shape) {
+    constexpr double kStep = 1.0 / 240;
+    TestWorld world;
+    world.addFloor().setFriction(1);
+    btRigidBody& chassis = world.add(std::move(shape), 800, btVector3(0, 0, 1));
+    chassis.setActivationState(DISABLE_DEACTIVATION);
+    const btRaycastVehicle::btVehicleTuning tuning;
+    btDefaultVehicleRaycaster raycaster(&world.world);
+    btRaycastVehicle vehicle(tuning, &chassis, &raycaster);
+    vehicle.setCoordinateSystem(1, 2, 0);
+    for (int i = 0; i < 4; ++i)
+      vehicle.addWheel(btVector3(btScalar(i < 2 ? 0.8 : -0.8), btScalar(i % 2 ? 0.45 : -0.45), 0),
+                       btVector3(0, 0, -1), btVector3(0, -1, 0), btScalar(0.4), btScalar(0.3), tuning, i < 2);
+    world.world.addVehicle(&vehicle);
+    world.run(4, kStep);
+    world.world.removeVehicle(&vehicle);
+    return double(chassis.getWorldTransform().getOrigin().z());
+  };
+  const btVector3 size(2, 1, btScalar(0.5));
+  EXPECT_NEAR(height(makeShape(latticeBox({2, 1, 0.5}, 8))), height(std::make_shared<btBoxShape>(size / 2)),
+              1e-3);
 }
 
 TEST(Shape, IsRecognisedAmongOthersOfItsType) {
