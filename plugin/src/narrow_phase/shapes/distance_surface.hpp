@@ -72,6 +72,7 @@ std::unique_ptr<ShapeSurface> makeBoxSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeCapsuleSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeCylinderSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeConeSurface(const btCollisionShape& shape);
+std::unique_ptr<ShapeSurface> makeMultiSphereSurface(const btCollisionShape& shape);
 std::unique_ptr<ShapeSurface> makeConvexSurface(const btCollisionShape& shape);
 /// Makes a surface of a distance field. Returns null if the shape is no btSdfCollisionShape.
 std::unique_ptr<ShapeSurface> makeSdfSurface(const btCollisionShape& shape);

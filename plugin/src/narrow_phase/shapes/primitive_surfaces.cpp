@@ -4,6 +4,7 @@
 #include <BulletCollision/CollisionShapes/btConeShape.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
@@ -268,6 +269,116 @@ class ConvexSurface : public PrimitiveSurface<btConvexShape> {
   btScalar lowerBound(const btVector3& p) const override { return boxDistance(shape_, p); }
 };
 
+/// The hull of spheres. Its distance is the largest that any direction tells, less how far the hull reaches
+/// there: that is where one sphere is furthest out, or two, which roll on a line. Where three are, it is
+/// flat.
+class MultiSphereSurface : public ConvexSurface {
+ public:
+  explicit MultiSphereSurface(const btMultiSphereShape& spheres)
+      : ConvexSurface(spheres), spheres_(spheres) {}
+
+ private:
+  struct Ball {
+    btVector3 centre;
+    btScalar radius;
+  };
+  /// Of two balls, the direction in which both are furthest out: `along` their line, and across it.
+  struct Cone {
+    btVector3 line;
+    btScalar along, across;
+    btVector3 direction(const btVector3& way) const {
+      const btVector3 aside = way - line * line.dot(way);
+      const btScalar length = aside.length();
+      btVector3 any, unused;
+      if (!(length > 0)) btPlaneSpace1(line, any, unused);
+      return line * along + (length > 0 ? aside / length : any) * across;
+    }
+  };
+
+  Ball ball(int i) const {
+    const btVector3& scaling = spheres_.getLocalScaling();
+    return {spheres_.getSpherePosition(i) * scaling, spheres_.getSphereRadius(i) * scaling.x()};
+  }
+  static bool coneOf(const Ball& a, const Ball& b, Cone& cone) {
+    const btVector3 way = b.centre - a.centre;
+    const btScalar length = way.length();
+    if (!(btFabs(a.radius - b.radius) < length)) return false;  // one lies in the other
+    cone.line = way / length;
+    cone.along = (a.radius - b.radius) / length;
+    cone.across = btSqrt(1 - cone.along * cone.along);
+    return true;
+  }
+  /// Whether nothing of the hull is further out.
+  bool isOutermost(const Ball& here, const btVector3& direction) const {
+    const btScalar reach = here.centre.dot(direction) + here.radius;
+    for (int i = 0; i < spheres_.getSphereCount(); ++i) {
+      const Ball other = ball(i);
+      const btScalar beyond = other.centre.dot(direction) + other.radius - reach;
+      if (beyond > 8 * SIMD_EPSILON * (other.centre.length() + other.radius)) return false;
+    }
+    return true;
+  }
+
+  bool nearest(const btVector3& p, Nearest& nearest) const override {
+    nearest.distance = -BT_LARGE_FLOAT;
+    for (int i = 0; i < spheres_.getSphereCount(); ++i) {
+      const Ball a = ball(i);
+      btVector3 normal;
+      const btScalar distance = thickenedDistance(p - a.centre, a.radius, btVector3(0, 1, 0), normal);
+      if (distance > nearest.distance && isOutermost(a, normal)) {
+        nearest.distance = distance;
+        nearest.normal = normal;
+        nearest.curvature = 1 / a.radius;
+        nearest.straight.setZero();
+      }
+      for (int k = 0; k < i; ++k) {
+        const Ball b = ball(k);
+        Cone cone;
+        if (!coneOf(a, b, cone)) continue;
+        normal = cone.direction(p - a.centre);
+        const btScalar from_line = (p - a.centre).dot(normal) - a.radius;
+        if (!(from_line > nearest.distance) || !isOutermost(a, normal)) continue;
+        nearest.distance = from_line;
+        nearest.normal = normal;
+        nearest.straight = (cone.line - normal * cone.along) / cone.across;
+        // Of the ball that touches the line there.
+        const btScalar part =
+            (p - a.centre).dot(nearest.straight) / (b.centre - a.centre).dot(nearest.straight);
+        nearest.curvature =
+            1 / (a.radius + btClamped(part, btScalar(0), btScalar(1)) * (b.radius - a.radius));
+      }
+    }
+    // Over a face, which no ball and no line is, GJK knows better.
+    Nearest by_gjk;
+    if (spheres_.getSphereCount() < 3 || !ConvexSurface::nearest(p, by_gjk))
+      return nearest.distance > -BT_LARGE_FLOAT;
+    if (by_gjk.distance > nearest.distance + kFlatter * ball(0).radius) nearest = by_gjk;
+    return true;
+  }
+
+  bool lineTowards(const btVector3& direction, btVector3 (&ends)[2]) const override {
+    btScalar furthest = -BT_LARGE_FLOAT;
+    for (int i = 0; i < spheres_.getSphereCount(); ++i) {
+      for (int k = 0; k < i; ++k) {
+        const Ball a = ball(i), b = ball(k);
+        Cone cone;
+        if (!coneOf(a, b, cone)) continue;
+        const btVector3 normal = cone.direction(direction);
+        const btScalar reach = normal.dot(direction);
+        if (!(reach > furthest) || !isOutermost(a, normal)) continue;
+        furthest = reach;
+        ends[0] = a.centre + normal * a.radius;
+        ends[1] = b.centre + normal * b.radius;
+      }
+    }
+    return furthest > -BT_LARGE_FLOAT;
+  }
+
+  /// In radii: what GJK is off by in single precision.
+  static constexpr btScalar kFlatter = btScalar(1e-3);
+  const btMultiSphereShape& spheres_;
+};
+
 /// A polyhedron by its faces: in single precision GJK ends while its normal is still off by up to 3 degrees.
 class HullSurface : public ConvexSurface {
  public:
@@ -318,6 +429,10 @@ std::unique_ptr<ShapeSurface> makeConeSurface(const btCollisionShape& shape) {
 
 std::unique_ptr<ShapeSurface> makeBoxSurface(const btCollisionShape& shape) {
   return std::make_unique<BoxSurface>(shape);
+}
+
+std::unique_ptr<ShapeSurface> makeMultiSphereSurface(const btCollisionShape& shape) {
+  return std::make_unique<MultiSphereSurface>(static_cast<const btMultiSphereShape&>(shape));
 }
 
 std::unique_ptr<ShapeSurface> makeConvexSurface(const btCollisionShape& shape) {

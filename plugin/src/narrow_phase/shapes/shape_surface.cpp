@@ -17,6 +17,8 @@ std::unique_ptr<ShapeSurface> makeShapeSurface(const btCollisionShape& shape) {
       return makeBoxSurface(shape);
     case CAPSULE_SHAPE_PROXYTYPE:
       return makeCapsuleSurface(shape);
+    case MULTI_SPHERE_SHAPE_PROXYTYPE:
+      return makeMultiSphereSurface(shape);
     case CYLINDER_SHAPE_PROXYTYPE:
       return makeCylinderSurface(shape);
     case CONE_SHAPE_PROXYTYPE:

@@ -43,6 +43,21 @@ double boxDistance(const Point& p, const Point& half) {
   return deepest > 0 ? lengthOf(outside) : deepest;
 }
 
+struct Ball {
+  Point centre;
+  double radius;
+};
+
+std::shared_ptr<btMultiSphereShape> hullOf(const std::vector<Ball>& balls) {
+  std::vector<btVector3> centres;
+  std::vector<btScalar> radii;
+  for (const Ball& ball : balls) {
+    centres.emplace_back(btScalar(ball.centre[0]), btScalar(ball.centre[1]), btScalar(ball.centre[2]));
+    radii.push_back(btScalar(ball.radius));
+  }
+  return std::make_shared<btMultiSphereShape>(centres.data(), radii.data(), int(balls.size()));
+}
+
 std::vector<Primitive> primitives() {
   const auto capsule = [](Point p) {
     p[1] -= std::min(0.5, std::max(-0.5, p[1]));
@@ -58,6 +73,7 @@ std::vector<Primitive> primitives() {
        },
        0},
       {"capsule", std::make_shared<btCapsuleShape>(btScalar(0.4), btScalar(1)), capsule, 1 / 0.4},
+      {"spheres", hullOf({{{0, -0.5, 0}, 0.4}, {{0, 0.5, 0}, 0.4}}), capsule, 1 / 0.4},
       {"plane", std::make_shared<btStaticPlaneShape>(btVector3(1, 2, 2) / 3, btScalar(0.1)), plane, 0},
   };
 }
@@ -170,6 +186,55 @@ TEST_P(Primitives, NoticeThatTheyHaveChanged) {
   EXPECT_TRUE(surface->isAsBefore());
   shape.setLocalScaling(btVector3(1, 1, 1));
   EXPECT_FALSE(surface->isAsBefore());
+}
+
+/// How far outside of the hull of balls a point is: the most that any plane around it tells, which is looked
+/// for at random, nearer and nearer to the best.
+double hullDistance(const std::vector<Ball>& balls, const Point& p, std::mt19937& rng) {
+  std::normal_distribution<double> part;
+  Point best{1, 0, 0};
+  double most = -1e9, step = 10;
+  for (int i = 0; i < 3000; ++i) {
+    Point way{best[0] + step * part(rng), best[1] + step * part(rng), best[2] + step * part(rng)};
+    const double length = lengthOf(way);
+    double inside = -1e9, at = 0;
+    for (double& x : way) x /= length;
+    for (const Ball& ball : balls) {
+      double reach = ball.radius;
+      for (std::size_t k = 0; k < 3; ++k) reach += ball.centre[k] * way[k];
+      inside = std::max(inside, reach);
+    }
+    for (std::size_t k = 0; k < 3; ++k) at += p[k] * way[k];
+    if (at - inside > most) {
+      most = at - inside;
+      best = way;
+    }
+    step = std::max(1e-6, step * 0.995);
+  }
+  return most;
+}
+
+TEST(MultiSpheres, AreTheHullsOfTheirSpheres) {
+  std::mt19937 rng(12);
+  std::uniform_real_distribution<double> u(-1.5, 1.5);
+  const std::vector<Ball> all{
+      {{-0.5, 0, 0}, 0.4}, {{0.4, 0.1, 0}, 0.2}, {{0, 0.6, 0.3}, 0.3}, {{0.1, 0, 0}, 0.1}};
+  for (const std::size_t count : {1, 2, 3, 4}) {
+    const std::vector<Ball> balls(all.begin(), all.begin() + std::ptrdiff_t(count));
+    const auto shape = hullOf(balls);
+    const auto surface = makeShapeSurface(*shape);
+    const auto packing = makeShape(withoutSurface(latticeBox({0.5, 0.5, 0.5}, 5)));
+    const PlacedPacking body(*packing, btTransform::getIdentity(), Estimator::raw, 0);
+    for (int i = 0; i < 300; ++i) {
+      const Point p{u(rng), u(rng), u(rng)};
+      const double expected = hullDistance(balls, p, rng);
+      if (expected < 0.01) continue;
+      btScalar distance = 0;
+      ASSERT_TRUE(surface->distanceOf(body, btTransform::getIdentity(),
+                                      btVector3(btScalar(p[0]), btScalar(p[1]), btScalar(p[2])), distance));
+      EXPECT_NEAR(distance, expected, count < 3 ? 1e-4 : 1e-3) << count;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Primitives, testing::ValuesIn(primitives()),
