@@ -16,6 +16,13 @@ btScalar speedBetween(const Motion& a, const Motion& b) {
 
 }  // namespace
 
+btVector3 accelerationOf(const btCollisionObject& object) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (body == nullptr || !(body->getInvMass() > 0)) return {0, 0, 0};
+  const btVector3 acceleration = body->getTotalForce() * body->getInvMass() * body->getLinearFactor();
+  return std::isfinite(acceleration.length2()) ? acceleration : btVector3(0, 0, 0);
+}
+
 btVector3 pushIn(const btCollisionObject& object, btScalar time_step) {
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (body == nullptr || !(body->getInvMass() > 0)) return {0, 0, 0};

@@ -13,6 +13,8 @@ class btCollisionObject;
 namespace innersphere {
 inline namespace INNERSPHERE_BULLET_PRECISION {
 
+/// Returns the acceleration that forces and gravity give a body [m/s^2]. Outside of a step there are none.
+btVector3 accelerationOf(const btCollisionObject& object);
 /// Says what the user's forces add to the velocity of a body in a step of `time_step` [s]: all but gravity,
 /// with which all fall alike.
 btVector3 pushIn(const btCollisionObject& object, btScalar time_step);

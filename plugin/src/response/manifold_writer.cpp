@@ -6,6 +6,7 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include "common/contact_tolerances.hpp"
+#include "common/motion_bound.hpp"
 #include "response/patch_friction.hpp"
 #include "solver/point_curvature.hpp"
 
@@ -130,6 +131,16 @@ btScalar shareOfHeavier(const btCollisionObject& a, const btCollisionObject& b) 
   return of_a > 0 ? of_a / (of_a + of_b) : btScalar(0);
 }
 
+/// The restitution of what bounces from a gap, so that it is as fast there as it would be when it has been at
+/// the surface and comes back: the solver has it turn round at once, and forces pull it on all the while.
+btScalar restitutionAt(btScalar gap, btScalar approach, btScalar pull, btScalar time_step,
+                       btScalar restitution) {
+  // Bullet's speeds are those of half a step ago.
+  const btScalar closing = approach + pull / 2, in_gap = 2 * pull / time_step * gap;
+  const btScalar there = restitution * restitution * (closing * closing + in_gap) - in_gap;
+  return there > 0 ? btMax((btSqrt(there) - pull / 2) / approach, btScalar(0)) : btScalar(0);
+}
+
 /// Stiffness, damping and the depth they act on, and the slip that friction is to undo, unless the user has
 /// set a law of their own, through the bodies or in a material callback. The callback has seen the true
 /// depth.
@@ -169,6 +180,9 @@ void setLaw(btManifoldPoint& point, const NewPoint& from, const btCollisionObjec
     // The solver would begin the bounce before they touch, and brake them on their way.
     if (!meets || from.is_later) point.m_combinedRestitution = 0;
     if (meets && bounces && !from.is_later && (depth < 0 || spring)) {
+      const btScalar pull = law.time_step * (accelerationOf(a) - accelerationOf(b)).dot(from.normal);
+      point.m_combinedRestitution = restitutionAt(btMax(-from.depth, btScalar(0)), approach, pull,
+                                                  law.time_step, point.m_combinedRestitution);
       depth = 0;
       spring = false;
     }

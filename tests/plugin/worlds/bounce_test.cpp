@@ -89,18 +89,20 @@ TEST_P(Bounce, RollsOffAFloor) {
   }
 }
 
-// The apex of each was higher than it should be by the way of a substep, so that a ball that loses nothing
-// rose by 5 mm in each second.
-TEST_P(Bounce, IsAsHighAsRestitutionSaysWithSubsteps) {
+// With substeps each was higher than it should be by the way of one, so that a ball that loses nothing rose
+// by 5 mm in each second. Bullet's solver had balls that lose some turn round up to the way of a step above
+// the floor, as fast as at the floor: by a quarter too high at 60 steps/s.
+TEST_P(Bounce, IsAsHighAsRestitutionSays) {
   const auto [response, steps] = GetParam();
   constexpr double kGravity = 9.81;
-  for (const double e : {0.8, 0.95, 1.0}) {
-    for (const double height : {0.5, 2.0}) {
+  for (const bool substeps : {false, true}) {
+    for (const auto& [e, height] :
+         {std::pair(0.8, 0.5), {0.8, 2.0}, {0.95, 0.5}, {0.95, 2.0}, {1.0, 0.5}, {1.0, 2.0}}) {
       ContactOptions options;
       options.response = response;
       TestWorld world(options);
       SubstepSolver solver;
-      world.world.setConstraintSolver(&solver);
+      if (substeps) world.world.setConstraintSolver(&solver);
       PackingCollisionAlgorithm::prepareWorld(world.world, options);
       world.world.setGravity(btVector3(0, 0, btScalar(-kGravity)));
       world.addFloor().setRestitution(1);
@@ -117,7 +119,8 @@ TEST_P(Bounce, IsAsHighAsRestitutionSaysWithSubsteps) {
         ASSERT_TRUE(std::isfinite(speed));
       }
       const double highest = body.getWorldTransform().getOrigin().z() - kRadius;
-      EXPECT_NEAR(highest, apex, 0.002 * height + kGravity * step * step) << e << ", from " << height;
+      EXPECT_NEAR(highest, apex, (substeps ? 0.002 : 0.01) * height + kGravity * step * step)
+          << e << ", from " << height << (substeps ? ", substeps" : "");
       world.world.setConstraintSolver(&world.solver);
     }
   }
