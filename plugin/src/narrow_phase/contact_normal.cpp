@@ -99,8 +99,11 @@ btVector3 ContactNormal::at(const ProbedSample& sample) const {
   // Both lean the same way. That of a ball leads through its centre, wherever it is taken.
   const btScalar bend_a = sample.points.curvature_a, bend_b = sample.points.curvature_b;
   if (extents_ == nullptr && bend_a < 0 && bend_b > 0) return b;
-  if (isHollowUnderFlat(bend_a, bend_b)) return a;
-  if (isHollowUnderFlat(bend_b, bend_a)) return b;
+  // The wall of a hole through what lies flat on a face bears no such ends.
+  if (a.dot(b) > kFrontCosine) {
+    if (isHollowUnderFlat(bend_a, bend_b)) return a;
+    if (isHollowUnderFlat(bend_b, bend_a)) return b;
+  }
   const bool one_is_flat = flat_a_ != flat_b_;
   if (one_is_flat && extents_ != nullptr && sample.points.areFlat() && a.distance(b) > kOneNormal) {
     if (const std::optional<bool> on_a = isFaceOfA(sample.points, extents_)) return *on_a ? a : b;

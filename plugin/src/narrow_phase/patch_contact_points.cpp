@@ -241,7 +241,10 @@ void PatchContactPoints::goToCrest(const OpposedPoints& points, const Across& ax
   if (p.to_top.length() > kSameTop * reach_.separation) return;
   p.on_b += p.to_top;
   p.depth += p.below_top;
-  p.normal = (points.normal_b - p.bend_b.turn(p.to_top, axes)).normalized();
+  // Where both agree there: a ridge that leans along itself bears along the normal of what it is over.
+  const btVector3 on_a = points.normal_a + p.bend_a.turn(p.to_top, axes),
+                  on_b = points.normal_b - p.bend_b.turn(p.to_top, axes);
+  if (!leans(on_a, on_b)) p.normal = on_b.normalized();
   p.to_top.setZero();
   p.below_top = 0;
   point.slope.setZero();
