@@ -185,10 +185,11 @@ def test_mirrored_and_stretched_meshes_are_where_pybullet_has_them(client, tmp_p
     )
     sim = isp.attach(client)
     body = p.loadURDF(str(tmp_path / "bracket.urdf"), [1, 2, 3], UPRIGHT, useFixedBase=True, physicsClientId=client)
-    # Rays from all sides, towards where the mesh is.
+    # Rays from all sides, towards where the mesh is, and all from outside: from inside a packing they go out.
     low, high = np.array(p.getAABB(body, physicsClientId=client))
     rng = np.random.default_rng(1)
     ways = rng.normal(size=(1000, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     starts = rng.uniform(low, high, ways.shape) - ways
 
     def hits():

@@ -35,18 +35,20 @@ constexpr btScalar kRolling = btScalar(1e-5);
 /// Points this near to a line, in lengths of it, are on it.
 constexpr btScalar kOnLine = btScalar(0.02);
 
-/// Whether bodies that touch in the points of a patch could roll on it.
-bool canRollOn(const ContactPatch& patch) {
+/// Whether bodies that touch in the points of patches could roll on these: they lie on a line.
+bool canRollOn(const ContactPatch* patches, std::size_t patch_count) {
   btVector3 first(0, 0, 0), along(0, 0, 0);
   int count = 0;
-  for (int i = 0; i < patch.count; ++i) {
-    const ContactPoint& point = patch.points[i];
-    if (!(point.depth > 0)) continue;
-    const btVector3 way = point.on_b - first;
-    if (count == 0) first = point.on_b;
-    if (count == 1) along = way;
-    if (count > 1 && along.cross(way).length() > kOnLine * along.length2()) return false;
-    ++count;
+  for (const ContactPatch* patch = patches; patch != patches + patch_count; ++patch) {
+    for (int i = 0; i < patch->count; ++i) {
+      const ContactPoint& point = patch->points[i];
+      if (!(point.depth > 0)) continue;
+      const btVector3 way = point.on_b - first;
+      if (count == 0) first = point.on_b;
+      if (count == 1) along = way;
+      if (count > 1 && along.cross(way).length() > kOnLine * along.length2()) return false;
+      ++count;
+    }
   }
   return true;
 }
@@ -123,7 +125,8 @@ ContactLaw::OfPatch ContactLaw::of(const std::vector<ContactPatch>& patches, std
   law.stiffness_ = stiffness * share;
   law.damping_ = damping_ratio_ * 2 * btSqrt(stiffness * mass_) * share;
   law.leaving_ = patch.by_volume ? btScalar(0) : leavingAlong(patch.normal, patches);
-  law.rolling_ = canRollOn(patch) ? kRolling * size_ : btScalar(0);
+  law.rolling_ = canRollOn(&patch, 1) ? kRolling * size_ : btScalar(0);
+  law.rocks_ = canRollOn(patches.data(), patches.size());
   law.push_left_ = pushLeft(patch, patches);
   return law;
 }
@@ -135,6 +138,7 @@ PointLaw ContactLaw::OfPatch::at(btScalar depth) const {
   law.solved = law_->solved_;
   if (!law.solved) return law;
   law.rolling = rolling_;
+  law.rocks = rocks_;
   const bool given = law_->response_ == Response::compliant && !law_->defaultSpring();
   if (law_->solver_.substeps && !law_->penalty()) {
     law.spring = given;

@@ -23,6 +23,7 @@ struct PointLaw {
   btScalar friction = 1;   ///< share of it
   btScalar push = 0;       ///< speed at which the spring alone would drive the bodies apart [m/s]
   btScalar rolling = 0;    ///< how far ahead the load of bodies that roll lies [m]
+  bool rocks = false;      ///< the bodies touch nowhere beside a line
   btScalar tilting = 0;    ///< how much further for each radian that they tilt in the step [m]
   btScalar bears = 0;      ///< impulse of the spring in a step at rest [N s]
   bool starts = false;     ///< the solver is to start with that, whatever the last impulse was
@@ -84,6 +85,7 @@ class ContactLaw {
     btScalar damping_;
     btScalar leaving_;  ///< how fast what is deep may be driven apart [m/s]
     btScalar rolling_;
+    bool rocks_;
     btScalar push_left_;  ///< share, by what presses against it
     bool in_chain_;
   };

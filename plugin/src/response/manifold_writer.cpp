@@ -386,9 +386,10 @@ void writePatch(const btCollisionObject& a, const btCollisionObject& b, const Pl
     point.normal = patch.points[i].normal;
     point.curvature = patch.points[i].bend_a.mean() + patch.points[i].bend_b.mean();
     point.on_b = origin + patch.points[i].on_b;
-    point.ahead =
-        btMin(law.size(), point.law.time_step * rockingSpeed(patch.points[i], point.on_b, motion, a, b,
-                                                             law.size(), load, point.law.time_step));
+    if (point.law.rocks)
+      point.ahead =
+          btMin(law.size(), point.law.time_step * rockingSpeed(patch.points[i], point.on_b, motion, a, b,
+                                                               law.size(), load, point.law.time_step));
     if (solver.substeps) {
       point.bends = bendsAcross(patch.points[i]);
     } else {
