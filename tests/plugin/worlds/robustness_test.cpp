@@ -196,6 +196,12 @@ class ShapePlace {
   btCollisionShape* shape_ = nullptr;
 };
 
+/// Of this height as a packing, of 1 m as a box.
+btCollisionShape* makeCube(ShapePlace& place, bool packing, double height) {
+  if (packing) return place.make<PackingShape>(cubeModel(height));
+  return place.make<btBoxShape>(btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5)));
+}
+
 // Bullet says nothing to a dispatcher when a body gets another shape, or a compound loses a child.
 TEST(Robustness, ShapesThatAreFreedWhenBodiesHaveOthersAreNotRead) {
   const auto cube = std::make_shared<PackingShape>(cubeModel(1));
@@ -211,17 +217,13 @@ TEST(Robustness, ShapesThatAreFreedWhenBodiesHaveOthersAreNotRead) {
         else
           world.add(std::make_shared<btBoxShape>(half), 0, half * btVector3(0, 0, 1));
         btRigidBody& body = world.add(cube, 1, btVector3(0, 0, btScalar(1.5)));
-        const auto make = [&](ShapePlace& memory, bool packing, double height) -> btCollisionShape* {
-          if (packing) return memory.make<PackingShape>(cubeModel(height));
-          return memory.make<btBoxShape>(half);
-        };
-        body.setCollisionShape(make(place, was_packing, 1));
+        body.setCollisionShape(makeCube(place, was_packing, 1));
         world.run(0.2);
         // Of another kind at the same address, or of the same kind at another one. Bullet takes no packing
         // where a convex shape was.
         if (in_place && !was_packing) continue;
         const bool packing = was_packing && !in_place;
-        body.setCollisionShape(make(in_place ? place : other_place, packing, 0.8));
+        body.setCollisionShape(makeCube(in_place ? place : other_place, packing, 0.8));
         if (!in_place) place.free();
         body.activate();
         pairOverlaps(&world.dispatcher);
@@ -246,18 +248,13 @@ TEST(Robustness, ShapesThatAreFreedWhenBodiesHaveOthersAreNotRead) {
 
 TEST(Robustness, ChildrenThatAreFreedWhenTheirCompoundLosesThemAreNotRead) {
   const auto cube = makeShape(latticeBox({1, 1, 1}, 6));
-  const btVector3 half(btScalar(0.5), btScalar(0.5), btScalar(0.5));
   for (const bool packing : {true, false}) {
     ShapePlace first, second;
-    const auto make = [&](ShapePlace& place) -> btCollisionShape* {
-      if (packing) return place.make<PackingShape>(cubeModel(1));
-      return place.make<btBoxShape>(half);
-    };
     const auto compound = std::make_shared<btCompoundShape>();
     for (ShapePlace* place : {&first, &second})
       compound->addChildShape(
           btTransform(btQuaternion::getIdentity(), btVector3(0, btScalar(place == &first ? -1 : 0), 0)),
-          make(*place));
+          makeCube(*place, packing, 1));
     TestWorld world;
     world.add(makeShape(latticeBox({6, 6, 1}, 8)), 0, btVector3(0, 0, btScalar(-0.5)));
     // A pair that Bullet asks for first begins the update of all.
